@@ -1,0 +1,37 @@
+#include "engine/annotation/history.h"
+
+#include <ranges>
+#include <utility>
+
+namespace shvr {
+
+void apply(Document& document, const Change& change, Direction direction)
+{
+    std::visit([&](const MaskBrickChange& mask) { document.mask.apply(mask, direction); }, change);
+}
+
+void History::perform(Document& document, Command command)
+{
+    if (command.changes.empty()) return;
+    commands_.resize(done_);
+    commands_.push_back(std::move(command));
+    redo(document);
+}
+
+const Command* History::undo(Document& document)
+{
+    if (done_ == 0) return nullptr;
+    const Command& command = commands_[--done_];
+    for (const Change& change : std::views::reverse(command.changes)) apply(document, change, Direction::backwards);
+    return &command;
+}
+
+const Command* History::redo(Document& document)
+{
+    if (done_ == commands_.size()) return nullptr;
+    const Command& command = commands_[done_++];
+    for (const Change& change : command.changes) apply(document, change, Direction::forwards);
+    return &command;
+}
+
+}  // namespace shvr

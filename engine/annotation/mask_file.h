@@ -1,0 +1,17 @@
+#pragma once
+// The thesis's `.mask` file: one unsigned byte per voxel, x fastest, no header.
+
+#include <filesystem>
+
+#include "engine/annotation/mask.h"
+
+namespace shvr {
+
+/// Written to a temporary file beside `path`, synced and renamed, slab by slab: a failed save leaves the old file.
+void save_mask(const std::filesystem::path& path, const Mask& mask);
+
+/// Fails, naming both sizes, where the file does not hold exactly one byte per voxel of `size`.
+/// The result is a list of records, so that loading is a command like any other.
+std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const Size3& size);
+
+}  // namespace shvr

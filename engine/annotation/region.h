@@ -1,0 +1,58 @@
+#pragma once
+// The local region of a brush (a ball or its bounding box around the probe) and sets of selected voxels.
+//
+// A region is a list of row spans: for each (y, z) of its box the half-open range of x that belongs to it. The spans
+// are computed here, in double, once; brush kernels only intersect them with what they find in the volume, so the CPU
+// and the device can never disagree about a voxel on the region's surface.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "engine/annotation/history.h"
+#include "engine/volume/volume.h"
+#include "shaders/paint.h"
+
+namespace shvr {
+
+enum class RegionShape { ball, box };
+
+struct BrushRegion {
+    VoxelBox box;                          ///< cut at the volume's border; may be empty
+    std::vector<gpu::RowSpan> rows;        ///< box.size().y * box.size().z spans, y fastest, x relative to box.lower.x
+    bool contains(const Size3& voxel) const;
+    /// 32-bit words per row: bit b of word w is voxel x = box.lower.x + 32 w + b.
+    int64_t words_per_row() const { return (box.size().x + 31) / 32; }
+};
+
+/// A voxel belongs to the ball when its centre lies within `radius_voxels` (measured along x: radius_voxels *
+/// spacing.x) of `centre_voxel`, in physical units. The box takes each axis on its own with the same radius.
+BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
+                        const glm::dvec3& spacing, const Size3& volume_size);
+
+/// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
+/// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
+std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
+
+/// A set of voxels in sparse bricks of 32^3 bits.
+class VoxelSelection {
+public:
+    explicit VoxelSelection(Size3 size);
+    /// Adds the voxels of `region` whose bit is set; `words` is laid out as `BrushRegion::words_per_row` says.
+    void add(const BrushRegion& region, std::span<const uint32_t> words);
+    bool contains(const Size3& voxel) const;
+    int64_t count() const;
+    using Bits = std::array<uint32_t, MASK_BRICK_VOXELS / 32>;
+    const std::map<int64_t, Bits>& bricks() const { return bricks_; }
+
+private:
+    Size3 size_;
+    glm::i64vec3 counts_;
+    std::map<int64_t, Bits> bricks_;
+};
+
+/// The records that give every selected voxel `group`; voxels that have it already are left out.
+std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group);
+
+}  // namespace shvr

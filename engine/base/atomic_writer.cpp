@@ -1,0 +1,104 @@
+#include "engine/base/atomic_writer.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Permissions of the file that will be replaced, if there is one.
+std::optional<mode_t> permissions_of_old_file(const fs::path& path)
+{
+    if (!path.has_filename()) fail("'", path.string(), "': cannot be written; expected the name of a file");
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0) {
+        if (errno == ENOENT) return {};
+        fail(path.string(), ": cannot be written: ", reason_of(errno));
+    }
+    if (S_ISLNK(status.st_mode)) return {};
+    if (S_ISDIR(status.st_mode)) fail(path.string(), ": cannot be written: ", reason_of(EISDIR));
+    if (!S_ISREG(status.st_mode)) fail(path.string(), ": is a device, pipe or socket; expected a file or nothing");
+    return status.st_mode & 07777;
+}
+
+/// Makes the rename survive a power cut.
+void sync_folder(const fs::path& path)
+{
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    const FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    bool is_synced = descriptor && ::fsync(descriptor.number()) == 0;
+    while (!is_synced && descriptor && errno == EINTR) is_synced = ::fsync(descriptor.number()) == 0;
+    // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
+    if (!is_synced && errno != EINVAL && errno != EACCES) {
+        fail(path.string(),
+             ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
+    }
+}
+
+}  // namespace
+
+AtomicWriter::AtomicWriter(const fs::path& path)
+    : target_(path), old_permissions_(permissions_of_old_file(path)), descriptor_(create())
+{
+}
+
+AtomicWriter::~AtomicWriter()
+{
+    if (!is_renamed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicWriter::append(std::span<const std::byte> content)
+{
+    while (!content.empty()) {
+        const ssize_t count = ::write(descriptor_.number(), content.data(), content.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) refuse(errno);
+        // Some network file systems say "nothing written" where they mean "full".
+        if (count == 0) refuse(ENOSPC);
+        content = content.subspan(static_cast<size_t>(count));
+    }
+}
+
+void AtomicWriter::commit()
+{
+    // File systems without permissions refuse this, and then there are none to keep.
+    if (old_permissions_ && ::fchmod(descriptor_.number(), *old_permissions_) != 0 && errno != EPERM &&
+        errno != ENOTSUP) {
+        refuse(errno);
+    }
+    while (::fsync(descriptor_.number()) != 0) {
+        if (errno != EINTR) refuse(errno);
+    }
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) refuse(errno);
+    is_renamed_ = true;
+    sync_folder(target_);
+}
+
+FileDescriptor AtomicWriter::create()
+{
+    // The name does not contain the target's, which may be as long as names can be. A file of that name was left by a
+    // dead process with our number.
+    static std::atomic<unsigned> count = 0;
+    while (true) {
+        temporary_ = target_.parent_path() / sentence(".shvr-", ::getpid(), "-", count++, ".tmp");
+        FileDescriptor descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        if (descriptor) return descriptor;
+        if (errno != EEXIST && errno != EINTR) refuse(errno);
+    }
+}
+
+void AtomicWriter::refuse(int error_number) const
+{
+    fail(target_.string(), ": cannot be written: ", reason_of(error_number));
+}
+
+}  // namespace shvr

@@ -1,0 +1,62 @@
+#pragma once
+// Errors of the world and errors of ours.
+//
+// `fail(...)` throws `Error` with one sentence: subject, value found, value expected. It is caught only in `main`, at
+// the edge of a job and in the application. `SHVR_CHECK` guards what can only be our own mistake; it stays on in
+// release, prints both sides and aborts. Any thread may call either.
+
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace shvr {
+
+/// The world's mistake: a file, an argument, a device. `what()` is one sentence for the person at the keyboard.
+class Error : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Wrong usage of the command line (exit status 2).
+class UsageError : public Error {
+public:
+    using Error::Error;
+};
+
+/// A comparison or gate that did not hold (exit status 3).
+class GateError : public Error {
+public:
+    using Error::Error;
+};
+
+/// Joins its arguments as `operator<<` prints them.
+template <class... Parts>
+std::string sentence(const Parts&... parts)
+{
+    std::ostringstream text;
+    static_cast<void>((text << ... << parts));
+    return text.str();
+}
+
+template <class... Parts>
+[[noreturn]] void fail(const Parts&... parts)
+{
+    throw Error(sentence(parts...));
+}
+
+[[noreturn]] inline void abort_on_failed_check(const char* claim, const char* file, int line, const std::string& values)
+{
+    std::fprintf(stderr, "%s:%d: SHVR_CHECK(%s) does not hold%s%s\n", file, line, claim, values.empty() ? "" : ": ",
+                 values.c_str());
+    std::abort();
+}
+
+}  // namespace shvr
+
+/// SHVR_CHECK(claim, values...): aborts, printing the claim and the values, when the claim is false.
+#define SHVR_CHECK(claim, ...)                                                                                        \
+    do {                                                                                                              \
+        if (!(claim)) ::shvr::abort_on_failed_check(#claim, __FILE__, __LINE__, ::shvr::sentence(__VA_ARGS__));        \
+    } while (false)

@@ -1,0 +1,29 @@
+#pragma once
+// One channel of a picture as doubles, and separable filters over it: what the metrics compute with. Plain values; any
+// thread may use its own.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace shvr {
+
+struct Plane {
+    int width = 0, height = 0;
+    std::vector<double> values;  ///< width * height, rows from the top
+
+    Plane(int plane_width, int plane_height)
+        : width(plane_width),
+          height(plane_height),
+          values(static_cast<size_t>(plane_width) * static_cast<size_t>(plane_height))
+    {}
+};
+
+/// Correlation with `across` along rows and `down` along columns; both have odd lengths, their middle is the pixel
+/// itself. Beyond the border the picture goes on with its outermost pixels.
+Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down);
+
+/// exp(-x^2 / (2 sigma^2)) for x = -radius..radius, scaled to a sum of 1.
+std::vector<double> gaussian_weights(double sigma, int radius);
+
+}  // namespace shvr

@@ -1,0 +1,311 @@
+#include "engine/gpu/device.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace shvr::gpu {
+
+namespace {
+
+const char* const VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
+
+const char* name_of(VkResult result)
+{
+    switch (result) {
+        case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of host memory";
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory";
+        case VK_ERROR_INITIALIZATION_FAILED: return "initialization failed";
+        case VK_ERROR_DEVICE_LOST: return "device lost";
+        case VK_ERROR_LAYER_NOT_PRESENT: return "layer not present";
+        case VK_ERROR_EXTENSION_NOT_PRESENT: return "extension not present";
+        case VK_ERROR_FEATURE_NOT_PRESENT: return "feature not present";
+        case VK_ERROR_INCOMPATIBLE_DRIVER: return "no usable Vulkan driver";
+        default: return "error";
+    }
+}
+
+template <class T, class Call>
+std::vector<T> enumerate(Call call)
+{
+    uint32_t count = 0;
+    call(&count, nullptr);
+    std::vector<T> items(count);
+    call(&count, items.data());
+    items.resize(count);
+    return items;
+}
+
+bool layer_is_installed(const char* name)
+{
+    const auto layers = enumerate<VkLayerProperties>(
+        [](uint32_t* count, VkLayerProperties* items) { return vkEnumerateInstanceLayerProperties(count, items); });
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+}
+
+bool instance_extension_is_present(const char* name, const char* layer)
+{
+    const auto extensions = enumerate<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* items) {
+        return vkEnumerateInstanceExtensionProperties(layer, count, items);
+    });
+    return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
+        return std::strcmp(extension.extensionName, name) == 0;
+    });
+}
+
+/// Real devices before software, discrete before integrated.
+int rank(VkPhysicalDeviceType type)
+{
+    switch (type) {
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+        default: return 3;
+    }
+}
+
+std::optional<uint32_t> compute_family(VkPhysicalDevice physical)
+{
+    const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
+        vkGetPhysicalDeviceQueueFamilyProperties(physical, count, items);
+    });
+    // A family with graphics as well can present, which the window will need; one queue serves everything.
+    const VkQueueFlags wanted[] = {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT, VK_QUEUE_COMPUTE_BIT};
+    for (VkQueueFlags flags : wanted)
+        for (uint32_t i = 0; i < families.size(); ++i)
+            if ((families[i].queueFlags & flags) == flags) return i;
+    return std::nullopt;
+}
+
+}  // namespace
+
+void check(VkResult result, const char* call)
+{
+    if (result >= 0) return;
+    fail("Vulkan: ", call, " returned ", int(result), " (", name_of(result), ")");
+}
+
+Device::Device(const DeviceOptions& options)
+{
+    try {
+        create_instance(options.validation);
+        const char* wanted = std::getenv("SHVR_DEVICE");
+        choose_physical(!options.device.empty() ? options.device : wanted ? wanted : "");
+        create_device();
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+Device::~Device()
+{
+    destroy();
+}
+
+void Device::destroy() noexcept
+{
+    if (device_) {
+        vkDeviceWaitIdle(device_);
+        vkDestroyDevice(device_, nullptr);
+    }
+    if (messenger_) {
+        const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+        destroy_messenger(instance_, messenger_, nullptr);
+    }
+    if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+void Device::create_instance(bool validation)
+{
+    const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                        .pApplicationName = "shvr",
+                                        .apiVersion = VK_API_VERSION_1_3};
+    std::vector<const char*> layers;
+    std::vector<const char*> extensions;
+    if (validation) {
+        if (!layer_is_installed(VALIDATION_LAYER))
+            fail("Vulkan layer ", VALIDATION_LAYER, " is not installed; expected the package vulkan-validationlayers");
+        layers.push_back(VALIDATION_LAYER);
+    }
+    const bool debug_utils = instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, nullptr) ||
+                             (validation && instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, layers[0]));
+    if (debug_utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+
+    const VkDebugUtilsMessengerCreateInfoEXT messenger{
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        // Performance advice is left out: it objects to the one layout (GENERAL) that spares every transition.
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = this};
+    const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                           .pNext = &messenger,
+                                           .enabledValidationFeatureCount = 1,
+                                           .pEnabledValidationFeatures = &synchronisation};
+    const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                    .pNext = validation ? &features : nullptr,
+                                    .pApplicationInfo = &application,
+                                    .enabledLayerCount = uint32_t(layers.size()),
+                                    .ppEnabledLayerNames = layers.data(),
+                                    .enabledExtensionCount = uint32_t(extensions.size()),
+                                    .ppEnabledExtensionNames = extensions.data()};
+    SHVR_VK(vkCreateInstance(&info, nullptr, &instance_));
+    if (!debug_utils) return;
+    const auto load = [&](const char* name) { return vkGetInstanceProcAddr(instance_, name); };
+    set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(load("vkSetDebugUtilsObjectNameEXT"));
+    begin_label_ = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(load("vkCmdBeginDebugUtilsLabelEXT"));
+    end_label_ = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(load("vkCmdEndDebugUtilsLabelEXT"));
+    if (!validation) return;
+    const auto create =
+        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(load("vkCreateDebugUtilsMessengerEXT"));
+    SHVR_VK(create(instance_, &messenger, nullptr, &messenger_));
+}
+
+void Device::choose_physical(const std::string& wanted)
+{
+    const auto devices = enumerate<VkPhysicalDevice>([&](uint32_t* count, VkPhysicalDevice* items) {
+        return vkEnumeratePhysicalDevices(instance_, count, items);
+    });
+    struct Candidate {
+        VkPhysicalDevice physical;
+        VkPhysicalDeviceProperties properties;
+    };
+    std::vector<Candidate> candidates;
+    std::string names;
+    for (VkPhysicalDevice physical : devices) {
+        VkPhysicalDeviceProperties properties;
+        vkGetPhysicalDeviceProperties(physical, &properties);
+        names += sentence(names.empty() ? "" : ", ", candidates.size(), ": ", properties.deviceName);
+        candidates.push_back({physical, properties});
+    }
+    if (candidates.empty()) fail("no Vulkan device found; expected a GPU driver, or mesa-vulkan-drivers (lavapipe)");
+
+    const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
+    const Candidate* best = nullptr;
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        const Candidate& candidate = candidates[i];
+        if (by_index ? std::to_string(i) != wanted
+                     : std::string(candidate.properties.deviceName).find(wanted) == std::string::npos)
+            continue;
+        if (candidate.properties.apiVersion < VK_API_VERSION_1_3 || !compute_family(candidate.physical)) continue;
+        if (!best || rank(candidate.properties.deviceType) < rank(best->properties.deviceType)) best = &candidate;
+    }
+    if (!best)
+        fail("no Vulkan 1.3 device ", wanted.empty() ? "" : "matches '" + wanted + "' ", "among: ", names);
+    physical_ = best->physical;
+    queue_family_ = *compute_family(physical_);
+
+    VkPhysicalDeviceMaintenance3Properties maintenance{.sType =
+                                                           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
+                                            .pNext = &maintenance};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    vkGetPhysicalDeviceProperties2(physical_, &properties);
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_properties_);
+
+    traits_.name = properties.properties.deviceName;
+    traits_.driver = sentence(driver.driverName, " ", driver.driverInfo);
+    traits_.is_cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    traits_.limits = properties.properties.limits;
+    traits_.max_allocation_bytes = maintenance.maxMemoryAllocationSize;
+    const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
+        vkGetPhysicalDeviceQueueFamilyProperties(physical_, count, items);
+    });
+    traits_.timestamp_bits = families[queue_family_].timestampValidBits;
+    traits_.nanoseconds_per_tick = traits_.timestamp_bits ? traits_.limits.timestampPeriod : 0.0f;
+    VkFormatProperties r16;
+    vkGetPhysicalDeviceFormatProperties(physical_, VK_FORMAT_R16_UNORM, &r16);
+    traits_.linear_r16 = r16.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    traits_.storage_r16 = r16.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    for (uint32_t i = 0; i < memory_properties_.memoryHeapCount; ++i)
+        if (memory_properties_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+            traits_.device_bytes = std::max(traits_.device_bytes, uint64_t(memory_properties_.memoryHeaps[i].size));
+}
+
+void Device::create_device()
+{
+    VkPhysicalDeviceVulkan13Features has13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                           .pNext = &has13};
+    VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
+    vkGetPhysicalDeviceFeatures2(physical_, &has);
+    // Scalar layout is optional in 1.3, and every desktop driver and lavapipe have it; the shared headers stand on it.
+    if (!has12.scalarBlockLayout) fail("device ", traits_.name, " lacks scalarBlockLayout; expected a desktop driver");
+    if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
+        fail("device ", traits_.name, " cannot load R16_UNORM storage images; expected a desktop driver");
+
+    VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                            .synchronization2 = VK_TRUE,
+                                            .maintenance4 = VK_TRUE};
+    VkPhysicalDeviceVulkan12Features want12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                            .pNext = &want13,
+                                            .scalarBlockLayout = VK_TRUE,
+                                            .hostQueryReset = VK_TRUE,
+                                            .timelineSemaphore = VK_TRUE};
+    VkPhysicalDeviceFeatures2 want{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &want12};
+    want.features.shaderStorageImageExtendedFormats = VK_TRUE;
+
+    const float priority = 1.0f;
+    const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                        .queueFamilyIndex = queue_family_,
+                                        .queueCount = 1,
+                                        .pQueuePriorities = &priority};
+    const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                  .pNext = &want,
+                                  .queueCreateInfoCount = 1,
+                                  .pQueueCreateInfos = &queue};
+    SHVR_VK(vkCreateDevice(physical_, &info, nullptr, &device_));
+    vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    set_name(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<uint64_t>(queue_), "queue");
+}
+
+void Device::set_name(VkObjectType type, uint64_t handle, const std::string& name) const
+{
+    if (!set_name_) return;
+    const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                             .objectType = type,
+                                             .objectHandle = handle,
+                                             .pObjectName = name.c_str()};
+    set_name_(device_, &info);
+}
+
+void Device::begin_label(VkCommandBuffer commands, const std::string& name) const
+{
+    if (!begin_label_) return;
+    const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name.c_str()};
+    begin_label_(commands, &label);
+}
+
+void Device::end_label(VkCommandBuffer commands) const
+{
+    if (end_label_) end_label_(commands);
+}
+
+void Device::wait_idle() const
+{
+    SHVR_VK(vkDeviceWaitIdle(device_));
+}
+
+std::vector<std::string> Device::take_validation_messages()
+{
+    const std::lock_guard lock(messages_mutex_);
+    return std::exchange(messages_, {});
+}
+
+VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
+{
+    Device& device = *static_cast<Device*>(self);
+    const std::lock_guard lock(device.messages_mutex_);
+    device.messages_.emplace_back(data->pMessage ? data->pMessage : "(no text)");
+    return VK_FALSE;
+}
+
+}  // namespace shvr::gpu

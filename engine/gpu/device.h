@@ -1,0 +1,90 @@
+#pragma once
+// The Vulkan device: instance, physical device, one queue, what it can do, names for its objects, and the validation
+// layer's messages. Vulkan 1.3 is required, nothing optional is: what is optional is probed here and told in `traits`.
+//
+// One thread at a time may use a device. Validation messages may arrive on any thread and are collected under a lock.
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "engine/base/error.h"
+
+namespace shvr::gpu {
+
+/// Throws `Error` naming the call and the result where `result` is a failure.
+void check(VkResult result, const char* call);
+#define SHVR_VK(call) ::shvr::gpu::check(call, #call)
+
+struct DeviceOptions {
+    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
+    bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
+};
+
+/// What the rest of the program may ask of the device.
+struct DeviceTraits {
+    std::string name;
+    std::string driver;               ///< name and version
+    bool is_cpu = false;              ///< lavapipe and its like
+    float nanoseconds_per_tick = 0;   ///< 0: no timestamps
+    uint32_t timestamp_bits = 0;
+    bool linear_r16 = false;          ///< R16_UNORM can be filtered by the sampler
+    bool storage_r16 = false;         ///< R16_UNORM can be read with imageLoad
+    uint64_t device_bytes = 0;        ///< the largest device-local heap, as reported
+    VkPhysicalDeviceLimits limits{};
+    uint64_t max_allocation_bytes = 0;
+};
+
+class Device {
+public:
+    explicit Device(const DeviceOptions& options = {});
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    VkInstance instance() const { return instance_; }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkDevice handle() const { return device_; }
+    VkQueue queue() const { return queue_; }
+    uint32_t queue_family() const { return queue_family_; }
+    const DeviceTraits& traits() const { return traits_; }
+    const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
+
+    /// Names an object for validation messages, captures and traces.
+    void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;
+    void begin_label(VkCommandBuffer commands, const std::string& name) const;
+    void end_label(VkCommandBuffer commands) const;
+
+    void wait_idle() const;
+
+    /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
+    std::vector<std::string> take_validation_messages();
+    bool validates() const { return messenger_ != VK_NULL_HANDLE; }
+
+private:
+    void create_instance(bool validation);
+    void choose_physical(const std::string& wanted);
+    void create_device();
+    void destroy() noexcept;
+    static VkBool32 on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
+
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    uint32_t queue_family_ = 0;
+    DeviceTraits traits_;
+    VkPhysicalDeviceMemoryProperties memory_properties_{};
+    PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
+    std::mutex messages_mutex_;
+    std::vector<std::string> messages_;
+};
+
+}  // namespace shvr::gpu

@@ -1,0 +1,20 @@
+#pragma once
+// The kernels that were compiled into the program, one for each shaders/NAME.comp. The build writes the table (see
+// tools/embed_kernels.cmake), so a new kernel needs no registration. Any thread may read it.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace shvr::gpu {
+
+struct EmbeddedKernel {
+    const char* name;       ///< "raycast" for shaders/raycast.comp
+    const uint32_t* words;  ///< SPIR-V, names of variables included
+    size_t word_count;
+};
+
+/// In order of their names.
+std::span<const EmbeddedKernel> embedded_kernels();
+
+}  // namespace shvr::gpu

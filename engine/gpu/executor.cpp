@@ -1,0 +1,500 @@
+#include "engine/gpu/executor.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace shvr::gpu {
+
+namespace {
+
+constexpr uint64_t COUNTER_BYTES = COUNTERS * sizeof(uint64_t);
+
+VkPipelineStageFlags2 vulkan_stages(Stages stages)
+{
+    VkPipelineStageFlags2 flags = 0;
+    if (stages & STAGE_COMPUTE) flags |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    if (stages & STAGE_TRANSFER) flags |= VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    if (stages & STAGE_HOST) flags |= VK_PIPELINE_STAGE_2_HOST_BIT;
+    if (stages & STAGE_INDIRECT) flags |= VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    return flags;
+}
+
+VkAccessFlags2 written_by(Stages stages)
+{
+    VkAccessFlags2 flags = 0;
+    if (stages & STAGE_COMPUTE) flags |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    if (stages & STAGE_TRANSFER) flags |= VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    return flags;
+}
+
+VkAccessFlags2 touched_by(Stages stages)
+{
+    VkAccessFlags2 flags = written_by(stages);
+    if (stages & STAGE_COMPUTE) flags |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    if (stages & STAGE_TRANSFER) flags |= VK_ACCESS_2_TRANSFER_READ_BIT;
+    if (stages & STAGE_HOST) flags |= VK_ACCESS_2_HOST_READ_BIT;
+    if (stages & STAGE_INDIRECT) flags |= VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
+    return flags;
+}
+
+void record_barrier(VkCommandBuffer commands, const Barrier& barrier)
+{
+    const VkMemoryBarrier2 memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                  .srcStageMask = vulkan_stages(barrier.from),
+                                  .srcAccessMask = barrier.memory ? written_by(barrier.from) : 0,
+                                  .dstStageMask = vulkan_stages(barrier.to),
+                                  .dstAccessMask = barrier.memory ? touched_by(barrier.to) : 0};
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
+    vkCmdPipelineBarrier2(commands, &info);
+}
+
+uint64_t aligned(uint64_t bytes, uint64_t alignment)
+{
+    return (bytes + alignment - 1) / alignment * alignment;
+}
+
+glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
+{
+    return (threads + local - 1u) / local;
+}
+
+}  // namespace
+
+/// One run of one graph: everything that lives until the device is done with it.
+struct Executor::Frame {
+    Executor& executor;
+    const FrameGraph& graph;
+    const Options& options;
+    CompiledGraph compiled;
+    std::vector<Storage*> storages;              // per resource, transients only
+    std::vector<Storage*> taken;                 // transients to give back
+    std::vector<Storage*> read_backs;
+    Storage* blocks = nullptr;
+    Storage* counters = nullptr;
+    VkDescriptorPool descriptors = VK_NULL_HANDLE;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    std::vector<VkCommandBuffer> chunks;         // one submission each
+    struct Prepared {
+        const Kernel* kernel = nullptr;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+        uint64_t counters_offset = 0;
+        uint32_t dispatches = 0;
+    };
+    std::vector<Prepared> prepared;              // per step
+
+    Frame(Executor& owner, const FrameGraph& frame_graph, const Options& frame_options)
+        : executor(owner), graph(frame_graph), options(frame_options), compiled(frame_graph.compile())
+    {
+    }
+    Frame(const Frame&) = delete;
+    Frame& operator=(const Frame&) = delete;
+    ~Frame()
+    {
+        const VkDevice device = executor.device_.handle();
+        if (fence) vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX), vkDestroyFence(device, fence, nullptr);
+        if (!chunks.empty()) vkFreeCommandBuffers(device, executor.pool_, uint32_t(chunks.size()), chunks.data());
+        vkDestroyDescriptorPool(device, descriptors, nullptr);
+        vkDestroyQueryPool(device, queries, nullptr);
+        for (const auto& transient : executor.transients_)
+            for (Storage* storage : taken)
+                if (&transient->storage == storage) transient->taken = false;
+    }
+
+    const PassData& pass(const Step& step) const { return graph.passes()[step.pass]; }
+    Storage& take(const std::string& name, const ResourceDesc& desc, Placement placement)
+    {
+        taken.push_back(&executor.take_transient(name, desc, placement));
+        return *taken.back();
+    }
+    uint32_t object_id(uint32_t resource) const
+    {
+        const FrameGraph::ResourceData& data = graph.resources()[resource];
+        return data.imported ? data.import_id : storages[resource]->import().id;
+    }
+    Memory::Object& object(uint32_t resource) const { return executor.memory_.object(object_id(resource)); }
+
+    void prepare();
+    void write_descriptors(const PassData& pass, const Prepared& step, uint64_t& block_offset) const;
+    void begin_chunk();
+    void end_chunk() const;
+    void record();
+    void record_pass(const Step& step, Prepared& state);
+    void record_dispatches(const PassData& pass, Prepared& state);
+    void transition_new_images() const;
+    double submit();
+    FrameResult collect(double wall_ms) const;
+};
+
+void Executor::Frame::prepare()
+{
+    const auto& resources = graph.resources();
+    const uint64_t alignment = executor.device_.traits().limits.minStorageBufferOffsetAlignment;
+    storages.resize(resources.size());
+    for (uint32_t i = 0; i < resources.size(); ++i)
+        if (compiled.used[i] && !resources[i].imported)
+            storages[i] = &take(resources[i].name, resources[i].desc, Placement::device);
+    read_backs.resize(graph.read_back_count());
+
+    uint64_t block_bytes = 0, counter_bytes = 0;
+    std::map<VkDescriptorType, uint32_t> descriptor_counts;
+    uint32_t sets = 0;
+    prepared.resize(compiled.steps.size());
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        const PassData& data = pass(compiled.steps[i]);
+        if (data.kind == PassData::Kind::read_back)
+            read_backs[data.fill_value] =
+                &take("read back", buffer_desc(resources[data.bindings[0].resource].desc.bytes), Placement::download);
+        if (data.kind != PassData::Kind::compute) continue;
+        const KernelInterface& interface = executor.kernels_.interface(data.kernel);
+        check_bindings(data, interface, resources);
+        prepared[i].kernel = &executor.kernels_.get(data.kernel, data.constants);
+        for (const auto& [name, bytes] : data.blocks) block_bytes += aligned(bytes.size(), alignment);
+        if (interface.slot("counters")) {
+            prepared[i].counters_offset = counter_bytes;
+            counter_bytes += aligned(COUNTER_BYTES, alignment);
+        }
+        for (const KernelInterface::Slot& slot : interface.slots) ++descriptor_counts[slot.type];
+        ++sets;
+    }
+    if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), Placement::upload);
+    if (counter_bytes) {
+        counters = &take("counters", buffer_desc(counter_bytes), Placement::download);
+        std::memset(counters->mapped().data(), 0, counters->mapped().size());
+    }
+
+    if (sets == 0) return;
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (const auto& [type, count] : descriptor_counts) sizes.push_back({type, count});
+    const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                               .maxSets = sets,
+                                               .poolSizeCount = uint32_t(sizes.size()),
+                                               .pPoolSizes = sizes.data()};
+    const VkDevice device = executor.device_.handle();
+    SHVR_VK(vkCreateDescriptorPool(device, &pool_info, nullptr, &descriptors));
+    uint64_t block_offset = 0;
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        if (!prepared[i].kernel) continue;
+        const VkDescriptorSetLayout layout = prepared[i].kernel->set_layout();
+        const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                               .descriptorPool = descriptors,
+                                               .descriptorSetCount = 1,
+                                               .pSetLayouts = &layout};
+        SHVR_VK(vkAllocateDescriptorSets(device, &info, &prepared[i].set));
+        write_descriptors(pass(compiled.steps[i]), prepared[i], block_offset);
+    }
+}
+
+void Executor::Frame::write_descriptors(const PassData& data, const Prepared& step, uint64_t& block_offset) const
+{
+    const std::vector<KernelInterface::Slot>& slots = step.kernel->interface().slots;
+    std::vector<VkWriteDescriptorSet> writes;
+    std::vector<VkDescriptorBufferInfo> buffers(slots.size());
+    std::vector<VkDescriptorImageInfo> images(slots.size());
+    for (size_t i = 0; i < slots.size(); ++i) {
+        const KernelInterface::Slot& slot = slots[i];
+        const auto binding = std::find_if(data.bindings.begin(), data.bindings.end(),
+                                          [&](const Binding& b) { return b.name == slot.name; });
+        const auto block = std::find_if(data.blocks.begin(), data.blocks.end(),
+                                        [&](const auto& b) { return b.first == slot.name; });
+        if (binding != data.bindings.end()) {
+            const Memory::Object& bound = object(binding->resource);
+            buffers[i] = {bound.buffer, 0, VK_WHOLE_SIZE};
+            images[i] = {executor.sampler_, bound.view, VK_IMAGE_LAYOUT_GENERAL};
+        } else if (block != data.blocks.end()) {
+            std::memcpy(blocks->mapped().data() + block_offset, block->second.data(), block->second.size());
+            buffers[i] = {executor.memory_.object(blocks->import().id).buffer, block_offset, block->second.size()};
+            block_offset += aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
+        } else {
+            buffers[i] = {executor.memory_.object(counters->import().id).buffer, step.counters_offset, COUNTER_BYTES};
+        }
+        const bool is_buffer = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                          .dstSet = step.set,
+                          .dstBinding = slot.binding,
+                          .descriptorCount = 1,
+                          .descriptorType = slot.type,
+                          .pImageInfo = is_buffer ? nullptr : &images[i],
+                          .pBufferInfo = is_buffer ? &buffers[i] : nullptr});
+    }
+    vkUpdateDescriptorSets(executor.device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
+}
+
+void Executor::Frame::begin_chunk()
+{
+    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = executor.pool_,
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    SHVR_VK(vkAllocateCommandBuffers(executor.device_.handle(), &info, &commands));
+    chunks.push_back(commands);
+    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    SHVR_VK(vkBeginCommandBuffer(commands, &begin));
+}
+
+void Executor::Frame::end_chunk() const
+{
+    SHVR_VK(vkEndCommandBuffer(chunks.back()));
+}
+
+/// Images are made in an undefined layout and live in GENERAL from their first frame on.
+void Executor::Frame::transition_new_images() const
+{
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (uint32_t i = 0; i < storages.size(); ++i) {
+        if (!compiled.used[i]) continue;
+        Memory::Object& image = object(i);
+        if (!image.image || image.in_general_layout) continue;
+        image.in_general_layout = true;
+        barriers.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                            .dstStageMask = vulkan_stages(STAGE_COMPUTE | STAGE_TRANSFER),
+                            .dstAccessMask = touched_by(STAGE_COMPUTE | STAGE_TRANSFER),
+                            .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                            .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                            .image = image.image,
+                            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}});
+    }
+    if (barriers.empty()) return;
+    const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                .imageMemoryBarrierCount = uint32_t(barriers.size()),
+                                .pImageMemoryBarriers = barriers.data()};
+    vkCmdPipelineBarrier2(chunks.back(), &info);
+}
+
+void Executor::Frame::record()
+{
+    const VkDevice device = executor.device_.handle();
+    if (options.timestamps && executor.device_.traits().timestamp_bits > 0 && !compiled.steps.empty()) {
+        const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                         .queryCount = uint32_t(compiled.steps.size()) * 2};
+        SHVR_VK(vkCreateQueryPool(device, &info, nullptr, &queries));
+        vkResetQueryPool(device, queries, 0, info.queryCount);
+    }
+    begin_chunk();
+    transition_new_images();
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        const Step& step = compiled.steps[i];
+        if (options.serialize)
+            record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
+        else if (step.barrier)
+            record_barrier(chunks.back(), *step.barrier);
+        if (queries)
+            vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, queries, uint32_t(2 * i));
+        record_pass(step, prepared[i]);
+        if (queries)
+            vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i + 1));
+    }
+    record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_HOST, true});
+    end_chunk();
+}
+
+void Executor::Frame::record_pass(const Step& step, Prepared& state)
+{
+    const PassData& data = pass(step);
+    if (data.kind == PassData::Kind::compute) return record_dispatches(data, state);
+
+    const VkCommandBuffer commands = chunks.back();
+    executor.device_.begin_label(commands, data.name);
+    const Memory::Object& first = object(data.bindings[0].resource);
+    switch (data.kind) {
+        case PassData::Kind::compute: break;
+        case PassData::Kind::fill: vkCmdFillBuffer(commands, first.buffer, 0, VK_WHOLE_SIZE, data.fill_value); break;
+        case PassData::Kind::copy_buffer: {
+            std::vector<VkBufferCopy> regions;
+            for (const BufferRegion& r : data.buffer_regions)
+                regions.push_back({r.source_offset, r.target_offset, r.bytes});
+            vkCmdCopyBuffer(commands, first.buffer, object(data.bindings[1].resource).buffer, uint32_t(regions.size()),
+                            regions.data());
+            break;
+        }
+        case PassData::Kind::copy_to_image: {
+            std::vector<VkBufferImageCopy> regions;
+            for (const ImageRegion& r : data.image_regions)
+                regions.push_back({.bufferOffset = r.buffer_offset,
+                                   .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                   .imageOffset = {int32_t(r.texel.x), int32_t(r.texel.y), int32_t(r.texel.z)},
+                                   .imageExtent = {r.texels.x, r.texels.y, r.texels.z}});
+            vkCmdCopyBufferToImage(commands, first.buffer, object(data.bindings[1].resource).image,
+                                   VK_IMAGE_LAYOUT_GENERAL, uint32_t(regions.size()), regions.data());
+            break;
+        }
+        case PassData::Kind::read_back: {
+            const VkBuffer target = executor.memory_.object(read_backs[data.fill_value]->import().id).buffer;
+            if (first.image) {
+                const glm::uvec3 texels = first.desc.texels;
+                const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                               .imageExtent = {texels.x, texels.y, texels.z}};
+                vkCmdCopyImageToBuffer(commands, first.image, VK_IMAGE_LAYOUT_GENERAL, target, 1, &region);
+            } else {
+                const VkBufferCopy region{0, 0, first.desc.bytes};
+                vkCmdCopyBuffer(commands, first.buffer, target, 1, &region);
+            }
+            break;
+        }
+    }
+    executor.device_.end_label(commands);
+}
+
+void Executor::Frame::record_dispatches(const PassData& data, Prepared& state)
+{
+    const Kernel& kernel = *state.kernel;
+    const auto& size = kernel.interface().local_size;
+    const glm::uvec3 local(size[0], size[1], size[2]);
+    const glm::uvec3 groups = groups_for(data.threads, local);
+    const bool tiled = data.tile.x > 0;
+    const glm::uvec3 tile = tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : groups;
+    const auto& limit = executor.device_.traits().limits.maxComputeWorkGroupCount;
+    if (glm::any(glm::greaterThan(groups, glm::uvec3(limit[0], limit[1], limit[2]))))
+        fail("pass '", data.name, "' dispatches ", groups.x, " x ", groups.y, " x ", groups.z,
+             " groups; the device allows ", limit[0], " x ", limit[1], " x ", limit[2]);
+
+    glm::uvec3 at;
+    for (at.z = 0; at.z < groups.z; at.z += tile.z)
+        for (at.y = 0; at.y < groups.y; at.y += tile.y)
+            for (at.x = 0; at.x < groups.x; at.x += tile.x) {
+                if (state.dispatches++ > 0) end_chunk(), begin_chunk();
+                const VkCommandBuffer commands = chunks.back();
+                executor.device_.begin_label(commands, data.name);
+                vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
+                vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &state.set, 0,
+                                        nullptr);
+                if (!data.push.empty())
+                    vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                       uint32_t(data.push.size()), data.push.data());
+                const glm::uvec3 count = glm::min(tile, groups - at);
+                vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
+                executor.device_.end_label(commands);
+            }
+}
+
+double Executor::Frame::submit()
+{
+    const VkDevice device = executor.device_.handle();
+    const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    VkFence created = VK_NULL_HANDLE;
+    SHVR_VK(vkCreateFence(device, &fence_info, nullptr, &created));
+    const auto started = std::chrono::steady_clock::now();
+    for (size_t i = 0; i < chunks.size(); ++i) {
+        const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                                 .commandBuffer = chunks[i]};
+        const VkSubmitInfo2 info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                                 .commandBufferInfoCount = 1,
+                                 .pCommandBufferInfos = &commands};
+        const bool last = i + 1 == chunks.size();
+        const VkResult result = vkQueueSubmit2(executor.device_.queue(), 1, &info, last ? created : VK_NULL_HANDLE);
+        if (result < 0) {
+            vkDeviceWaitIdle(device);
+            vkDestroyFence(device, created, nullptr);
+            check(result, "vkQueueSubmit2");
+        }
+    }
+    fence = created;
+    SHVR_VK(vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX));
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
+    for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
+        if (compiled.used[i]) object(i).state = compiled.final_states[i];
+    return wall.count();
+}
+
+FrameResult Executor::Frame::collect(double wall_ms) const
+{
+    FrameResult result{.wall_ms = wall_ms};
+    for (Storage* storage : read_backs) {
+        const std::span<const std::byte> bytes = storage->mapped();
+        result.read_backs.emplace_back(bytes.begin(), bytes.end());
+    }
+    const DeviceTraits& traits = executor.device_.traits();
+    std::vector<uint64_t> ticks(compiled.steps.size() * 2);
+    if (queries)
+        SHVR_VK(vkGetQueryPoolResults(executor.device_.handle(), queries, 0, uint32_t(ticks.size()),
+                                      ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                                      VK_QUERY_RESULT_64_BIT));
+    const uint64_t mask = traits.timestamp_bits >= 64 ? ~uint64_t(0) : (uint64_t(1) << traits.timestamp_bits) - 1;
+    const auto milliseconds = [&](uint64_t from, uint64_t to) {
+        return double((to - from) & mask) * double(traits.nanoseconds_per_tick) * 1e-6;
+    };
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        const PassData& data = pass(compiled.steps[i]);
+        PassReport report{.name = data.name, .kernel = data.kernel, .dispatches = prepared[i].dispatches};
+        if (queries) {
+            report.timed = true;
+            report.start_ms = milliseconds(ticks[0], ticks[2 * i]);
+            report.gpu_ms = milliseconds(ticks[2 * i], ticks[2 * i + 1]);
+        }
+        for (const Binding& binding : data.bindings) report.bytes += graph.resources()[binding.resource].desc.bytes;
+        if (const auto& barrier = compiled.steps[i].barrier)
+            report.barrier = names_of(barrier->from) + " -> " + names_of(barrier->to);
+        if (prepared[i].kernel && prepared[i].kernel->interface().slot("counters")) {
+            report.counters.resize(COUNTERS);
+            std::memcpy(report.counters.data(), counters->mapped().data() + prepared[i].counters_offset, COUNTER_BYTES);
+        }
+        result.passes.push_back(std::move(report));
+    }
+    return result;
+}
+
+Executor::Executor(Device& device, Memory& memory) : device_(device), memory_(memory), kernels_(device)
+{
+    const VkSamplerCreateInfo sampler{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                      .magFilter = VK_FILTER_LINEAR,
+                                      .minFilter = VK_FILTER_LINEAR,
+                                      .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                      .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                      .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                      .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    SHVR_VK(vkCreateSampler(device.handle(), &sampler, nullptr, &sampler_));
+    device.set_name(VK_OBJECT_TYPE_SAMPLER, reinterpret_cast<uint64_t>(sampler_), "linear clamp");
+    const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                       .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                       .queueFamilyIndex = device.queue_family()};
+    const VkResult result = vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_);
+    if (result < 0) vkDestroySampler(device.handle(), sampler_, nullptr);
+    check(result, "vkCreateCommandPool");
+    device.set_name(VK_OBJECT_TYPE_COMMAND_POOL, reinterpret_cast<uint64_t>(pool_), "executor");
+}
+
+Executor::~Executor()
+{
+    vkDeviceWaitIdle(device_.handle());
+    vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+    vkDestroySampler(device_.handle(), sampler_, nullptr);
+}
+
+Storage& Executor::take_transient(const std::string& name, const ResourceDesc& desc, Placement placement)
+{
+    for (const auto& transient : transients_) {
+        if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
+        transient->taken = true;
+        transient->last_run = runs_;
+        return transient->storage;
+    }
+    transients_.push_back(
+        std::make_unique<Transient>(Transient{desc, placement, runs_, true, memory_.create(name, desc, placement)}));
+    return transients_.back()->storage;
+}
+
+void Executor::trim(uint64_t runs)
+{
+    std::erase_if(transients_, [&](const auto& t) { return !t->taken && t->last_run + runs <= runs_; });
+}
+
+FrameResult Executor::run(const FrameGraph& graph, const Options& options)
+{
+    constexpr uint64_t RUNS_KEPT = 16;  // sizes change with brushes and windows: what is not asked for again goes
+    ++runs_;
+    trim(RUNS_KEPT);
+    Frame frame(*this, graph, options);
+    if (frame.compiled.steps.empty()) return {};
+    frame.prepare();
+    frame.record();
+    return frame.collect(frame.submit());
+}
+
+}  // namespace shvr::gpu

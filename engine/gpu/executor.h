@@ -1,0 +1,78 @@
+#pragma once
+// Runs frame graphs: finds kernels and objects by name, records barriers, dispatches and copies, and brings back
+// read-backs, times and work counters.
+//
+// Long passes are split by their tile into several submissions, so that no submission holds the device for long and
+// other work gets in between. One thread at a time; `run` waits for the frame.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/kernel.h"
+#include "engine/gpu/memory.h"
+
+namespace shvr::gpu {
+
+/// Work counters of one pass, as the kernel counted them (shaders/counters.h names them).
+inline constexpr size_t COUNTERS = 16;
+
+struct PassReport {
+    std::string name;
+    std::string kernel;                          ///< empty for copies and fills
+    double start_ms = 0.0;                       ///< since the first pass of the frame began
+    double gpu_ms = 0.0;                         ///< 0 where the device has no timestamps, see `timed`
+    bool timed = false;
+    uint32_t dispatches = 0;
+    uint64_t bytes = 0;                          ///< sizes of the resources it binds: what it could touch
+    std::string barrier;                         ///< "compute -> transfer", empty if none
+    std::vector<uint64_t> counters;              ///< empty where the kernel has none
+};
+
+struct FrameResult {
+    std::vector<std::vector<std::byte>> read_backs;   ///< by the index FrameGraph::read_back gave
+    std::vector<PassReport> passes;                   ///< in order of execution
+    double wall_ms = 0.0;                             ///< from first submission to completion, on the host's clock
+};
+
+class Executor {
+public:
+    struct Options {
+        bool timestamps = true;
+        bool serialize = false;   ///< a full barrier between passes, for attributable times
+    };
+
+    Executor(Device& device, Memory& memory);
+    ~Executor();
+    Executor(const Executor&) = delete;
+    Executor& operator=(const Executor&) = delete;
+
+    /// Compiles, records, submits and waits. Afterwards imported objects carry their final states.
+    FrameResult run(const FrameGraph& graph, const Options& options);
+    FrameResult run(const FrameGraph& graph) { return run(graph, Options{}); }
+
+    Kernels& kernels() { return kernels_; }
+    /// Gives back the memory of transient resources that the last `runs` runs did not use.
+    void trim(uint64_t runs = 0);
+
+private:
+    struct Frame;
+    struct Transient {
+        ResourceDesc desc;
+        Placement placement;
+        uint64_t last_run = 0;
+        bool taken = false;
+        Storage storage;
+    };
+    Storage& take_transient(const std::string& name, const ResourceDesc& desc, Placement placement);
+
+    Device& device_;
+    Memory& memory_;
+    Kernels kernels_;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    uint64_t runs_ = 0;
+    std::vector<std::unique_ptr<Transient>> transients_;
+};
+
+}  // namespace shvr::gpu

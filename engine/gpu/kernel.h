@@ -1,0 +1,94 @@
+#pragma once
+// Kernels: SPIR-V reflected once, pipelines made per set of specialization constants. Bindings go by the names in the
+// GLSL source; a missing, unknown or wrongly used name is refused with the list of what the kernel declares.
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/device.h"
+#include "engine/graph/frame_graph.h"
+
+namespace shvr::gpu {
+
+/// What a kernel declares, read from its SPIR-V.
+struct KernelInterface {
+    struct Slot {
+        std::string name;
+        uint32_t binding = 0;
+        VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        bool readable = true;
+        bool writable = true;
+    };
+    struct Constant {
+        std::string name;
+        uint32_t id = 0;
+    };
+    struct Member {
+        std::string name;
+        uint32_t offset = 0;
+    };
+    std::vector<Slot> slots;          ///< by binding number
+    std::vector<Constant> constants;
+    std::array<uint32_t, 3> local_size{1, 1, 1};
+    uint32_t push_bytes = 0;
+    /// Members of the push block and of the structs in storage blocks, by block name: tests compare the offsets with
+    /// offsetof, so that both languages agree.
+    std::map<std::string, std::vector<Member>> members;
+
+    const Slot* slot(const std::string& name) const;
+};
+
+KernelInterface reflect(const std::string& kernel, std::span<const uint32_t> spirv);
+
+/// A compute pipeline with its layouts. Move-only.
+class Kernel {
+public:
+    Kernel(Device& device, const std::string& name, std::span<const uint32_t> spirv, const KernelInterface& interface,
+           const std::vector<std::pair<std::string, uint32_t>>& constants);
+    ~Kernel();
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+
+    const KernelInterface& interface() const { return interface_; }
+    VkPipeline pipeline() const { return pipeline_; }
+    VkPipelineLayout layout() const { return layout_; }
+    VkDescriptorSetLayout set_layout() const { return set_layout_; }
+
+private:
+    void create_layouts();
+    void create_pipeline(std::span<const uint32_t> spirv, const VkSpecializationInfo& specialization);
+    void destroy() noexcept;
+    Device& device_;
+    const KernelInterface& interface_;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+/// All kernels of the program, made when first asked for.
+class Kernels {
+public:
+    explicit Kernels(Device& device) : device_(device) {}
+    /// Fails naming the known kernels, or the known constants.
+    const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
+    const KernelInterface& interface(const std::string& name);
+
+private:
+    struct Code {
+        std::span<const uint32_t> spirv;
+        KernelInterface interface;
+    };
+    const Code& code(const std::string& name);
+    Device& device_;
+    std::map<std::string, Code> codes_;
+    std::map<std::pair<std::string, std::vector<std::pair<std::string, uint32_t>>>, std::unique_ptr<Kernel>> kernels_;
+};
+
+/// Checks the bindings of a compute pass against what its kernel declares; fails with both lists.
+void check_bindings(const PassData& pass, const KernelInterface& interface,
+                    const std::vector<FrameGraph::ResourceData>& resources);
+
+}  // namespace shvr::gpu

@@ -1,0 +1,304 @@
+#include "engine/graph/frame_graph.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace shvr {
+
+namespace {
+
+std::string place(const PassData& pass)
+{
+    return sentence("pass '", pass.name, "' (", std::filesystem::path(pass.declared_at.file_name()).filename().string(),
+                    ":", pass.declared_at.line(), ")");
+}
+
+Stages stages_of(const PassData& pass, const Binding&)
+{
+    return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
+}
+
+/// Why a handle may not be used, said of whoever uses it; nothing where it is the current one.
+std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
+{
+    if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
+    const FrameGraph::ResourceData& data = graph.resources()[resource.index];
+    if (resource.version > data.version)
+        return sentence("version ", resource.version, " of '", data.name, "', a handle that this graph did not make; ",
+                        "the last version is ", data.version);
+    if (resource.version < data.version)
+        return sentence("version ", resource.version, " of '", data.name, "', which ",
+                        place(graph.passes()[data.writers[resource.version]]), " replaced; the last version is ",
+                        data.version);
+    return std::nullopt;
+}
+
+}  // namespace
+
+uint64_t bytes_per_texel(Format format)
+{
+    switch (format) {
+        case Format::r8_uint: return 1;
+        case Format::r16_unorm: return 2;
+        case Format::r32_uint: return 4;
+        case Format::rgba32_float: return 16;
+    }
+    return 0;
+}
+
+const char* name_of(Format format)
+{
+    switch (format) {
+        case Format::r8_uint: return "r8_uint";
+        case Format::r16_unorm: return "r16_unorm";
+        case Format::r32_uint: return "r32_uint";
+        case Format::rgba32_float: return "rgba32_float";
+    }
+    return "?";
+}
+
+ResourceDesc buffer_desc(uint64_t bytes)
+{
+    return {.kind = ResourceDesc::Kind::buffer, .bytes = bytes};
+}
+
+ResourceDesc image_desc(Format format, const glm::uvec3& texels)
+{
+    const uint64_t bytes = uint64_t(texels.x) * texels.y * texels.z * bytes_per_texel(format);
+    return {.kind = ResourceDesc::Kind::image, .format = format, .texels = texels, .bytes = bytes};
+}
+
+std::string names_of(Stages stages)
+{
+    std::string names;
+    const std::pair<Stages, const char*> all[] = {
+        {STAGE_COMPUTE, "compute"}, {STAGE_TRANSFER, "transfer"}, {STAGE_HOST, "host"}, {STAGE_INDIRECT, "indirect"}};
+    for (const auto& [stage, name] : all)
+        if (stages & stage) names += (names.empty() ? "" : "+") + std::string(name);
+    return names.empty() ? "nothing" : names;
+}
+
+void Pass::read(const std::string& name, Resource resource)
+{
+    use(name, resource, true, false);
+}
+
+Resource Pass::write(const std::string& name, Resource resource)
+{
+    return use(name, resource, false, true);
+}
+
+Resource Pass::modify(const std::string& name, Resource resource)
+{
+    return use(name, resource, true, true);
+}
+
+Resource Pass::use(const std::string& name, Resource resource, bool reads, bool writes)
+{
+    return graph_.use(index_, name, resource, reads, writes);
+}
+
+void Pass::constant(const std::string& name, uint32_t value)
+{
+    graph_.passes_[index_].constants.emplace_back(name, value);
+}
+
+void Pass::set_push(std::span<const std::byte> bytes)
+{
+    graph_.passes_[index_].push.assign(bytes.begin(), bytes.end());
+}
+
+void Pass::add_block(const std::string& name, std::span<const std::byte> bytes)
+{
+    graph_.passes_[index_].blocks.emplace_back(name, std::vector<std::byte>(bytes.begin(), bytes.end()));
+}
+
+void Pass::dispatch(const glm::uvec3& threads, const glm::uvec3& tile)
+{
+    graph_.passes_[index_].threads = threads;
+    graph_.passes_[index_].tile = tile;
+}
+
+Resource FrameGraph::import(const std::string& name, const Import& import)
+{
+    for (const ResourceData& other : resources_)
+        if (other.imported && other.import_id == import.id)
+            fail("'", name, "' is imported twice (first as '", other.name, "'); expected one handle per object");
+    resources_.push_back(
+        {.name = name, .desc = import.desc, .imported = true, .import_id = import.id, .state = import.state});
+    return {uint32_t(resources_.size() - 1), 0};
+}
+
+Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
+{
+    if (desc.bytes == 0) fail("resource '", name, "' has 0 bytes; expected at least one");
+    resources_.push_back({.name = name, .desc = desc});
+    return {uint32_t(resources_.size() - 1), 0};
+}
+
+PassData& FrameGraph::add(PassData::Kind kind, const std::string& name, Location at)
+{
+    passes_.push_back({.name = name, .kind = kind, .declared_at = at});
+    return passes_.back();
+}
+
+Resource FrameGraph::use(uint32_t index, const std::string& name, Resource resource, bool reads, bool writes)
+{
+    PassData& pass = passes_[index];
+    if (const auto fault = fault_of(resource, *this)) fail(place(pass), " binds '", name, "' to ", *fault);
+    ResourceData& data = resources_[resource.index];
+    if (reads && !data.imported && data.version == 0)
+        fail(place(pass), " reads '", data.name, "', which no pass has written");
+    for (const Binding& other : pass.bindings) {
+        if (other.name == name) fail(place(pass), " binds '", name, "' twice");
+        if (other.resource == resource.index && (other.writes || writes))
+            fail(place(pass), " binds '", data.name, "' twice, as '", other.name, "' and '", name,
+                 "', and writes it; expected one binding");
+    }
+    pass.bindings.push_back({.name = name, .resource = resource.index, .reads = reads, .writes = writes});
+    if (!writes) return resource;
+    data.writers.push_back(index);
+    return {resource.index, ++data.version};
+}
+
+Pass FrameGraph::compute(const std::string& kernel, const std::string& name, Location at)
+{
+    add(PassData::Kind::compute, name.empty() ? kernel : name, at).kernel = kernel;
+    return {*this, uint32_t(passes_.size() - 1)};
+}
+
+Resource FrameGraph::fill(Resource buffer, uint32_t value, const std::string& name, Location at)
+{
+    add(PassData::Kind::fill, name, at).fill_value = value;
+    return use(uint32_t(passes_.size() - 1), "target", buffer, false, true);
+}
+
+Resource FrameGraph::copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,
+                                   const std::string& name, Location at)
+{
+    add(PassData::Kind::copy_to_image, name, at).image_regions = std::move(regions);
+    const uint32_t index = uint32_t(passes_.size() - 1);
+    use(index, "source", buffer, true, false);
+    return use(index, "target", image, false, true);
+}
+
+Resource FrameGraph::copy(Resource from, Resource to, std::vector<BufferRegion> regions, const std::string& name,
+                          Location at)
+{
+    add(PassData::Kind::copy_buffer, name, at).buffer_regions = std::move(regions);
+    const uint32_t index = uint32_t(passes_.size() - 1);
+    use(index, "source", from, true, false);
+    return use(index, "target", to, false, true);
+}
+
+uint32_t FrameGraph::read_back(Resource resource, const std::string& name, Location at)
+{
+    const std::string label =
+        !name.empty() ? name
+                      : "read back " + (resource.index < resources_.size() ? resources_[resource.index].name : "");
+    add(PassData::Kind::read_back, label, at).fill_value = read_backs_;
+    use(uint32_t(passes_.size() - 1), "source", resource, true, false);
+    return read_backs_++;
+}
+
+void FrameGraph::keep(Resource resource)
+{
+    if (const auto fault = fault_of(resource, *this)) fail("keep() was given ", *fault);
+    resources_[resource.index].kept = true;
+}
+
+namespace {
+
+/// A pass lives when it has an effect outside the frame, or when a living pass needs what it wrote. A write keeps the
+/// earlier writers of the same resource: passes may write only a part of it.
+std::vector<bool> living_passes(const FrameGraph& graph)
+{
+    const auto& passes = graph.passes();
+    const auto& resources = graph.resources();
+    std::vector<bool> needed(resources.size());  // does a living pass, later in order, touch it?
+    std::vector<bool> alive(passes.size());
+    for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].kept;
+    for (size_t i = passes.size(); i-- > 0;) {
+        const PassData& pass = passes[i];
+        alive[i] = pass.kind == PassData::Kind::read_back ||
+                   std::any_of(pass.bindings.begin(), pass.bindings.end(), [&](const Binding& binding) {
+                       return binding.writes && (resources[binding.resource].imported || needed[binding.resource]);
+                   });
+        if (!alive[i]) continue;
+        for (const Binding& binding : pass.bindings) needed[binding.resource] = true;
+    }
+    return alive;
+}
+
+/// The barrier that `pass` needs, given what is in flight.
+std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<ResourceState>& states)
+{
+    Barrier barrier;
+    for (const Binding& binding : pass.bindings) {
+        const ResourceState& state = states[binding.resource];
+        const Stages stages = stages_of(pass, binding);
+        if (state.written_by && (stages & ~state.visible_to)) {  // read or write after write
+            barrier.from |= state.written_by;
+            barrier.to |= stages;
+            barrier.memory = true;
+        }
+        if (binding.writes && state.read_by && (stages & ~state.after_reads)) {  // write after read
+            barrier.from |= state.read_by;
+            barrier.to |= stages;
+        }
+    }
+    if (barrier.from == 0) return std::nullopt;
+    return barrier;
+}
+
+/// A barrier is global, so it settles every resource whose stages it covers, not only those that asked for it.
+void settle(const Barrier& barrier, std::vector<ResourceState>& states)
+{
+    for (ResourceState& state : states) {
+        if (barrier.memory && (state.written_by & ~barrier.from) == 0) state.visible_to |= barrier.to;
+        if ((state.read_by & ~barrier.from) == 0) state.after_reads |= barrier.to;
+    }
+}
+
+void record_use(const PassData& pass, std::vector<ResourceState>& states)
+{
+    for (const Binding& binding : pass.bindings) {
+        ResourceState& state = states[binding.resource];
+        const Stages stages = stages_of(pass, binding);
+        if (binding.writes) {
+            state = {.written_by = stages};
+            continue;
+        }
+        // Whoever waits for a read that came after all others waits for those as well.
+        const bool is_after_all = (stages & ~state.after_reads) == 0;
+        state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
+        state.after_reads = 0;
+    }
+}
+
+}  // namespace
+
+CompiledGraph FrameGraph::compile() const
+{
+    const std::vector<bool> alive = living_passes(*this);
+    CompiledGraph compiled;
+    compiled.used.resize(resources_.size());
+    std::vector<ResourceState>& states = compiled.final_states;
+    for (const ResourceData& resource : resources_) states.push_back(resource.state);
+
+    for (uint32_t i = 0; i < passes_.size(); ++i) {
+        const PassData& pass = passes_[i];
+        if (!alive[i]) continue;
+        if (pass.kind == PassData::Kind::compute && glm::any(glm::equal(pass.threads, glm::uvec3(0))))
+            fail(place(pass), " dispatches ", pass.threads.x, " x ", pass.threads.y, " x ", pass.threads.z,
+                 " threads; expected at least one");
+        const std::optional<Barrier> barrier = barrier_before(pass, states);
+        if (barrier) settle(*barrier, states);
+        record_use(pass, states);
+        for (const Binding& binding : pass.bindings) compiled.used[binding.resource] = true;
+        compiled.steps.push_back({i, barrier});
+    }
+    return compiled;
+}
+
+}  // namespace shvr

@@ -1,0 +1,220 @@
+#pragma once
+// The frame graph: what one frame computes, as plain data. It knows nothing of Vulkan and is tested without a device.
+//
+// A frame is declared anew each time, in order, by ordinary code: a pass is a function from handles to handles, a
+// condition is an `if`. Writing a resource gives a new version of its handle and ends the old one, so a wrong order
+// cannot be said: a stale handle is refused with the resource, both versions and the line of the pass that ended it.
+// `compile()` drops passes nobody needs and derives the barriers; the result is a list of steps that an executor
+// records and that tests and `shvr profile --graph` print. Because a handle exists only after the pass that made it,
+// the order of declaration is already a valid order, and steps keep it.
+//
+// Images stay in one layout (GENERAL), so hazards are global stage-to-stage memory barriers, at most one a step.
+//
+// One thread builds and compiles a graph. Mistakes in a graph are ours, yet they are thrown as `Error`, so that tests
+// can show each of them.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <source_location>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+enum class Format : uint8_t { r8_uint, r16_unorm, r32_uint, rgba32_float };
+uint64_t bytes_per_texel(Format format);
+const char* name_of(Format format);
+
+struct ResourceDesc {
+    enum class Kind : uint8_t { buffer, image };
+    Kind kind = Kind::buffer;
+    Format format = Format::r32_uint;  ///< images
+    glm::uvec3 texels{1};              ///< images; z == 1 is still a 3-D image
+    uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
+    bool operator==(const ResourceDesc&) const = default;
+};
+ResourceDesc buffer_desc(uint64_t bytes);
+ResourceDesc image_desc(Format format, const glm::uvec3& texels);
+
+/// Which version of which resource. Cheap to copy; valid only in the graph that made it.
+struct Resource {
+    uint32_t index = ~0u;
+    uint32_t version = 0;
+    bool operator==(const Resource&) const = default;
+};
+
+/// Pipeline stages, as a bit set.
+using Stages = uint8_t;
+inline constexpr Stages STAGE_COMPUTE = 1;
+inline constexpr Stages STAGE_TRANSFER = 2;
+inline constexpr Stages STAGE_HOST = 4;
+inline constexpr Stages STAGE_INDIRECT = 8;
+std::string names_of(Stages stages);
+
+/// What is still in flight on a resource. Carried from frame to frame for imported ones.
+struct ResourceState {
+    Stages written_by = 0;    ///< stages of the last write
+    Stages visible_to = 0;    ///< stages which that write has been made visible to
+    Stages read_by = 0;       ///< stages that have read since the last write
+    Stages after_reads = 0;   ///< stages that are ordered after all those reads
+    bool operator==(const ResourceState&) const = default;
+};
+/// Nothing is known of what came before; the first use waits for everything.
+inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0,
+                                             STAGE_COMPUTE | STAGE_TRANSFER | STAGE_INDIRECT, 0};
+
+/// An object that outlives the frame; `id` is the executor's name for it.
+struct Import {
+    uint32_t id = 0;
+    ResourceDesc desc;
+    ResourceState state = UNKNOWN_STATE;
+};
+
+struct Barrier {
+    Stages from = 0;
+    Stages to = 0;
+    bool memory = false;  ///< false: order only (write after read)
+    bool operator==(const Barrier&) const = default;
+};
+
+struct Binding {
+    std::string name;   ///< the GLSL variable (images) or block instance (buffers)
+    uint32_t resource = 0;
+    bool reads = false;
+    bool writes = false;
+};
+
+struct ImageRegion {
+    uint64_t buffer_offset = 0;   ///< bytes; texels are tightly packed, x fastest
+    glm::uvec3 texel{0};
+    glm::uvec3 texels{0};
+};
+struct BufferRegion {
+    uint64_t source_offset = 0;
+    uint64_t target_offset = 0;
+    uint64_t bytes = 0;
+};
+
+struct PassData {
+    enum class Kind : uint8_t { compute, fill, copy_to_image, copy_buffer, read_back };
+    std::string name;
+    Kind kind = Kind::compute;
+    std::string kernel;
+    std::vector<Binding> bindings;
+    std::vector<std::pair<std::string, uint32_t>> constants;   ///< specialization constants by name
+    std::vector<std::byte> push;                               ///< push constants
+    std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
+    glm::uvec3 threads{0};
+    glm::uvec3 tile{0};                    ///< threads per dispatch, 0 = all at once; bounds the time of one dispatch
+    uint32_t fill_value = 0;
+    std::vector<ImageRegion> image_regions;
+    std::vector<BufferRegion> buffer_regions;
+    std::source_location declared_at;
+};
+
+class FrameGraph;
+
+/// Adds to one pass while it is being declared.
+class Pass {
+public:
+    void read(const std::string& name, Resource resource);
+    [[nodiscard]] Resource write(const std::string& name, Resource resource);
+    /// Reads and writes in place.
+    [[nodiscard]] Resource modify(const std::string& name, Resource resource);
+    void constant(const std::string& name, uint32_t value);
+    /// Push constants: at most 128 bytes; the executor checks the size against the kernel's block.
+    template <class T>
+    void push(const T& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 128);
+        set_push(std::as_bytes(std::span(&value, 1)));
+    }
+    /// A small read-only buffer that the executor makes for this pass alone.
+    template <class T>
+    void block(const std::string& name, std::span<const T> values)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        add_block(name, std::as_bytes(values));
+    }
+    /// Threads, not groups: the group size comes from the kernel. A tile splits the work into several dispatches, and
+    /// several submissions, none of which takes long. Tiles must be multiples of the group size.
+    void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
+
+private:
+    friend class FrameGraph;
+    Pass(FrameGraph& graph, uint32_t index) : graph_(graph), index_(index) {}
+    Resource use(const std::string& name, Resource resource, bool reads, bool writes);
+    void set_push(std::span<const std::byte> bytes);
+    void add_block(const std::string& name, std::span<const std::byte> bytes);
+    FrameGraph& graph_;
+    uint32_t index_;
+};
+
+struct Step {
+    uint32_t pass = 0;                 ///< index into FrameGraph::passes()
+    std::optional<Barrier> barrier;    ///< before the pass
+};
+
+struct CompiledGraph {
+    std::vector<Step> steps;
+    std::vector<ResourceState> final_states;   ///< per resource
+    std::vector<bool> used;                    ///< per resource: does any living pass touch it?
+};
+
+class FrameGraph {
+public:
+    using Location = std::source_location;
+
+    /// An object that lives on after the frame. Writing it is a side effect: such a pass is never dropped.
+    Resource import(const std::string& name, const Import& import);
+    /// An object of this frame alone. It must be written before it is read.
+    Resource create(const std::string& name, const ResourceDesc& desc);
+
+    /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
+    Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
+    [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",
+                                Location at = Location::current());
+    [[nodiscard]] Resource copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,
+                                         const std::string& name = "upload", Location at = Location::current());
+    [[nodiscard]] Resource copy(Resource from, Resource to, std::vector<BufferRegion> regions,
+                                const std::string& name = "copy", Location at = Location::current());
+    /// The whole resource as bytes on the host once the frame is done; keeps its passes alive. The result is the
+    /// index for `FrameResult::read_backs`.
+    uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
+    /// Keeps the passes that made `resource`, though nobody in this graph reads it.
+    void keep(Resource resource);
+
+    CompiledGraph compile() const;
+
+    struct ResourceData {
+        std::string name;
+        ResourceDesc desc;
+        bool imported = false;
+        uint32_t import_id = 0;
+        ResourceState state = UNKNOWN_STATE;
+        uint32_t version = 0;
+        std::vector<uint32_t> writers;   ///< pass that made version i + 1
+        bool kept = false;
+    };
+    const std::vector<PassData>& passes() const { return passes_; }
+    const std::vector<ResourceData>& resources() const { return resources_; }
+    uint32_t read_back_count() const { return read_backs_; }
+
+private:
+    friend class Pass;
+    PassData& add(PassData::Kind kind, const std::string& name, Location at);
+    Resource use(uint32_t pass, const std::string& name, Resource resource, bool reads, bool writes);
+
+    std::vector<PassData> passes_;
+    std::vector<ResourceData> resources_;
+    uint32_t read_backs_ = 0;
+};
+
+}  // namespace shvr

@@ -1,0 +1,27 @@
+#pragma once
+// Emission-absorption ray-casting of a bricked volume (shaders/raycast.comp).
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/passes/volume_binding.h"
+#include "shaders/raycast.h"
+
+namespace shvr {
+
+struct RaycastInput {
+    gpu::RaycastParams params;
+    Resource table;                          ///< rgba32f image: linear RGB, opacity of a full step
+    std::optional<MaskBinding> mask;
+    std::vector<gpu::GroupLook> groups;      ///< 256, used with a mask
+    bool shaded = true;
+    bool count_work = false;
+    uint32_t group_width = 8;                ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
+    glm::uvec2 tile{0};                      ///< pixels of one dispatch, multiples of 64; 0 = all at once
+};
+
+/// An rgba32_float image of params.pixels: linear light, premultiplied, over the background.
+Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input);
+
+}  // namespace shvr

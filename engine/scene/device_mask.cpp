@@ -1,0 +1,103 @@
+#include "engine/scene/device_mask.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/scene/device_volume.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr uint32_t BATCH = 128;  // bricks per upload: 4 MiB of staging
+
+glm::uvec3 slot_voxel(uint32_t slot, const glm::uvec3& slots)
+{
+    const uint32_t s = slot - 1;
+    return gpu::BRICK_SIZE * glm::uvec3(s % slots.x, (s / slots.x) % slots.y, s / (slots.x * slots.y));
+}
+
+}  // namespace
+
+void DeviceMask::grow(uint64_t slots)
+{
+    const gpu::DeviceTraits& traits = memory_.device().traits();
+    atlas_.reset();
+    atlas_slots_ = atlas_layout(slots, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
+    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, atlas_slots_ * gpu::BRICK_SIZE));
+    free_slots_.clear();
+    slots_.clear();
+    for (uint32_t slot = atlas_slots_.x * atlas_slots_.y * atlas_slots_.z; slot > 0; --slot) free_slots_.push_back(slot);
+}
+
+void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
+{
+    std::vector<int64_t> changed(bricks.begin(), bricks.end());
+    uint64_t added = 0;
+    for (int64_t brick : bricks) {
+        const auto known = slots_.find(brick);
+        if (mask.brick(brick)) {
+            added += known == slots_.end();
+        } else if (known != slots_.end()) {
+            free_slots_.push_back(known->second);
+            slots_.erase(known);
+        }
+    }
+    const uint64_t needed = slots_.size() + added;
+    if (needed == 0) {
+        atlas_.reset();
+        table_.reset();
+        free_slots_.clear();
+        return;
+    }
+    if (added > free_slots_.size()) {
+        grow(std::max<uint64_t>(needed + needed / 2, 8));
+        changed = mask.painted_bricks();
+    }
+    std::erase_if(changed, [&](int64_t brick) { return !mask.brick(brick); });
+    for (int64_t brick : changed) {
+        if (slots_.contains(brick)) continue;
+        slots_[brick] = free_slots_.back();
+        free_slots_.pop_back();
+    }
+
+    for (size_t first = 0; first < changed.size(); first += BATCH) {
+        const size_t count = std::min<size_t>(BATCH, changed.size() - first);
+        gpu::Storage staging =
+            memory_.create("staging", buffer_desc(count * MASK_BRICK_VOXELS), gpu::Placement::upload);
+        std::vector<ImageRegion> regions;
+        for (size_t i = 0; i < count; ++i) {
+            const int64_t brick = changed[first + i];
+            std::memcpy(staging.mapped().data() + i * MASK_BRICK_VOXELS, mask.brick(brick)->data(), MASK_BRICK_VOXELS);
+            regions.push_back(
+                {i * MASK_BRICK_VOXELS, slot_voxel(slots_.at(brick), atlas_slots_), glm::uvec3(gpu::BRICK_SIZE)});
+        }
+        FrameGraph graph;
+        static_cast<void>(graph.copy_to_image(graph.import("staging", staging.import()),
+                                              graph.import("mask", atlas_.import()), std::move(regions),
+                                              "upload mask bricks"));
+        executor_.run(graph, {.timestamps = false});
+    }
+
+    const glm::i64vec3 counts = mask.brick_counts();
+    const ResourceDesc table = buffer_desc(uint64_t(counts.x * counts.y * counts.z) * sizeof(uint32_t));
+    if (!table_) table_ = memory_.create("mask table", table);
+    gpu::Storage staging = memory_.create("staging", table, gpu::Placement::upload);
+    std::memset(staging.mapped().data(), 0, staging.mapped().size());
+    auto* entries = reinterpret_cast<uint32_t*>(staging.mapped().data());
+    for (const auto& [brick, slot] : slots_) entries[brick] = slot;
+    FrameGraph graph;
+    static_cast<void>(graph.copy(graph.import("staging", staging.import()),
+                                 graph.import("mask table", table_.import()), {{0, 0, table.bytes}},
+                                 "upload mask table"));
+    executor_.run(graph, {.timestamps = false});
+}
+
+MaskBinding DeviceMask::import(FrameGraph& graph) const
+{
+    return {.mask = graph.import("mask", atlas_.import()),
+            .mask_table = graph.import("mask table", table_.import()),
+            .slots = atlas_slots_};
+}
+
+}  // namespace shvr

@@ -1,0 +1,108 @@
+#include "engine/scene/session.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/scene/session_color.h"
+#include "engine/scene/session_json.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int64_t LARGEST_SESSION_FILE = int64_t{16} << 20;
+constexpr const char* GROUP_COLORS[] = {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
+                                        "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"};
+
+bool is_session_file(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    return extension == ".json";
+}
+
+/// The session file that `path` means; empty where it is a volume file.
+fs::path session_file_of(const fs::path& path)
+{
+    std::error_code ignored;  // what cannot be looked at is treated as absent
+    if (!fs::exists(path, ignored))
+        fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
+    if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
+    const fs::path file = path / "shvr" / "session.json";
+    if (!fs::is_regular_file(file, ignored))
+        fail(path.string(), ": is a folder without shvr/session.json; expected a project folder, a session file ",
+             "(.json) or a volume file");
+    return file;
+}
+
+/// The smallest session for a volume file.
+nlohmann::json document_for_volume(const fs::path& path)
+{
+    return {{"shvr_session", 1}, {"volume", {{"path", fs::absolute(path).lexically_normal().string()}}}};
+}
+
+}  // namespace
+
+ColorGroup default_group(uint8_t group)
+{
+    if (group == 0) return {.name = "unpainted", .opacity = 0.0};
+    const char* color = GROUP_COLORS[(group - 1u) % std::size(GROUP_COLORS)];
+    return {.name = sentence("group ", int{group}), .color = glm::dvec3(color_of(color).value())};
+}
+
+ColorGroup group_of(const Session& session, uint8_t group)
+{
+    const auto found = session.groups.find(group);
+    return found == session.groups.end() ? default_group(group) : found->second;
+}
+
+std::unique_ptr<VolumeSource> open_source(const Session& session)
+{
+    if (session.procedural) return open_procedural(*session.procedural);
+    if (session.raw_layout) return open_raw(session.volume_path, *session.raw_layout);
+    return open_volume(session.volume_path);
+}
+
+OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
+{
+    const fs::path session_file = session_file_of(path);
+    const fs::path file = session_file.empty() ? path : session_file;
+    nlohmann::json document = session_file.empty() ? document_for_volume(path)
+                                                   : json_of(read_text(file, LARGEST_SESSION_FILE), file.string());
+    apply_settings(document, settings);
+    OpenedSession opened;
+    opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
+    opened.source = open_source(opened.session);
+    if (!document.contains("transfer_function")) {
+        TransferFunction& function = opened.session.transfer_function;
+        function = automatic_transfer_function(measure(*opened.source));
+        opened.warnings.push_back(sentence("no transfer function given; a ramp from ", function.lower(), " to ",
+                                           function.upper(), " was made from the histogram"));
+    }
+    return opened;
+}
+
+Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume)
+{
+    const std::string name = name_or_json.empty() ? "front" : name_or_json;
+    const std::string origin = "camera";
+    if (is_camera_object(name)) {
+        const nlohmann::json document = json_of(name, origin);
+        return camera_of(read_camera(JsonNode(document, origin)), volume);
+    }
+    if (const auto found = session.cameras.find(name); found != session.cameras.end())
+        return camera_of(found->second, volume);
+    std::string known;
+    for (const auto& [camera, spec] : session.cameras) known += camera + ", ";
+    for (const std::string& side : camera_sides()) {
+        if (side == name) return camera_looking(side, volume);
+        if (!session.cameras.contains(side)) known += side + ", ";
+    }
+    fail("camera is \"", name, "\"; expected one of ", known, "or a JSON object");
+}
+
+}  // namespace shvr

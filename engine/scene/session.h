@@ -1,0 +1,104 @@
+#pragma once
+// A session: everything that makes a picture, in one JSON file (version 1). It feeds the window, the command line, the
+// goldens and bug reports alike. engine/scene/README.md lists every key; unknown keys are refused by name.
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "engine/scene/camera.h"
+#include "engine/scene/transfer_function.h"
+#include "engine/volume/open_volume.h"
+#include "engine/volume/source_procedural.h"
+
+namespace shvr {
+
+/// Colour groups override the transfer function where a voxel is painted.
+struct ColorGroup {
+    std::string name;
+    glm::dvec3 color{1.0};  ///< linear light
+    double opacity = 1.0;   ///< per reference length
+    bool visible = true;    ///< a hidden group's voxels are not drawn at all
+    bool operator==(const ColorGroup&) const = default;
+};
+
+struct Light {
+    bool shaded = true;
+    double ambient = 0.3;
+    double diffuse = 0.7;
+    double specular = 0.2;
+    double shininess = 32.0;
+    glm::dvec3 direction{
+        0.0};  ///< towards the light, camera axes (right, up, back); 0,0,0 = (0.3, 0.5, 1), over the viewer's shoulder
+    double gradient_fade =
+        0.03;  ///< gradients well below this share of `intensity_range` per voxel count as "no surface"
+    bool operator==(const Light&) const = default;
+};
+
+enum class Sampling { automatic, exact, hardware };
+
+struct RenderSettings {
+    glm::uvec2 size{512, 512};                  ///< pixels
+    double step_voxels = 0.5;                   ///< reference lengths (voxels along the finest axis)
+    double opacity_limit = 1.0 - 1.0 / 1024;    ///< a ray stops once its opacity reaches this
+    glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
+    Sampling sampling = Sampling::automatic;
+    bool skip_empty_space = true;
+    bool operator==(const RenderSettings&) const = default;
+};
+
+/// The six cutting planes: the part of the volume that is drawn, in voxels.
+struct CutBox {
+    glm::dvec3 lower{0.0};
+    glm::dvec3 upper{1048576.0};
+    bool operator==(const CutBox&) const = default;
+};
+
+struct Session {
+    std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
+    std::optional<ProceduralSpec> procedural;
+    std::optional<RawLayout> raw_layout;        ///< for bare voxels
+    std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
+    std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
+    TransferFunction transfer_function;
+    std::map<uint8_t, ColorGroup> groups;  ///< 1 ... 255; a group without an entry has `default_group`
+    Light light;
+    RenderSettings render;
+    CutBox cut;
+    std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
+};
+
+/// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
+ColorGroup default_group(uint8_t group);
+ColorGroup group_of(const Session& session, uint8_t group);
+
+/// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
+/// it: its path, and a transfer function from its statistics, which the caller is told of in `warnings`).
+/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
+/// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
+/// automatic one as a volume file. Session files hold at most 16 MiB.
+struct OpenedSession {
+    Session session;
+    std::unique_ptr<VolumeSource> source;
+    std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
+};
+OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
+
+/// The same from text; relative paths are relative to `folder`, `origin` names the text in messages.
+Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
+                      const std::vector<std::string>& settings = {});
+std::unique_ptr<VolumeSource> open_source(const Session& session);
+
+/// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
+/// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
+TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
+
+/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
+Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
+
+/// Writes what `parse_session` reads: every key, paths inside `folder` relative to it and others absolute. Colours are
+/// rounded to the 8 bits of their spelling.
+std::string to_text(const Session& session, const std::filesystem::path& folder);
+
+}  // namespace shvr

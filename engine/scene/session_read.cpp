@@ -1,0 +1,291 @@
+// The keys of a session file, version 1, one function a section. README.md lists them.
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/session_json.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t VERSION = 1;
+
+NumberRange range(double lower, double upper)
+{
+    return {lower, upper, ""};
+}
+/// Above 0, within what single precision and finite work allow.
+NumberRange above_zero(double lower, double upper)
+{
+    return {lower, upper, sentence("a number above 0 (", lower, " ... ", upper, ")")};
+}
+const NumberRange SHARE = range(0.0, 1.0);
+/// Far beyond any volume in any unit, and far below where squares overflow.
+const NumberRange COORDINATE = range(-1e15, 1e15);
+
+glm::dvec3 read_spacing(const JsonNode& node, const glm::dvec3& fallback)
+{
+    return node.vector(fallback, above_zero(1e-12, 1e12));
+}
+
+std::filesystem::path read_path(const JsonNode& node, const std::filesystem::path& folder)
+{
+    if (!node.exists()) return {};
+    const std::string text = node.text("");
+    if (text.find('\0') != std::string::npos) node.refuse("a path");
+    return std::filesystem::absolute(folder / text).lexically_normal();
+}
+
+ProceduralSpec read_procedural(const JsonNode& node)
+{
+    node.expect_object({"procedural", "size", "seed", "type", "spacing", "unit"});
+    ProceduralSpec spec;
+    std::map<std::string, std::string> kinds;
+    for (const std::string& kind : procedural_kinds()) kinds[kind] = kind;
+    spec.kind = node["procedural"].choice(spec.kind, kinds);
+    spec.size = node["size"].size(spec.size);
+    spec.seed = static_cast<uint32_t>(node["seed"].whole(spec.seed, 0, std::numeric_limits<uint32_t>::max()));
+    spec.type = node["type"].choice(spec.type, {{"uint8", VoxelType::uint8},
+                                                {"int8", VoxelType::int8},
+                                                {"uint16", VoxelType::uint16},
+                                                {"int16", VoxelType::int16},
+                                                {"float32", VoxelType::float32}});
+    spec.spacing = read_spacing(node["spacing"], spec.spacing);
+    spec.unit = node["unit"].text(spec.unit);
+    return spec;
+}
+
+RawLayout read_raw_layout(const JsonNode& node)
+{
+    const JsonNode raw = node["raw"];
+    RawLayout layout = raw.checked([text = raw.text("")] { return parse_raw_layout(text); });
+    layout.spacing = read_spacing(node["spacing"], layout.spacing);
+    layout.unit = node["unit"].text(layout.unit);
+    return layout;
+}
+
+void read_volume(const JsonNode& node, const std::filesystem::path& folder, Session& session)
+{
+    if (node["procedural"].exists()) {
+        session.procedural = read_procedural(node);
+        return;
+    }
+    if (node["raw"].exists()) {
+        node.expect_object({"path", "raw", "spacing", "unit"});
+        session.raw_layout = read_raw_layout(node);
+    } else {
+        node.expect_object({"path", "raw", "procedural"});
+    }
+    session.volume_path = read_path(node.required("path", "the path of a volume file"), folder);
+}
+
+SideView read_side_view(const JsonNode& node)
+{
+    node.expect_object({"side", "zoom", "turn_degrees", "tilt_degrees"});
+    SideView view;
+    std::map<std::string, std::string> sides;
+    for (const std::string& side : camera_sides()) sides[side] = side;
+    view.side = node["side"].choice(view.side, sides);
+    view.zoom = node["zoom"].number(view.zoom, above_zero(1e-3, 1e3));
+    view.turn_degrees = node["turn_degrees"].number(view.turn_degrees, range(-360.0, 360.0));
+    view.tilt_degrees = node["tilt_degrees"].number(view.tilt_degrees, range(-90.0, 90.0));
+    return view;
+}
+
+TransferFunction read_transfer_function(const JsonNode& node)
+{
+    if (!node.exists()) return {};
+    node.expect_object({"points"});
+    constexpr double LARGEST = std::numeric_limits<float>::max();
+    std::vector<ControlPoint> points;
+    for (const JsonNode& element : node.required("points", "an array").elements()) {
+        element.expect_object({"intensity", "color", "opacity"});
+        ControlPoint point;
+        point.intensity = element.required("intensity", "a number").number(0.0, range(-LARGEST, LARGEST));
+        point.color = element["color"].color(point.color);
+        point.opacity = element.required("opacity", "a number from 0 to 1").number(0.0, SHARE);
+        points.push_back(point);
+    }
+    return TransferFunction(std::move(points));
+}
+
+uint8_t group_number(const JsonNode& groups, const std::string& name)
+{
+    uint8_t group = 0;
+    const auto result = std::from_chars(name.data(), name.data() + name.size(), group);
+    if (result.ec != std::errc() || result.ptr != name.data() + name.size() || group == 0 || name[0] == '0')
+        groups[name].refuse("a group number from 1 to 255 as its name");
+    return group;
+}
+
+std::map<uint8_t, ColorGroup> read_groups(const JsonNode& node)
+{
+    std::map<uint8_t, ColorGroup> groups;
+    if (!node.exists()) return groups;
+    for (const std::string& name : node.names()) {
+        const uint8_t number = group_number(node, name);
+        const JsonNode entry = node[name];
+        entry.expect_object({"name", "color", "opacity", "visible"});
+        ColorGroup group = default_group(number);
+        group.name = entry["name"].text(group.name);
+        group.color = entry["color"].color(group.color);
+        group.opacity = entry["opacity"].number(group.opacity, SHARE);
+        group.visible = entry["visible"].flag(group.visible);
+        groups[number] = group;
+    }
+    return groups;
+}
+
+Light read_light(const JsonNode& node)
+{
+    Light light;
+    if (!node.exists()) return light;
+    node.expect_object({"shaded", "ambient", "diffuse", "specular", "shininess", "direction", "gradient_fade"});
+    light.shaded = node["shaded"].flag(light.shaded);
+    light.ambient = node["ambient"].number(light.ambient, range(0.0, 10.0));
+    light.diffuse = node["diffuse"].number(light.diffuse, range(0.0, 10.0));
+    light.specular = node["specular"].number(light.specular, range(0.0, 10.0));
+    light.shininess = node["shininess"].number(light.shininess, range(0.0, 1000.0));
+    light.direction = node["direction"].vector(light.direction, range(-1e6, 1e6));
+    if (light.direction != glm::dvec3(0.0) && glm::length(light.direction) < 1e-6)
+        node["direction"].refuse("a direction at least 1e-06 long, or 0, 0, 0 for the usual one");
+    light.gradient_fade = node["gradient_fade"].number(light.gradient_fade, SHARE);
+    return light;
+}
+
+glm::uvec2 read_picture_size(const JsonNode& node, const glm::uvec2& fallback)
+{
+    if (!node.exists()) return fallback;
+    const std::vector<JsonNode> sides = node.elements();
+    if (sides.size() != 2) node.refuse("two whole numbers, [width, height]");
+    return {sides[0].whole(0, 1, 65536), sides[1].whole(0, 1, 65536)};
+}
+
+RenderSettings read_render(const JsonNode& node)
+{
+    RenderSettings render;
+    if (!node.exists()) return render;
+    node.expect_object({"size", "step_voxels", "opacity_limit", "background", "sampling", "skip_empty_space"});
+    render.size = read_picture_size(node["size"], render.size);
+    render.step_voxels = node["step_voxels"].number(render.step_voxels, above_zero(1e-4, 1024.0));
+    render.opacity_limit = node["opacity_limit"].number(render.opacity_limit, above_zero(1e-6, 1.0));
+    render.background = node["background"].color_and_alpha(render.background);
+    render.sampling = node["sampling"].choice(
+        render.sampling,
+        {{"automatic", Sampling::automatic}, {"exact", Sampling::exact}, {"hardware", Sampling::hardware}});
+    render.skip_empty_space = node["skip_empty_space"].flag(render.skip_empty_space);
+    return render;
+}
+
+CutBox read_cut(const JsonNode& node)
+{
+    CutBox cut;
+    if (!node.exists()) return cut;
+    node.expect_object({"lower", "upper"});
+    const NumberRange voxel = range(0.0, 1048576.0);
+    cut.lower = node["lower"].vector(cut.lower, voxel);
+    cut.upper = node["upper"].vector(cut.upper, voxel);
+    if (glm::any(glm::greaterThan(cut.lower, cut.upper))) node.refuse("a lower corner that is not above the upper one");
+    return cut;
+}
+
+std::filesystem::path read_mask_path(const JsonNode& node, const std::filesystem::path& folder)
+{
+    if (!node.exists()) return {};
+    node.expect_object({"mask"});
+    return read_path(node["mask"], folder);
+}
+
+std::map<std::string, CameraSpec> read_cameras(const JsonNode& node)
+{
+    std::map<std::string, CameraSpec> cameras;
+    if (!node.exists()) return cameras;
+    for (const std::string& name : node.names()) {
+        if (name.empty() || is_camera_object(name))
+            node[name].refuse("a camera whose name is not empty and does not begin with {");
+        cameras[name] = read_camera(node[name]);
+    }
+    return cameras;
+}
+
+/// A name, checked against what there is, or the text of a camera object.
+std::string read_camera_choice(const JsonNode& document, const nlohmann::json& json, const Session& session)
+{
+    const JsonNode node = document["camera"];
+    if (!node.exists()) return {};
+    if (node.is_object()) {
+        read_camera(node);
+        return json.at("camera").dump();
+    }
+    std::map<std::string, std::string> names;
+    for (const std::string& side : camera_sides()) names[side] = side;
+    for (const auto& [name, camera] : session.cameras) names[name] = name;
+    return node.choice<std::string>({}, names);
+}
+
+}  // namespace
+
+bool is_camera_object(const std::string& name_or_json)
+{
+    const size_t begin = name_or_json.find_first_not_of(" \t\r\n");
+    return begin != std::string::npos && name_or_json[begin] == '{';
+}
+
+CameraSpec read_camera(const JsonNode& node)
+{
+    if (node["side"].exists()) return read_side_view(node);
+    Camera camera;
+    camera.projection = node["projection"].choice(
+        camera.projection,
+        {{"perspective", Camera::Projection::perspective}, {"orthographic", Camera::Projection::orthographic}});
+    const bool is_perspective = camera.projection == Camera::Projection::perspective;
+    if (is_perspective) {
+        node.expect_object({"side", "projection", "eye", "target", "up", "fov_y_degrees", "near", "far"});
+        camera.fov_y_degrees = node["fov_y_degrees"].number(
+            camera.fov_y_degrees, {1e-12, std::nextafter(180.0, 0.0), "a number of degrees above 0 and below 180"});
+    } else {
+        node.expect_object({"projection", "eye", "target", "up", "height", "near", "far"});
+        camera.height = node.required("height", "a number above 0").number(0.0, above_zero(1e-12, 1e15));
+    }
+    camera.eye = node.required("eye", "three numbers, [x, y, z]").vector(camera.eye, COORDINATE);
+    camera.target = node.required("target", "three numbers, [x, y, z]").vector(camera.target, COORDINATE);
+    camera.up = node["up"].vector(camera.up, COORDINATE);
+    camera.near_distance = node["near"].number(camera.near_distance, range(0.0, 1e15));
+    camera.far_distance = node["far"].number(camera.far_distance, range(0.0, 1e15));
+    return node.checked([&] {
+        check_camera(camera);
+        return camera;
+    });
+}
+
+Session read_session(const nlohmann::json& json, const std::filesystem::path& folder, const std::string& origin)
+{
+    const JsonNode document(json, origin);
+    document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
+                            "render", "cut", "annotation"});
+    document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
+    Session session;
+    read_volume(document.required("volume", "an object with path or procedural"), folder, session);
+    session.cameras = read_cameras(document["cameras"]);
+    session.camera_name = read_camera_choice(document, json, session);
+    session.transfer_function = read_transfer_function(document["transfer_function"]);
+    session.groups = read_groups(document["groups"]);
+    session.light = read_light(document["light"]);
+    session.render = read_render(document["render"]);
+    session.cut = read_cut(document["cut"]);
+    session.mask_path = read_mask_path(document["annotation"], folder);
+    return session;
+}
+
+Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
+                      const std::vector<std::string>& settings)
+{
+    nlohmann::json document = json_of(text, origin);
+    apply_settings(document, settings);
+    return read_session(document, folder, origin);
+}
+
+}  // namespace shvr

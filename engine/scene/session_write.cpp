@@ -1,0 +1,179 @@
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/session_color.h"
+#include "engine/scene/session_json.h"
+
+namespace shvr {
+namespace {
+
+// Keeps the order in which keys are added, which is the order of README.md.
+using json = nlohmann::ordered_json;
+
+json array_of(const glm::dvec3& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+std::string color_text(const glm::dvec3& linear)
+{
+    return text_of_color({linear, 1.0});
+}
+
+std::string path_text(const std::filesystem::path& path, const std::filesystem::path& folder)
+{
+    const std::filesystem::path relative =
+        path.lexically_relative(std::filesystem::absolute(folder / ".").lexically_normal());
+    const bool is_inside = !relative.empty() && relative.begin()->string() != "..";
+    return (is_inside ? relative : path).generic_string();
+}
+
+std::string raw_text(const RawLayout& layout)
+{
+    return sentence(layout.size.x, "x", layout.size.y, "x", layout.size.z, ":", name_of(layout.type), ":",
+                    layout.big_endian ? "big" : "little", ":", layout.offset_bytes);
+}
+
+json write_volume(const Session& session, const std::filesystem::path& folder)
+{
+    if (const auto& spec = session.procedural) {
+        return {{"procedural", spec->kind},
+                {"size", {spec->size.x, spec->size.y, spec->size.z}},
+                {"seed", spec->seed},
+                {"type", name_of(spec->type)},
+                {"spacing", array_of(spec->spacing)},
+                {"unit", spec->unit}};
+    }
+    json volume = {{"path", path_text(session.volume_path, folder)}};
+    if (const auto& layout = session.raw_layout) {
+        volume["raw"] = raw_text(*layout);
+        volume["spacing"] = array_of(layout->spacing);
+        volume["unit"] = layout->unit;
+    }
+    return volume;
+}
+
+json write_camera(const CameraSpec& spec)
+{
+    if (const auto* view = std::get_if<SideView>(&spec)) {
+        return {{"side", view->side},
+                {"zoom", view->zoom},
+                {"turn_degrees", view->turn_degrees},
+                {"tilt_degrees", view->tilt_degrees}};
+    }
+    const Camera& camera = std::get<Camera>(spec);
+    const bool is_perspective = camera.projection == Camera::Projection::perspective;
+    json written = {{"projection", is_perspective ? "perspective" : "orthographic"},
+                    {"eye", array_of(camera.eye)},
+                    {"target", array_of(camera.target)},
+                    {"up", array_of(camera.up)}};
+    if (is_perspective)
+        written["fov_y_degrees"] = camera.fov_y_degrees;
+    else
+        written["height"] = camera.height;
+    written["near"] = camera.near_distance;
+    written["far"] = camera.far_distance;
+    return written;
+}
+
+json write_cameras(const Session& session)
+{
+    json cameras = json::object();
+    for (const auto& [name, camera] : session.cameras) cameras[name] = write_camera(camera);
+    return cameras;
+}
+
+json write_points(const TransferFunction& function)
+{
+    json points = json::array();
+    for (const ControlPoint& point : function.points())
+        points.push_back(
+            {{"intensity", point.intensity}, {"color", color_text(point.color)}, {"opacity", point.opacity}});
+    return points;
+}
+
+json write_groups(const Session& session)
+{
+    json groups = json::object();
+    for (const auto& [number, group] : session.groups) {
+        groups[std::to_string(number)] = {{"name", group.name},
+                                          {"color", color_text(group.color)},
+                                          {"opacity", group.opacity},
+                                          {"visible", group.visible}};
+    }
+    return groups;
+}
+
+json write_light(const Light& light)
+{
+    return {{"shaded", light.shaded},
+            {"ambient", light.ambient},
+            {"diffuse", light.diffuse},
+            {"specular", light.specular},
+            {"shininess", light.shininess},
+            {"direction", array_of(light.direction)},
+            {"gradient_fade", light.gradient_fade}};
+}
+
+const char* name_of(Sampling sampling)
+{
+    switch (sampling) {
+        case Sampling::automatic: return "automatic";
+        case Sampling::exact: return "exact";
+        case Sampling::hardware: return "hardware";
+    }
+    return "automatic";
+}
+
+json write_render(const RenderSettings& render)
+{
+    return {{"size", {render.size.x, render.size.y}}, {"step_voxels", render.step_voxels},
+            {"opacity_limit", render.opacity_limit},  {"background", text_of_color(render.background)},
+            {"sampling", name_of(render.sampling)},   {"skip_empty_space", render.skip_empty_space}};
+}
+
+bool is_row(const json& value)
+{
+    return std::ranges::none_of(value, [](const json& member) { return member.is_structured(); });
+}
+
+/// Indented by two spaces, with arrays of plain values and the control points on one line each.
+std::string laid_out(const json& value, const std::string& indent, bool may_be_row)
+{
+    if (!value.is_structured() || value.empty() || (is_row(value) && (value.is_array() || may_be_row)))
+        return value.dump();
+    const std::string inner = indent + "  ";
+    std::string text;
+    for (const auto& item : value.items()) {
+        text += (text.empty() ? "\n" : ",\n") + inner;
+        if (value.is_object()) text += json(item.key()).dump() + ": ";
+        text += laid_out(item.value(), inner, value.is_array());
+    }
+    text += "\n" + indent;
+    return value.is_array() ? "[" + text + "]" : "{" + text + "}";
+}
+
+}  // namespace
+
+std::string to_text(const Session& session, const std::filesystem::path& folder)
+{
+    json document = {{"shvr_session", 1}, {"volume", write_volume(session, folder)}};
+    if (!session.camera_name.empty()) {
+        const std::string& name = session.camera_name;
+        document["camera"] = is_camera_object(name) ? json::parse(name) : json(name);
+    }
+    document["cameras"] = write_cameras(session);
+    document["transfer_function"] = {{"points", write_points(session.transfer_function)}};
+    document["groups"] = write_groups(session);
+    document["light"] = write_light(session.light);
+    document["render"] = write_render(session.render);
+    document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
+    if (!session.mask_path.empty()) document["annotation"] = {{"mask", path_text(session.mask_path, folder)}};
+    try {
+        return laid_out(document, "", false) + "\n";
+    } catch (const json::type_error&) {
+        fail("session of ", session.volume_path.string(), ": a name or path is not UTF-8, which JSON cannot hold; ",
+             "expected UTF-8");
+    }
+}
+
+}  // namespace shvr

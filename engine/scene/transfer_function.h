@@ -1,0 +1,57 @@
+#pragma once
+// The 1-D transfer function: control points (intensity, colour, opacity), linear in between, nothing outside.
+//
+// Opacity is what is interpolated, and is meant per reference length (one voxel along the finest axis); the extinction
+// that follows is sigma = -ln(1 - opacity) / reference length. Colours are sRGB in files, and are decoded once, before
+// interpolation: everything after is linear light. The opacity of a step of another length is corrected here, in
+// double, as -expm1(step * log1p(-opacity)), and baked into a float table (accuracy: pow() in a shader loses all
+// relative accuracy for small opacities).
+
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace shvr {
+
+struct ControlPoint {
+    double intensity = 0.0;  ///< in the file's units
+    glm::dvec3 color{1.0};   ///< linear light, 0 ... 1
+    double opacity = 0.0;    ///< per reference length, 0 ... 1
+    bool operator==(const ControlPoint&) const = default;
+};
+
+class TransferFunction {
+public:
+    TransferFunction() = default;
+    /// Sorts by intensity; points at the same intensity keep their order and make a step (the last one holds at the
+    /// intensity itself). Fails where a number is not finite, an opacity or colour lies outside [0, 1], or an
+    /// intensity outside the range of float32 (no voxel holds such a value).
+    explicit TransferFunction(std::vector<ControlPoint> points);
+
+    std::span<const ControlPoint> points() const { return points_; }
+    /// Nothing is rendered with fewer than two points, where all lie at one intensity, or where no opacity is above 0.
+    bool draws_nothing() const;
+    double lower() const { return points_.empty() ? 0.0 : points_.front().intensity; }
+    double upper() const { return points_.empty() ? 0.0 : points_.back().intensity; }
+
+    /// Linear RGB and opacity per reference length; all 0 outside [lower, upper].
+    glm::dvec4 at(double intensity) const;
+
+private:
+    std::vector<ControlPoint> points_;
+};
+
+/// Opacity of a step `step_voxels` reference lengths long (0 or more). Opacities 0 and 1 are exact; a step of length 0
+/// has opacity 0.
+double opacity_of_step(double opacity, double step_voxels);
+
+/// `entries` (2 or more) samples of the function from lower() to upper(), both included: linear RGB, and opacity of one
+/// step. Samples, not averages: a spike narrower than (upper - lower) / (entries - 1) may fall between two of them.
+std::vector<glm::vec4> bake_table(const TransferFunction& function, double step_voxels, uint32_t entries);
+
+/// For each k the number of table intervals [j, j+1] with j < k in which the table's opacity is above 0; entries
+/// long. Interval j..k holds something visible exactly where result[k+1] - result[j] > 0. Integers, so nothing cancels.
+std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table);
+
+}  // namespace shvr

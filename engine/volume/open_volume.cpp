@@ -1,0 +1,89 @@
+#include "engine/volume/open_volume.h"
+
+#include "engine/base/error.h"
+#include "engine/volume/header_text.h"
+#include "engine/volume/readers.h"
+
+namespace shvr {
+namespace {
+
+struct Reader {
+    const char* name;
+    std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path);
+};
+
+/// In this order: a header is asked before the bare voxels that it may describe.
+constexpr Reader READERS[] = {
+    {"NRRD", open_nrrd},
+    {"MetaImage", open_mhd},
+    {"RAW with a side-car", open_raw_with_side_car},
+};
+
+[[noreturn]] void refuse_layout(const std::string& text)
+{
+    throw UsageError(sentence("raw layout is ", in_quotes(text),
+                              "; expected WxHxD:TYPE[:big|little][:OFFSET] with TYPE uint8, ",
+                              "int8, uint16, int16 or float32, as in 256x256x108:int16:big:512"));
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator)
+{
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const size_t end = std::min(text.size(), text.find(separator));
+        parts.push_back(text.substr(0, end));
+        if (end == text.size()) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+RawLayout parse_raw_layout(const std::string& text)
+{
+    const std::vector<std::string_view> parts = split(text, ':');
+    if (parts.size() < 2 || parts.size() > 4) refuse_layout(text);
+    RawLayout layout;
+    const std::vector<std::string_view> sides = split(parts[0], 'x');
+    if (sides.size() != 3) refuse_layout(text);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<int64_t> side = whole_of(sides[static_cast<size_t>(axis)]);
+        if (!side) refuse_layout(text);
+        if (*side < 1 || *side > int64_t{1} << 20) {
+            throw UsageError(sentence("raw layout ", in_quotes(text), ": size along ", "xyz"[axis], " is ", *side,
+                                      "; expected 1 to ", int64_t{1} << 20));
+        }
+        layout.size[axis] = *side;
+    }
+    const std::optional<VoxelType> type = voxel_type_of(std::string(parts[1]));
+    if (!type) refuse_layout(text);
+    layout.type = *type;
+    bool has_order = false;
+    bool has_offset = false;
+    for (size_t i = 2; i < parts.size(); ++i) {
+        const std::optional<int64_t> offset = whole_of(parts[i]);
+        if (!has_order && !has_offset && (parts[i] == "big" || parts[i] == "little")) {
+            layout.big_endian = parts[i] == "big";
+            has_order = true;
+        } else if (!has_offset && offset && *offset >= 0) {
+            layout.offset_bytes = *offset;
+            has_offset = true;
+        } else {
+            refuse_layout(text);
+        }
+    }
+    return layout;
+}
+
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path)
+{
+    std::string tried;
+    for (const Reader& reader : READERS) {
+        if (std::unique_ptr<VolumeSource> source = reader.open(path)) return source;
+        tried += tried.empty() ? "" : ", ";
+        tried += reader.name;
+    }
+    fail(path.string(), ": is in no format known here; expected ", tried, ", or bare voxels with --raw WxHxD:TYPE");
+}
+
+}  // namespace shvr

@@ -1,0 +1,24 @@
+#pragma once
+// Opens a volume file by asking each reader in turn.
+
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// How to read a file of bare voxels when no side-car says so: "256x256x108:int16[:big|little][:OFFSET]".
+struct RawLayout {
+    Size3 size{0};
+    VoxelType type = VoxelType::uint8;
+    bool big_endian = false;
+    int64_t offset_bytes = 0;
+    glm::dvec3 spacing{1.0};
+    std::string unit = "voxel";
+};
+/// Fails with a `UsageError` that shows the expected form.
+RawLayout parse_raw_layout(const std::string& text);
+
+/// Fails where no reader knows the file (naming the formats tried), or where the reader that knows it finds it broken.
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path);
+std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout);
+
+}  // namespace shvr

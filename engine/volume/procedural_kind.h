@@ -1,0 +1,40 @@
+#pragma once
+// One kind of procedural volume, as source_procedural.cpp uses it. Values are 0 ... 250 and depend on the parameters
+// alone. Objects are immutable; any thread may call them. A `Rows` belongs to one thread.
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "engine/volume/source_procedural.h"
+
+namespace shvr {
+
+class ProceduralKind {
+public:
+    virtual ~ProceduralKind() = default;
+
+    virtual double value(const glm::dvec3& voxel) const = 0;
+    virtual bool has_gradient() const { return true; }
+    virtual glm::dvec3 gradient(const glm::dvec3& voxel) const = 0;
+
+    /// Evaluates the rows of a box, best with z running faster than y. Every value equals `value` at the voxel's
+    /// centre, bit for bit.
+    class Rows {
+    public:
+        virtual ~Rows() = default;
+        virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
+    };
+    virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
+};
+
+std::unique_ptr<ProceduralKind> make_constant(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_ramp(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_sphere(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_marschner_lobb(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_tubes(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_speckles(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_fog(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_checker(const Size3& size, uint32_t seed);
+
+}  // namespace shvr

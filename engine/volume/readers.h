@@ -1,0 +1,18 @@
+#pragma once
+// The readers that `open_volume` asks in turn. Each looks at the file and says "not mine" (null), gives the volume, or
+// fails: "mine, but broken". Any thread may call them.
+
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// NRRD and NHDR, encoding raw, by their first bytes or their extension.
+std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path);
+
+/// MetaImage, MHD and MHA, not compressed, by their first field or their extension.
+std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path);
+
+/// Bare voxels described by what lies beside them, or the side-car itself (source_side_car.cpp lists what is known).
+std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path);
+
+}  // namespace shvr

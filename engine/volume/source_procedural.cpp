@@ -1,0 +1,166 @@
+#include "engine/volume/source_procedural.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "engine/base/error.h"
+#include "engine/volume/procedural_kind.h"
+
+namespace shvr {
+namespace {
+
+struct NamedKind {
+    const char* name;
+    std::unique_ptr<ProceduralKind> (*make)(const Size3& size, uint32_t seed);
+};
+
+constexpr NamedKind KINDS[] = {
+    {"constant", make_constant}, {"ramp", make_ramp},
+    {"sphere", make_sphere},     {"marschner_lobb", make_marschner_lobb},
+    {"tubes", make_tubes},       {"speckles", make_speckles},
+    {"fog", make_fog},           {"checker", make_checker},
+};
+
+VolumeInfo info_of(const ProceduralSpec& spec)
+{
+    VolumeInfo info;
+    info.name = spec.kind;
+    info.format = "procedural";
+    info.size = spec.size;
+    info.type = spec.type;
+    info.spacing = spec.spacing;
+    info.unit = spec.unit;
+    static_cast<void>(voxel_count(info));
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(spec.spacing[axis]) || !(spec.spacing[axis] > 0.0)) {
+            fail(spec.kind, ": spacing along ", "xyz"[axis], " is ", spec.spacing[axis],
+                 "; expected a finite number above 0");
+        }
+    }
+    return info;
+}
+
+std::unique_ptr<ProceduralKind> make_kind(const ProceduralSpec& spec)
+{
+    std::string known;
+    for (const NamedKind& kind : KINDS) {
+        if (spec.kind == kind.name) {
+            static_cast<void>(info_of(spec));
+            return kind.make(spec.size, spec.seed);
+        }
+        known += (known.empty() ? "" : ", ") + std::string(kind.name);
+    }
+    fail("procedural volume is \"", spec.kind, "\"; expected one of ", known);
+}
+
+/// Signed bytes hold -128 ... 127: there, every intensity is lower by 128.
+double shift_of(VoxelType type)
+{
+    return type == VoxelType::int8 ? -128.0 : 0.0;
+}
+
+/// Rounded half up; values are never negative.
+template <class T>
+void store(std::span<const double> values, std::byte* voxels)
+{
+    for (const double value : values) {
+        T voxel;
+        if constexpr (std::is_floating_point_v<T>) {
+            voxel = static_cast<T>(value);
+        } else {
+            const int shift = std::is_same_v<T, int8_t> ? -128 : 0;
+            voxel = static_cast<T>(static_cast<int>(value + 0.5) + shift);
+        }
+        std::memcpy(voxels, &voxel, sizeof(T));
+        voxels += sizeof(T);
+    }
+}
+
+void store(VoxelType type, std::span<const double> values, std::byte* voxels)
+{
+    switch (type) {
+        case VoxelType::uint8: return store<uint8_t>(values, voxels);
+        case VoxelType::int8: return store<int8_t>(values, voxels);
+        case VoxelType::uint16: return store<uint16_t>(values, voxels);
+        case VoxelType::int16: return store<int16_t>(values, voxels);
+        case VoxelType::float32: return store<float>(values, voxels);
+    }
+}
+
+class ProceduralSource final : public VolumeSource {
+public:
+    explicit ProceduralSource(const ProceduralSpec& spec) : VolumeSource(info_of(spec)), kind_(make_kind(spec)) {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        const Size3 extent = box.size();
+        const auto row_bytes = extent.x * static_cast<int64_t>(bytes_of(info().type));
+        SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
+                   glm::all(glm::lessThanEqual(box.upper, info().size)) &&
+                   glm::all(glm::greaterThan(extent, Size3(0))));
+        SHVR_CHECK(static_cast<int64_t>(voxels.size()) == extent.y * extent.z * row_bytes, voxels.size());
+        const std::unique_ptr<ProceduralKind::Rows> rows = kind_->rows(box);
+        std::vector<double> values(static_cast<size_t>(extent.x));
+        for (int64_t y = 0; y < extent.y; ++y) {
+            for (int64_t z = 0; z < extent.z; ++z) {
+                rows->evaluate(box.lower.y + y, box.lower.z + z, values);
+                store(info().type, values, voxels.data() + row_bytes * (y + extent.y * z));
+            }
+        }
+    }
+
+private:
+    std::unique_ptr<ProceduralKind> kind_;
+};
+
+/// For kinds whose values are cheap: one by one.
+class PointRows final : public ProceduralKind::Rows {
+public:
+    PointRows(const ProceduralKind& kind, int64_t first_x) : kind_(kind), first_x_(first_x) {}
+
+    void evaluate(int64_t y, int64_t z, std::span<double> values) override
+    {
+        glm::dvec3 voxel(static_cast<double>(first_x_) + 0.5, static_cast<double>(y) + 0.5,
+                         static_cast<double>(z) + 0.5);
+        for (double& value : values) {
+            value = kind_.value(voxel);
+            voxel.x += 1.0;
+        }
+    }
+
+private:
+    const ProceduralKind& kind_;
+    int64_t first_x_;
+};
+
+}  // namespace
+
+std::unique_ptr<ProceduralKind::Rows> ProceduralKind::rows(const VoxelBox& box) const
+{
+    return std::make_unique<PointRows>(*this, box.lower.x);
+}
+
+std::vector<std::string> procedural_kinds()
+{
+    std::vector<std::string> names;
+    for (const NamedKind& kind : KINDS) names.emplace_back(kind.name);
+    return names;
+}
+
+ScalarField procedural_field(const ProceduralSpec& spec)
+{
+    const std::shared_ptr<const ProceduralKind> kind = make_kind(spec);
+    ScalarField field;
+    field.value = [kind, shift = shift_of(spec.type)](const glm::dvec3& voxel) { return kind->value(voxel) + shift; };
+    if (kind->has_gradient()) field.gradient = [kind](const glm::dvec3& voxel) { return kind->gradient(voxel); };
+    return field;
+}
+
+std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec)
+{
+    return std::make_unique<ProceduralSource>(spec);
+}
+
+}  // namespace shvr

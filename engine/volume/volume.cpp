@@ -1,0 +1,144 @@
+#include "engine/volume/volume.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
+constexpr double LARGEST_CODE = 65535.0;
+
+/// Every spelling in lower case, words separated by one space, without MetaImage's "MET_".
+constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
+    {"uint8", VoxelType::uint8},
+    {"uint8_t", VoxelType::uint8},
+    {"uchar", VoxelType::uint8},
+    {"unsigned char", VoxelType::uint8},
+    {"byte", VoxelType::uint8},
+    {"int8", VoxelType::int8},
+    {"int8_t", VoxelType::int8},
+    {"char", VoxelType::int8},
+    {"signed char", VoxelType::int8},
+    {"uint16", VoxelType::uint16},
+    {"uint16_t", VoxelType::uint16},
+    {"ushort", VoxelType::uint16},
+    {"ushort_12", VoxelType::uint16},  // side-cars: 12 bits in 16
+    {"unsigned short", VoxelType::uint16},
+    {"unsigned short int", VoxelType::uint16},
+    {"int16", VoxelType::int16},
+    {"int16_t", VoxelType::int16},
+    {"short", VoxelType::int16},
+    {"short int", VoxelType::int16},
+    {"signed short", VoxelType::int16},
+    {"signed short int", VoxelType::int16},
+    {"float32", VoxelType::float32},
+    {"float", VoxelType::float32},
+};
+
+std::string plain_spelling(const std::string& name)
+{
+    std::string plain;
+    for (const char character : name) {
+        const auto byte = static_cast<unsigned char>(character);
+        if (std::isspace(byte) != 0) {
+            if (!plain.empty() && plain.back() != ' ') plain += ' ';
+        } else {
+            plain += static_cast<char>(std::tolower(byte));
+        }
+    }
+    if (!plain.empty() && plain.back() == ' ') plain.pop_back();
+    return plain.starts_with("met_") ? plain.substr(4) : plain;
+}
+
+}  // namespace
+
+size_t bytes_of(VoxelType type)
+{
+    switch (type) {
+        case VoxelType::uint8:
+        case VoxelType::int8: return 1;
+        case VoxelType::uint16:
+        case VoxelType::int16: return 2;
+        case VoxelType::float32: return 4;
+    }
+    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    return 0;
+}
+
+const char* name_of(VoxelType type)
+{
+    switch (type) {
+        case VoxelType::uint8: return "uint8";
+        case VoxelType::int8: return "int8";
+        case VoxelType::uint16: return "uint16";
+        case VoxelType::int16: return "int16";
+        case VoxelType::float32: return "float32";
+    }
+    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    return "";
+}
+
+std::optional<VoxelType> voxel_type_of(const std::string& name)
+{
+    const std::string plain = plain_spelling(name);
+    for (const auto& [spelling, type] : SPELLINGS) {
+        if (plain == spelling) return type;
+    }
+    return {};
+}
+
+int64_t voxel_count(const VolumeInfo& info)
+{
+    int64_t count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int64_t side = info.size[axis];
+        if (side < 1 || side > LARGEST_SIDE) {
+            fail(info.name, ": size along ", "xyz"[axis], " is ", side, "; expected 1 to ", LARGEST_SIDE);
+        }
+        if (__builtin_mul_overflow(count, side, &count)) {
+            fail(info.name, ": size ", info.size.x, "x", info.size.y, "x", info.size.z,
+                 " gives more voxels than 63 bits count; expected fewer");
+        }
+    }
+    return count;
+}
+
+uint32_t IntensityWindow::threshold_code(double threshold) const
+{
+    // Searched with `intensity_of`, which is what voxels are compared by: no rounding of `code_of` can be off by one.
+    uint32_t below = 0;
+    uint32_t above = 65536;
+    while (below < above) {
+        const uint32_t middle = (below + above) / 2;
+        if (intensity_of(middle) >= threshold) {
+            above = middle;
+        } else {
+            below = middle + 1;
+        }
+    }
+    return below;
+}
+
+IntensityWindow window_for(VoxelType type, double minimum, double maximum)
+{
+    switch (type) {
+        case VoxelType::uint8: return {0.0, 257.0};
+        case VoxelType::int8: return {-128.0, 257.0};
+        case VoxelType::uint16:
+        case VoxelType::int16: {
+            const double lower = std::floor(minimum);
+            const double range = std::clamp(std::ceil(maximum) - lower, 1.0, LARGEST_CODE);
+            return {lower, std::floor(LARGEST_CODE / range)};
+        }
+        case VoxelType::float32: break;
+    }
+    const double range = maximum - minimum;
+    return {minimum, range > 0.0 ? LARGEST_CODE / range : LARGEST_CODE};
+}
+
+}  // namespace shvr

@@ -1,0 +1,74 @@
+#pragma once
+// What a scalar volume is: its size, voxel type, spacing and unit, and the intensity window under which its voxels
+// travel to the device as R16_UNORM codes.
+//
+// Spaces. voxel: index space of level 0, the centre of voxel i lies at i + 0.5. volume: physical, in the file's unit,
+// volume = voxel * spacing. Axis order is x, y, z with x fastest in memory. All counts are 64 bit.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace shvr {
+
+using Size3 = glm::vec<3, int64_t>;
+
+enum class VoxelType { uint8, int8, uint16, int16, float32 };
+
+size_t bytes_of(VoxelType type);
+const char* name_of(VoxelType type);
+/// "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as the header formats spell them; nothing if unknown.
+std::optional<VoxelType> voxel_type_of(const std::string& name);
+
+/// A half-open box of voxels, [lower, upper).
+struct VoxelBox {
+    Size3 lower{0};
+    Size3 upper{0};
+    Size3 size() const { return upper - lower; }
+    bool operator==(const VoxelBox&) const = default;
+};
+
+struct VolumeInfo {
+    std::string name;    ///< what a person calls it: the file's name
+    std::string format;  ///< "raw", "nrrd", "mhd", "procedural"
+    Size3 size{0};       ///< voxels
+    VoxelType type = VoxelType::uint8;
+    glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
+    std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" where the file states none
+    /// What a reader had to assume or leave out, one sentence each ("no spacing stated; 1 voxel assumed").
+    std::vector<std::string> warnings{};
+};
+
+/// size.x * size.y * size.z; fails where the product leaves 63 bits. Each side must be 1 ... 2^20.
+int64_t voxel_count(const VolumeInfo& info);
+
+/// Minimum, maximum, mean and a 256-bin histogram of finite voxels, in the file's own intensity units.
+struct VolumeStatistics {
+    double minimum = 0.0;
+    double maximum = 0.0;
+    double mean = 0.0;
+    int64_t not_finite = 0;
+    std::vector<int64_t> histogram{};  ///< 256 bins over [minimum, maximum]
+};
+
+/// The affine map from intensities to 16-bit codes: code = round((intensity - lower) * codes_per_unit).
+/// For integer types `codes_per_unit` is a whole number and the map is exact, so that a threshold on codes is a
+/// threshold on intensities. For float32 the codes quantise [minimum, maximum] into 65535 steps.
+struct IntensityWindow {
+    double lower = 0.0;
+    double codes_per_unit = 257.0;
+    double upper() const { return lower + 65535.0 / codes_per_unit; }
+    double code_of(double intensity) const { return (intensity - lower) * codes_per_unit; }
+    double intensity_of(double code) const { return lower + code / codes_per_unit; }
+    /// The smallest code whose intensity is at or above `threshold` (inclusive); 65536 where none is.
+    uint32_t threshold_code(double threshold) const;
+    bool operator==(const IntensityWindow&) const = default;
+};
+
+IntensityWindow window_for(VoxelType type, double minimum, double maximum);
+
+}  // namespace shvr

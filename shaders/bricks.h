@@ -1,0 +1,44 @@
+// Bricks, atlas and page table: the address arithmetic that kernels and C++ share.
+//
+// A brick holds 32^3 voxels and an apron of one voxel on each side, so that trilinear filtering, and central
+// differences of +-0.5 voxel, never need a second brick. The atlas is one 3-D texture of slots; the page table maps a
+// brick to its slot; slot 0 is never drawn from and means "not on the device".
+#ifndef SHVR_BRICKS_H
+#define SHVR_BRICKS_H
+#include "shared.h"
+
+SHARED_BEGIN
+
+SHARED_CONST uint BRICK_SIZE = 32u;
+SHARED_CONST uint BRICK_APRON = 1u;
+SHARED_CONST uint BRICK_TEXELS = 34u;  // BRICK_SIZE + 2 * BRICK_APRON
+SHARED_CONST uint CELL_SIZE = 4u;      // a cell of the leap grid, in voxels a side
+SHARED_CONST uint BRICK_CELLS = 8u;    // BRICK_SIZE / CELL_SIZE
+SHARED_CONST uint NO_SLOT = 0u;
+
+/// Linear index of a brick (or cell) in a grid of `counts`, x fastest.
+SHARED_FUNCTION uint grid_index(uvec3 position, uvec3 counts)
+{
+    return position.x + counts.x * (position.y + counts.y * position.z);
+}
+
+/// Where a slot lies in its atlas, in slots, 8 bits a side: no division where rays run, and atlases of up to 255 slots
+/// a side. Slot 0, the first corner, is never used by a brick.
+SHARED_FUNCTION uint pack_slot(uvec3 slot)
+{
+    return slot.x | slot.y << 8u | slot.z << 16u;
+}
+
+SHARED_FUNCTION uvec3 unpack_slot(uint packed_slot)
+{
+    return uvec3(packed_slot & 0xffu, packed_slot >> 8u & 0xffu, packed_slot >> 16u & 0xffu);
+}
+
+/// First texel (apron included) of a slot.
+SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
+{
+    return BRICK_TEXELS * unpack_slot(packed_slot);
+}
+
+SHARED_END
+#endif

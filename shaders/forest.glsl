@@ -1,0 +1,18 @@
+// The forest of runs. Needs `bits` (words) and `parents` (one uint per bit, valid at first bits of runs).
+
+// First bit of the run that holds `bit` of `word`.
+uint run_start(uint word, uint bit)
+{
+    const uint gaps = ~word & ((1u << bit) - 1u);   // clear bits below
+    return gaps == 0u ? 0u : uint(findMSB(gaps)) + 1u;
+}
+
+uint find_root(uint run)
+{
+    uint parent = parents.of[run];
+    while (parent != run) {
+        run = parent;
+        parent = parents.of[run];
+    }
+    return run;
+}

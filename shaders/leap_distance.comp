@@ -1,0 +1,30 @@
+// One axis of the Chebyshev distance transform: the maximum norm is separable, so three of these passes are exact.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "leap.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Push { LeapDistanceParams params; };
+layout(binding = 0, r32ui) uniform readonly uimage3D source;
+layout(binding = 1, r32ui) uniform writeonly uimage3D leap;
+
+void main()
+{
+    const ivec3 cell = ivec3(gl_GlobalInvocationID);
+    const ivec3 counts = ivec3(params.cell_counts);
+    if (any(greaterThanEqual(cell, counts))) return;
+    const ivec3 along = ivec3(params.axis == 0u, params.axis == 1u, params.axis == 2u);
+    const int position = params.axis == 0u ? cell.x : params.axis == 1u ? cell.y : cell.z;
+    const int count = params.axis == 0u ? counts.x : params.axis == 1u ? counts.y : counts.z;
+
+    const uint entry = imageLoad(source, cell).x;
+    uint best = entry >> LEAP_DISTANCE_SHIFT;
+    for (uint k = 1u; k < best; ++k) {
+        // Outside the volume there is nothing to see, so the nearest cell inside may stand in: it is closer.
+        const int below = max(-int(k), -position), above = min(int(k), count - 1 - position);
+        const uint nearest = min(imageLoad(source, cell + below * along).x, imageLoad(source, cell + above * along).x);
+        best = min(best, max(k, nearest >> LEAP_DISTANCE_SHIFT));
+    }
+    imageStore(leap, cell, uvec4(best << LEAP_DISTANCE_SHIFT | (entry & LEAP_SLOT_MASK)));
+}

@@ -1,0 +1,41 @@
+// As leap_occupancy, for a volume with painted voxels: a cell is occupied, too, where a voxel of a visible group is.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "leap.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Push { OccupancyParams params; };
+layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;
+layout(binding = 1, scalar) readonly buffer PageTable { uint slots[]; } page_table;
+layout(binding = 2, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
+layout(binding = 3, r32ui) uniform writeonly uimage3D leap;
+layout(binding = 4, r8ui) uniform readonly uimage3D mask;
+layout(binding = 5, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
+layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
+
+#include "mask.glsl"
+#include "occupancy.glsl"
+
+bool paint_shows(uvec3 cell, uint mask_slot)
+{
+    const uvec3 base = mask_origin(mask_slot, params.mask_slots) + CELL_SIZE * (cell % BRICK_CELLS);
+    uint seen = 0u;
+    for (uint i = 0u; i < CELL_SIZE * CELL_SIZE * CELL_SIZE; ++i) {
+        const uvec3 voxel = base + uvec3(i % CELL_SIZE, (i / CELL_SIZE) % CELL_SIZE, i / (CELL_SIZE * CELL_SIZE));
+        const uint group = imageLoad(mask, ivec3(voxel)).x;
+        seen |= visible_groups.bits[group >> 5] >> (group & 31u) & 1u;
+    }
+    return seen != 0u;
+}
+
+void main()
+{
+    const uvec3 cell = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, params.cell_counts))) return;
+    const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
+    bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
+    const uint mask_slot = mask_table.slots[brick];
+    if (!occupied && mask_slot != 0u) occupied = paint_shows(cell, mask_slot);
+    imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : LEAP_LIMIT << LEAP_DISTANCE_SHIFT) | page_table.slots[brick]));
+}

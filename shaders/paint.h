@@ -1,0 +1,36 @@
+// Brushes: what the region and labelling kernels share with C++.
+//
+// A region's voxels are bits: 32 along x in one word, rows of `words_per_row` words, y next, z last. A run is a
+// maximal row of set bits within one word; it goes by the index of its first bit, and the forest of runs is kept in
+// one uint per bit.
+//   region_bits    bit = density code >= threshold, within the row's span
+//   region_merge   connects each run with the runs before it (union-find with atomic minimum; Komura 2015, Playne and
+//                  Hawick 2018): the root of a component is its lowest run, so the result does not depend on timing
+//   region_mark    speckle fill: marks the roots whose component holds an edge voxel of the region
+//   region_select  keeps the runs connected to the seed (flood fill), or those with an unmarked root (speckle fill)
+#ifndef SHVR_PAINT_H
+#define SHVR_PAINT_H
+#include "bricks.h"
+
+SHARED_BEGIN
+
+/// Half-open range of x, relative to the region's first voxel.
+struct RowSpan {
+    int begin;
+    int end;
+};
+
+struct RegionParams {
+    uvec3 origin;           ///< voxel of the region's box
+    uvec3 size;             ///< voxels
+    uint words_per_row;
+    uint threshold_code;    ///< 0 ... 65536
+    uint connectivity;      ///< 6 or 26
+    uint seed;              ///< index of the seed's bit; flood fill
+    uvec3 brick_counts;
+};
+
+SHARED_CONST uint NO_SEED = 0xffffffffu;
+
+SHARED_END
+#endif

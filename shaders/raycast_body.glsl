@@ -1,0 +1,232 @@
+// The ray caster's body. Its kernels differ in their bindings, and define first what they bind:
+//   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
+//   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
+//
+// Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
+// last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
+// bits with skipping on or off. There is no cap on the number of steps.
+#include "raycast.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(constant_id = 0) const uint SHADED = 1u;
+layout(constant_id = 1) const uint COUNT_WORK = 0u;
+// A group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels; rows of bricks lie along x in memory, so a wider
+// group uses more of each cache line on devices whose images are linear.
+layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
+
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+layout(binding = 1, r32ui) uniform readonly uimage3D leap;
+#ifdef FILTERED
+layout(binding = 2) uniform sampler3D atlas;
+#else
+layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
+#endif
+layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB, opacity of a full step
+layout(binding = 4, rgba32f) uniform writeonly image3D color;
+#ifdef MASKED
+layout(binding = 5, r8ui) uniform readonly uimage3D mask;
+layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;   // per brick: slot + 1, 0 = none
+layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups;
+#endif
+
+#include "counters.glsl"
+#ifdef MASKED
+#include "mask.glsl"
+#endif
+#ifdef FILTERED
+#include "density_filtered.glsl"
+#else
+#include "density_exact.glsl"
+#endif
+#include "shade.glsl"
+
+struct Ray {
+    vec3 origin;      // voxel space, at length 0
+    vec3 direction;   // voxels per reference length
+    vec3 inverse;     // 1 / direction; a large number where the ray stands still
+    vec3 ahead;       // 1 where the direction is positive, else 0
+    vec3 to_eye;      // unit, volume space
+};
+
+struct Work {
+    uint samples, shaded, leaps, bricks;
+    uint last_slot;
+};
+
+// An image, not a buffer: one load for four components.
+vec4 table_entry(uint entry)
+{
+    return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
+}
+
+// Colour and opacity of a full step for a density; the table is linear between its entries and nothing outside.
+vec4 classify(const RaycastParams params, float density)
+{
+    const float last = float(params.table_entries - 1u);
+    const float at = density * params.table_scale + params.table_bias;
+    const float inside = clamp(at, 0.0, last - 1.0);
+    const uint entry = uint(inside);
+    const float f = clamp(at - float(entry), 0.0, 1.0);
+    vec4 look = mix(table_entry(entry), table_entry(entry + 1u), f);
+    look.a = at >= 0.0 && at <= last ? look.a : 0.0;
+    return look;
+}
+
+#ifdef MASKED
+// A painted voxel has the look of its group, whatever its density; the lookup is nearest, never interpolated.
+vec4 painted(const RaycastParams params, vec3 position, vec4 look)
+{
+    const uvec3 voxel = uvec3(position);
+    const uint slot = mask_table.slots[grid_index(voxel / BRICK_SIZE, params.brick_counts)];
+    if (slot == 0u) return look;
+    const uint group = imageLoad(mask, ivec3(mask_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
+    if (group == 0u) return look;
+    return vec4(groups.looks[group].color, groups.looks[group].opacity);
+}
+#endif
+
+// Colour (shaded) and opacity of a full step at a position in the brick of `slot`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, uint slot, inout Work work)
+{
+    // Cell and fraction come from the global position, and only the whole number moves into the brick: a bricked volume
+    // gives the same bits as one in a single texture.
+    const vec3 lattice = position - 0.5;
+    const vec3 corner = floor(lattice);
+    const uvec3 brick = uvec3(position) / BRICK_SIZE;
+    const ivec3 to_atlas = ivec3(slot_origin(slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
+    const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
+    vec4 look = classify(params, value_of(density));
+#ifdef MASKED
+    look = painted(params, position, look);
+#endif
+    if (COUNT_WORK != 0u) {
+        ++work.samples;
+        work.bricks += uint(slot != work.last_slot);
+        work.last_slot = slot;
+    }
+    if (SHADED != 0u) {
+        if (COUNT_WORK != 0u) ++work.shaded;
+        look.rgb = shade(params, look.rgb, gradient_of(density) / params.spacing, ray.to_eye);
+    }
+    return look;
+}
+
+uint leap_entry(const RaycastParams params, vec3 position)
+{
+    return imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
+}
+
+// Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is held.
+vec3 position_at(const RaycastParams params, const Ray ray, float s)
+{
+    return min(ray.origin + s * ray.direction, params.box_upper);
+}
+
+// How many whole steps a ray may go from `position` without leaving the empty cube around its cell.
+uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, uint distance)
+{
+    const vec3 cell = vec3(uvec3(position) / CELL_SIZE);
+    const float reach = float(distance);
+    const vec3 bound = float(CELL_SIZE) * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead));
+    const vec3 lengths = (bound - position) * ray.inverse;
+    const float exit = min(lengths.x, min(lengths.y, lengths.z));
+    // The guard keeps a sample that rounding puts on the border from being leapt over.
+    return 1u + uint(max(exit / params.step - 0.01, 0.0));
+}
+
+void accumulate(inout vec4 sum, vec4 look)
+{
+    const float weight = (1.0 - sum.a) * look.a;
+    sum.rgb += weight * look.rgb;
+    sum.a += weight;
+}
+
+uint bricks_between(vec3 a, vec3 b)
+{
+    const ivec3 d = abs(ivec3(a) / int(BRICK_SIZE) - ivec3(b) / int(BRICK_SIZE));
+    return uint(d.x + d.y + d.z) + 1u;
+}
+
+void main()
+{
+    const RaycastParams params = params_block.data;
+    const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);
+    const uvec2 in_group = uvec2(gl_LocalInvocationIndex % GROUP_WIDTH, gl_LocalInvocationIndex / GROUP_WIDTH);
+    const uvec2 pixel = gl_WorkGroupID.xy * group_size + in_group;
+    if (any(greaterThanEqual(pixel, params.pixels))) return;
+
+    const vec2 centre = vec2(pixel) + 0.5;
+    const vec3 near = params.near_corner + centre.x * params.near_dx + centre.y * params.near_dy;
+    const vec3 far = params.far_corner + centre.x * params.far_dx + centre.y * params.far_dy;
+    const vec3 physical = (far - near) * params.spacing;
+    const float length_to_far = length(physical);
+    Ray ray;
+    ray.origin = near;
+    ray.direction = (far - near) / length_to_far;
+    ray.to_eye = -physical / length_to_far;
+    const bvec3 still = equal(ray.direction, vec3(0.0));
+    ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
+    ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
+
+    // Slabs; an axis the ray does not move along is an inside test (0 / 0 has no part in it).
+    const vec3 a = (params.box_lower - near) / ray.direction;
+    const vec3 b = (params.box_upper - near) / ray.direction;
+    const vec3 entry = mix(min(a, b), vec3(0.0), still);
+    const vec3 exit = mix(max(a, b), vec3(length_to_far), still);
+    const bool misses = any(bvec3(still.x && (near.x < params.box_lower.x || near.x > params.box_upper.x),
+                                  still.y && (near.y < params.box_lower.y || near.y > params.box_upper.y),
+                                  still.z && (near.z < params.box_lower.z || near.z > params.box_upper.z)));
+    const float begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
+    const float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
+
+    const float extent = max(end - begin, 0.0);
+    const uint steps = uint(extent / params.step);
+    vec4 sum = vec4(0.0);
+    Work work = Work(0u, 0u, 0u, 0u, 0u);
+
+    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
+    // loop of its own, and lanes meet again at the costly sample.
+    uint i = 0u;
+    while (i < steps && sum.a < params.opacity_limit) {
+        vec3 position;
+        uint leap_here;
+        uint distance;
+        do {
+            position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
+            leap_here = leap_entry(params, position);
+            distance = leap_here >> LEAP_DISTANCE_SHIFT;
+            if (distance > 0u) {
+                i += steps_to_leave(params, ray, position, distance);
+                if (COUNT_WORK != 0u) ++work.leaps;
+            }
+        } while (distance > 0u && i < steps);
+        if (distance == 0u) accumulate(sum, sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work));
+        ++i;
+    }
+
+    // The rest of the ray is a step of its own, shorter and so more transparent.
+    const float rest = extent - float(steps) * params.step;
+    if (rest > 0.0 && sum.a < params.opacity_limit) {
+        const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
+        const uint leap_here = leap_entry(params, position);
+        if (leap_here >> LEAP_DISTANCE_SHIFT == 0u) {
+            vec4 look = sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work);
+            look.a = opacity_of_part(look.a, rest / params.step);
+            accumulate(sum, look);
+        }
+    }
+
+    const float through = (1.0 - sum.a) * params.background.a;
+    imageStore(color, ivec3(pixel, 0), vec4(sum.rgb + through * params.background.rgb, sum.a + through));
+
+    if (COUNT_WORK != 0u && extent > 0.0) {
+        const uint crossed = bricks_between(position_at(params, ray, begin), position_at(params, ray, end));
+        count(COUNTER_RAYS, 1u);
+        count(COUNTER_SAMPLES, work.samples);
+        count(COUNTER_SHADED, work.shaded);
+        count(COUNTER_LEAPS, work.leaps);
+        count(COUNTER_BRICKS_VISITED, work.bricks);
+        count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
+        count(COUNTER_TERMINATED, uint(sum.a >= params.opacity_limit));
+    }
+}

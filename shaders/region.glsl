@@ -1,0 +1,19 @@
+// Common to the region kernels: one thread per word. Needs `params` (RegionParams).
+
+uint word_index(uvec3 word)
+{
+    return word.x + params.words_per_row * (word.y + params.size.y * word.z);
+}
+
+bool outside_region(uvec3 word)
+{
+    return word.x >= params.words_per_row || word.y >= params.size.y || word.z >= params.size.z;
+}
+
+// Bits [begin, end) of a word whose first bit is `first`.
+uint span_bits(int begin, int end, int first)
+{
+    const int low = clamp(begin - first, 0, 32), high = clamp(end - first, 0, 32);
+    if (low >= high) return 0u;
+    return (0xffffffffu >> (32 - (high - low))) << low;
+}

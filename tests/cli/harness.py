@@ -1,0 +1,184 @@
+"""What the tests of the command line share: running the program, tiny volumes, and brushes in plain Python."""
+import itertools
+import json
+import math
+import os
+import random
+import struct
+import subprocess
+import tempfile
+import unittest
+from collections import deque
+from pathlib import Path
+
+SHVR = os.environ.get("SHVR", "build/dev/shvr")
+TIMEOUT_S = 120
+
+# Any message of the Vulkan validation layer makes a command fail.
+ENVIRONMENT = {**os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C"}
+
+
+def run(*arguments, environment=None):
+    """Runs shvr; the result has returncode, stdout and stderr."""
+    return subprocess.run([SHVR, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
+                          env={**ENVIRONMENT, **(environment or {})})
+
+
+class CliTest(unittest.TestCase):
+    """Every test has an empty folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="shvr-cli-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def check(self, *arguments, status=0):
+        result = run(*arguments)
+        self.assertEqual(result.returncode, status, f"shvr {arguments}\n{result.stdout}\n{result.stderr}")
+        return result
+
+    def check_json(self, *arguments, status=0):
+        """The one object on standard output."""
+        result = self.check(*arguments, "--json", status=status)
+        value = json.loads(result.stdout)
+        self.assertIsInstance(value, dict)
+        return value
+
+    def check_refused(self, *arguments, status=1, says=()):
+        """Fails with one sentence on standard error that says all of `says`, and nothing on standard output."""
+        result = self.check(*arguments, status=status)
+        self.assertEqual(result.stdout, "")
+        if status != 2:  # wrong usage points to --help as well
+            lines = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+            self.assertEqual(len(lines), 1, result.stderr)
+            self.assertTrue(lines[0].startswith("shvr: "), result.stderr)
+        for word in says:
+            self.assertIn(word, result.stderr)
+        return result.stderr
+
+    def assert_keys(self, value, keys):
+        self.assertEqual([key for key in keys if key not in value], [])
+
+    def write_json(self, name, value):
+        path = self.folder / name
+        path.write_text(json.dumps(value))
+        return path
+
+    def write_script(self, name, operations):
+        path = self.folder / name
+        path.write_text("".join(json.dumps(operation) + "\n" for operation in operations))
+        return path
+
+    def write_session(self, name="session.json", volume=None, **keys):
+        """A session of a tiny picture, with the mask "paint.mask"."""
+        return self.write_json(name, {"shvr_session": 1,
+                                      "volume": volume or {"procedural": "sphere", "size": [24, 24, 24]},
+                                      "transfer_function": {"points": [
+                                          {"intensity": 60, "color": "#204080", "opacity": 0.0},
+                                          {"intensity": 200, "color": "#ffe0c0", "opacity": 0.5}]},
+                                      "render": {"size": [24, 16]},
+                                      "annotation": {"mask": "paint.mask"},
+                                      **keys})
+
+
+class Volume:
+    """Voxels in Python: a list with x fastest."""
+
+    TYPES = {"uint8": "B", "int8": "b", "uint16": "H", "int16": "h", "float": "f"}
+
+    def __init__(self, size, values, spacing=(1.0, 1.0, 1.0), voxel_type="uint8"):
+        self.size, self.values, self.spacing, self.type = size, list(values), spacing, voxel_type
+
+    @staticmethod
+    def noise(size, seed, high=255, spacing=(1.0, 1.0, 1.0), voxel_type="uint8"):
+        numbers = random.Random(seed)
+        count = size[0] * size[1] * size[2]
+        return Volume(size, [numbers.randint(0, high) for _ in range(count)], spacing, voxel_type)
+
+    def write(self, folder, name="volume", endian="little"):
+        """NAME.raw with its header NAME.nhdr; returns the header."""
+        order = "<" if endian == "little" else ">"
+        packed = struct.pack(f"{order}{len(self.values)}{self.TYPES[self.type]}", *self.values)
+        (folder / f"{name}.raw").write_bytes(packed)
+        header = folder / f"{name}.nhdr"
+        header.write_text("NRRD0004\n"
+                          f"type: {self.type}\ndimension: 3\nsizes: {' '.join(map(str, self.size))}\n"
+                          f"spacings: {' '.join(map(str, self.spacing))}\n"
+                          f"encoding: raw\nendian: {endian}\ndata file: {name}.raw\n")
+        return header
+
+    def index(self, voxel):
+        return voxel[0] + self.size[0] * (voxel[1] + self.size[1] * voxel[2])
+
+    # ---- Brushes, as the definitions say them and as slow as that ----
+
+    def region(self, shape, position, radius):
+        """Voxels of a ball (centres within the radius, measured along x, in physical units) or of its box."""
+        reach = radius * self.spacing[0]
+
+        def belongs(voxel):
+            away = [(voxel[i] + 0.5 - position[i]) * self.spacing[i] for i in range(3)]
+            if shape == "box":
+                return all(abs(a) <= reach for a in away)
+            return sum(a * a for a in away) <= reach * reach
+
+        near = [range(max(0, math.floor(position[i] - reach / self.spacing[i]) - 1),
+                      min(self.size[i], math.ceil(position[i] + reach / self.spacing[i]) + 1)) for i in range(3)]
+        return {voxel for voxel in itertools.product(*near) if belongs(voxel)}
+
+    def component(self, seed, allowed, connectivity):
+        """What is connected to `seed` inside the set `allowed`, breadth first."""
+        found, queue = {seed}, deque([seed])
+        while queue:
+            voxel = queue.popleft()
+            for step in NEIGHBOURS[connectivity]:
+                next_voxel = tuple(a + b for a, b in zip(voxel, step))
+                if next_voxel in allowed and next_voxel not in found:
+                    found.add(next_voxel)
+                    queue.append(next_voxel)
+        return found
+
+    def select(self, operation):
+        """The voxels that a paint operation paints."""
+        selected = set()
+        connectivity = operation.get("connectivity", 6)
+        for position in stroke(operation["path"]):
+            region = self.region(operation["region"], position, operation["radius"])
+            above = {voxel for voxel in region if self.values[self.index(voxel)] >= operation["threshold"]}
+            if operation["brush"] == "fill":
+                selected |= above
+            elif operation["brush"] == "flood":
+                seed = tuple(math.floor(p) for p in position)
+                if seed in above:
+                    selected |= self.component(seed, above, connectivity)
+            else:
+                # The edge of a region: its voxels with a face neighbour outside it.
+                edge = {voxel for voxel in region
+                        if any(tuple(a + b for a, b in zip(voxel, step)) not in region for step in NEIGHBOURS[6])}
+                rest = set(above)
+                while rest:
+                    found = self.component(next(iter(rest)), above, connectivity)
+                    rest -= found
+                    if not found & edge:
+                        selected |= found
+        return selected
+
+
+NEIGHBOURS = {6: [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)],
+              26: [step for step in itertools.product((-1, 0, 1), repeat=3) if step != (0, 0, 0)]}
+
+
+def stroke(path):
+    """The probe's positions: the points, and between two as many as keep neighbours a voxel apart at most."""
+    positions = [path[0]]
+    for a, b in zip(path, path[1:]):
+        steps = max(1, math.ceil(max(abs(q - p) for p, q in zip(a, b))))
+        positions += [[p + (q - p) * i / steps for p, q in zip(a, b)] for i in range(1, steps + 1)]
+    return positions
+
+
+def read_png_header(path):
+    """(width, height) of a PNG file."""
+    data = Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", data[16:24])

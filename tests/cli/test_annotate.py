@@ -1,0 +1,232 @@
+"""shvr annotate: scripts, against brushes in plain Python, voxel for voxel."""
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import ENVIRONMENT, SHVR, CliTest, Volume
+
+KEYS = ["commands", "voxels_changed", "nodes", "internodes", "journal_bytes"]
+
+
+def paint(brush, region, group, threshold, radius, path, connectivity=6):
+    return {"op": "paint", "brush": brush, "region": region, "group": group, "threshold": threshold,
+            "radius": radius, "connectivity": connectivity, "path": path}
+
+
+class Annotate(CliTest):
+    SIZE = (20, 17, 13)
+
+    def prepare(self, volume):
+        self.volume = volume
+        self.session = self.write_session(volume={"path": volume.write(self.folder).name})
+        self.mask = self.folder / "paint.mask"
+
+    def annotate(self, operations, *arguments, status=0):
+        script = self.write_script("script.jsonl", operations)
+        if status:
+            return self.check("annotate", self.session, "--script", script, *arguments, status=status)
+        return self.check_json("annotate", self.session, "--script", script, *arguments)
+
+    def apply(self, mask, operation):
+        """Paints in Python; returns how many voxels changed."""
+        changed = 0
+        for voxel in self.volume.select(operation):
+            index = self.volume.index(voxel)
+            changed += mask[index] != operation["group"]
+            mask[index] = operation["group"]
+        return changed
+
+    def random_operation(self, numbers, brush):
+        size = self.volume.size
+        path = [[numbers.uniform(-2, s + 2) for s in size] for _ in range(numbers.choice([1, 1, 1, 3]))]
+        values = sorted(self.volume.values)
+        # Near the percolation threshold components are most tangled.
+        share = numbers.choice([0.5, 0.69, 0.8, 0.9])
+        return paint(brush, numbers.choice(["ball", "box"]), numbers.randint(1, 5),
+                     values[int(share * len(values))], numbers.uniform(2, 8), path, numbers.choice([6, 26]))
+
+    def check_brush(self, brush, volume, seed):
+        self.prepare(volume)
+        numbers = random.Random(seed)
+        operations, expected, changed, counts = [], bytearray(len(volume.values)), 0, []
+        for _ in range(12):
+            operation = self.random_operation(numbers, brush)
+            changed += self.apply(expected, operation)
+            operations += [operation, {"op": "expect", "voxels_in_group": {
+                str(group): expected.count(group) for group in range(1, 6)}}]
+            counts.append(len(expected) - expected.count(0))
+        self.assertGreater(counts[-1], 0, f"seed {seed} paints nothing")
+        result = self.annotate(operations + [{"op": "save"}])
+        self.assertEqual(result["voxels_changed"], changed)
+        self.assertEqual(self.mask.read_bytes(), bytes(expected), f"seed {seed}")
+
+    def test_fill(self):
+        self.check_brush("fill", Volume.noise(self.SIZE, seed=1), seed=1)
+
+    def test_flood(self):
+        self.check_brush("flood", Volume.noise(self.SIZE, seed=2), seed=2)
+
+    def test_speckle(self):
+        self.check_brush("speckle", Volume.noise(self.SIZE, seed=3), seed=3)
+
+    def test_flood_with_spacing_and_16_bits(self):
+        volume = Volume.noise(self.SIZE, seed=4, high=40000, spacing=(0.5, 0.8, 1.3), voxel_type="uint16")
+        self.check_brush("flood", volume, seed=4)
+
+    def test_speckle_with_signed_values(self):
+        numbers = random.Random(5)
+        values = [numbers.randint(-900, 900) for _ in range(20 * 17 * 13)]
+        self.check_brush("speckle", Volume(self.SIZE, values, voxel_type="int16"), seed=5)
+
+    def test_flood_across_bricks(self):
+        self.check_brush("flood", Volume.noise((40, 37, 35), seed=6), seed=6)
+
+    def test_undo_and_redo_go_through_every_state(self):
+        self.prepare(Volume.noise(self.SIZE, seed=7))
+        numbers = random.Random(7)
+        mask, states, operations = bytearray(len(self.volume.values)), [], []
+
+        def expect(state):
+            return {"op": "expect", "voxels_in_group": {str(group): state.count(group) for group in range(0, 6)}}
+
+        while len(states) < 6:
+            operation = self.random_operation(numbers, "flood")
+            if self.apply(mask, operation):  # what changes nothing is not a command
+                operations.append(operation)
+                states.append(bytes(mask))
+        empty = bytes(len(mask))
+        operations += [{"op": "undo", "count": 1}, expect(states[-2]), {"op": "undo", "count": 3}, expect(states[1]),
+                       {"op": "redo", "count": 2}, expect(states[3]), {"op": "undo", "count": 4}, expect(empty),
+                       {"op": "redo", "count": 5}, {"op": "save"}, expect(states[4])]
+        self.annotate(operations)
+        self.assertEqual(self.mask.read_bytes(), states[4])
+
+    def test_painting_after_an_undo_drops_what_was_undone(self):
+        self.prepare(Volume((8, 8, 8), [100] * 512))
+        one = paint("fill", "box", 1, 50, 1.6, [[2, 2, 2]])
+        two = paint("fill", "box", 2, 50, 1.6, [[6, 6, 6]])
+        self.annotate([one, {"op": "undo", "count": 1}, two, {"op": "redo", "count": 1}], status=1)
+        self.annotate([one, {"op": "undo", "count": 1}, two, {"op": "save"}])
+        expected = bytearray(512)
+        self.apply(expected, two)
+        self.assertEqual(self.mask.read_bytes(), bytes(expected))
+
+    def test_a_saved_mask_is_gone_on_with(self):
+        self.prepare(Volume((8, 8, 8), [100] * 512))
+        one = paint("fill", "ball", 1, 50, 2.2, [[2, 2, 2]])
+        two = paint("fill", "ball", 0, 50, 1.2, [[2, 3, 2]])  # erases
+        expected = bytearray(512)
+        self.apply(expected, one)
+        self.annotate([one, {"op": "save"}])
+        first = bytes(expected)
+        self.apply(expected, two)
+        self.annotate([{"op": "expect", "voxels_in_group": {"1": first.count(1)}}, two, {"op": "save"}])
+        self.assertEqual(self.mask.read_bytes(), bytes(expected))
+        self.annotate([{"op": "expect", "voxels_in_group": {"1": 0}}], "--fresh")
+
+    def test_a_seed_below_the_threshold_paints_nothing(self):
+        self.prepare(Volume((8, 8, 8), [100 if i % 2 else 10 for i in range(512)]))
+        outside = paint("flood", "ball", 1, 50, 4.0, [[-1.5, 4.5, 4.5]])
+        below = paint("flood", "ball", 1, 50, 4.0, [[2.5, 4.5, 4.5]])
+        at = paint("flood", "ball", 1, 100, 0.9, [[3.5, 4.5, 4.5]])  # "at or above" holds for equality
+        result = self.annotate([outside, below, {"op": "expect", "voxels_in_group": {"1": 0}}, at,
+                                {"op": "expect", "voxels_in_group": {"1": 1}}])
+        self.assertEqual(result["voxels_changed"], 1)
+
+    def test_the_painted_group_is_seen(self):
+        self.prepare(Volume((16, 16, 16), [150] * 4096))
+        self.annotate([paint("fill", "box", 1, 50, 6.0, [[8, 8, 8]]), {"op": "save"}])
+        with_paint, hidden, without = (self.folder / name for name in ("a.png", "b.png", "c.png"))
+        self.check("render", self.session, "-o", with_paint)
+        self.check("render", self.session, "-o", hidden, "--set", 'groups.1={"visible":false}')
+        self.mask.unlink()
+        self.check("render", self.session, "-o", without)
+        self.assertEqual(len({path.read_bytes() for path in (with_paint, hidden, without)}), 3)
+
+    def test_keys(self):
+        self.prepare(Volume((4, 4, 4), [1] * 64))
+        result = self.annotate([{"op": "expect", "nodes": 0, "internodes": 0}])
+        self.assert_keys(result, KEYS)
+        self.assertEqual((result["commands"], result["voxels_changed"]), (1, 0))
+
+    def test_a_failing_expectation_is_a_gate(self):
+        self.prepare(Volume((4, 4, 4), [1] * 64))
+        result = self.annotate([{"op": "expect", "voxels_in_group": {"1": 7}}], status=3)
+        for word in ("script.jsonl:1", "group 1", "0 voxels", "7"):
+            self.assertIn(word, result.stderr)
+        self.annotate([{"op": "expect", "nodes": 1}], status=3)
+
+    def test_undoing_too_much_is_refused_with_the_line(self):
+        self.prepare(Volume((4, 4, 4), [1] * 64))
+        self.assertIn("script.jsonl:1", self.annotate([{"op": "undo", "count": 1}], status=1).stderr)
+
+    def test_a_wrong_script_is_refused_before_anything_runs(self):
+        self.prepare(Volume((8, 8, 8), [100] * 512))
+        good = [paint("fill", "ball", 1, 50, 2.2, [[2, 2, 2]]), {"op": "save"}]
+        for wrong, word in [({"op": "pant"}, "pant"), ({"op": "undo", "cuont": 1}, "cuont"),
+                            (paint("fill", "cube", 1, 50, 2, [[2, 2, 2]]), "cube"),
+                            (paint("fill", "ball", 256, 50, 2, [[2, 2, 2]]), "256"),
+                            (paint("flood", "ball", 1, 50, 2, [[2, 2, 2]], connectivity=18), "18"),
+                            (paint("fill", "ball", 1, 50, 2, []), "path")]:
+            with self.subTest(word=word):
+                stderr = self.annotate(good + [wrong], status=1).stderr
+                self.assertIn("script.jsonl:3", stderr)
+                self.assertIn(word, stderr)
+                self.assertFalse(self.mask.exists())
+
+    def test_a_mask_of_another_volume_is_refused(self):
+        self.prepare(Volume((4, 4, 4), [1] * 64))
+        self.mask.write_bytes(bytes(63))
+        stderr = self.annotate([{"op": "save"}], status=1).stderr
+        self.assertIn("63", stderr)
+        self.assertIn("64", stderr)
+        self.assertEqual(self.mask.read_bytes(), bytes(63))
+
+
+class Killed(CliTest):
+    """A process that dies while it saves leaves the last saved mask or the next one, never a part."""
+
+    SIDE = 64
+
+    def kill_while_saving(self, kill, seed):
+        session = self.write_session(
+            volume={"procedural": "constant", "size": [self.SIDE] * 3})
+        mask = self.folder / "paint.mask"
+        operations = []
+        for i in range(400):  # far more than it gets to
+            operations += [paint("fill", "box", i % 250 + 1, 1, self.SIDE, [[self.SIDE / 2] * 3]), {"op": "save"}]
+        script = self.write_script("script.jsonl", operations)
+        numbers = random.Random(seed)
+        states = set()
+        for _ in range(6):
+            mask.unlink(missing_ok=True)
+            process = subprocess.Popen([SHVR, "annotate", session, "--script", script, "--quiet", "--fresh"],
+                                       env=ENVIRONMENT)
+            try:
+                deadline = time.monotonic() + 60
+                while not mask.exists() and process.poll() is None and time.monotonic() < deadline:
+                    time.sleep(0.002)
+                time.sleep(numbers.uniform(0, 0.3))
+                self.assertIsNone(process.poll(), "the script ended before it could be interrupted")
+                process.send_signal(kill)
+                self.assertNotEqual(process.wait(30), 0)
+            finally:
+                process.kill()
+                process.wait()
+            content = mask.read_bytes()
+            self.assertEqual(len(content), self.SIDE ** 3)
+            self.assertEqual(len(set(content)), 1, "a mixture of two saves")
+            states.add(content[0])
+        self.assertNotIn(0, states)
+
+    def test_killed(self):
+        self.kill_while_saving(signal.SIGKILL, seed=1)
+
+    def test_interrupted(self):
+        self.kill_while_saving(signal.SIGINT, seed=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

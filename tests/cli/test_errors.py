@@ -1,0 +1,129 @@
+"""What every command does with wrong usage and with a world that is not as expected."""
+import json
+import os
+import subprocess
+import unittest
+
+from harness import ENVIRONMENT, SHVR, CliTest, Volume
+
+COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"]]
+
+
+class Usage(CliTest):
+    def test_help_shows_an_example(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                text = self.check(*command, "--help").stdout
+                self.assertIn(f"Example:\n  shvr {' '.join(command)} ", text)
+                self.assertIn("--json", text)
+                self.assertIn("--quiet", text)
+
+    def test_wrong_usage_is_status_2(self):
+        session = self.write_session()
+        for arguments in [[], ["paint"], ["render"], ["render", session],
+                          ["render", session, "-o", "a.png", "--sise", "1"],
+                          ["render", session, "-o", "a.png", "--size", "12"],
+                          ["render", session, "-o", "a.png", "--size", "0x5"],
+                          ["render", session, "-o", "a.png", "--threads", "many"],
+                          ["annotate", session], ["compare", "a.png"], ["info"]]:
+            with self.subTest(arguments=arguments):
+                self.check_refused(*arguments, status=2)
+
+    def test_help_is_no_error(self):
+        self.assertIn("shvr COMMAND --help", self.check("--help").stdout)
+
+
+class World(CliTest):
+    def outputs(self):
+        return ["-o", self.folder / "a.png"]
+
+    def test_what_is_not_there(self):
+        missing = self.folder / "missing.nhdr"
+        self.check_refused("info", missing, says=["missing.nhdr"])
+        self.check_refused("render", missing, *self.outputs(), says=["missing.nhdr"])
+        self.check_refused("profile", missing, says=["missing.nhdr"])
+        self.check_refused("annotate", self.write_session(), "--script", missing, says=["missing.nhdr"])
+        self.check_refused("annotate", missing, "--script", self.write_script("s.jsonl", []), says=["missing.nhdr"])
+        self.check_refused("info", self.folder, says=["shvr/session.json"])
+
+    def test_a_volume_that_is_cut_short(self):
+        header = Volume.noise((8, 8, 8), seed=1).write(self.folder)
+        (self.folder / "volume.raw").write_bytes(bytes(100))
+        for command in (["info", header], ["render", header, *self.outputs()]):
+            self.check_refused(*command, says=["100", "512"])
+
+    def test_a_file_of_no_known_format(self):
+        strange = self.folder / "strange.xyz"
+        strange.write_bytes(b"\0\1\2\3" * 100)
+        self.check_refused("info", strange, says=["strange.xyz"])
+
+    def test_a_session_with_an_unknown_key(self):
+        document = json.loads(self.write_session().read_text())
+        document["render"]["stepp"] = 1
+        session = self.write_json("wrong.json", document)
+        self.check_refused("render", session, *self.outputs(), says=["wrong.json", "render.stepp"])
+
+    def test_a_setting_that_is_none(self):
+        session = self.write_session()
+        self.check_refused("render", session, *self.outputs(), "--set", "render.stepp=1", says=["render.stepp"])
+
+    def test_an_unknown_camera_names_the_known_ones(self):
+        self.check_refused("render", self.write_session(), *self.outputs(), "--camera", "behind",
+                           says=["behind", "front"])
+
+    def test_an_unknown_device(self):
+        self.check_refused("render", self.write_session(), *self.outputs(), "--device", "no such device",
+                           says=["no such device"])
+
+    def test_a_project_without_a_mask_cannot_be_saved(self):
+        document = json.loads(self.write_session().read_text())
+        del document["annotation"]
+        session = self.write_json("maskless.json", document)
+        script = self.write_script("s.jsonl", [{"op": "save"}])
+        self.check_refused("annotate", session, "--script", script, says=["s.jsonl:1", "annotation.mask"])
+
+    def test_nothing_is_left_behind_by_a_failure(self):
+        session = self.write_session()
+        before = sorted(os.listdir(self.folder))
+        self.check_refused("render", session, *self.outputs(), "--camera", "behind")
+        self.check_refused("profile", session, "--camera", "behind", "--trace", self.folder / "t.json")
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+
+class Output(CliTest):
+    def test_json_is_the_only_thing_on_standard_output(self):
+        session = self.write_session()
+        script = self.write_script("s.jsonl", [{"op": "expect", "nodes": 0}, {"op": "save"}])
+        self.check("render", session, "-o", self.folder / "a.png")
+        for command in (["info", session], ["render", session, "-o", self.folder / "a.png"],
+                        ["annotate", session, "--script", script],
+                        ["compare", self.folder / "a.png", self.folder / "a.png"],
+                        ["profile", session, "--frames", "1"]):
+            with self.subTest(command=command[0]):
+                self.check_json(*command)  # parses as a whole
+
+    def test_quiet_keeps_standard_error_empty(self):
+        header = Volume.noise((8, 8, 8), seed=1).write(self.folder)
+        self.assertIn("warning: ", self.check("render", header, "-o", self.folder / "a.png").stderr)
+        self.assertEqual(self.check("render", header, "-o", self.folder / "a.png", "--quiet").stderr, "")
+
+    def test_names_may_hold_anything(self):
+        name = 'sch\u00f6n, "quoted" \\ $HOME'
+        header = Volume.noise((8, 8, 8), seed=1).write(self.folder, "plain")
+        strange = header.rename(self.folder / f"{name}.nhdr")
+        info = self.check_json("info", strange)
+        self.assertIn(name, info["input"])
+        self.assertEqual(info["size"], [8, 8, 8])
+
+    def test_a_full_standard_output_is_an_error(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("this system has no /dev/full")
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([SHVR, "info", str(self.write_session()), "--json"], stdout=full,
+                                    stderr=subprocess.PIPE, text=True, timeout=60, env=ENVIRONMENT)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("standard output", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+"""shvr info: what a file is."""
+import unittest
+
+from harness import CliTest, Volume, run
+
+KEYS = ["format", "size", "type", "spacing", "unit", "min", "max", "mean", "voxels", "levels", "warnings",
+        "histogram", "window"]
+
+
+class Info(CliTest):
+    def test_every_number_of_a_small_volume(self):
+        volume = Volume.noise((20, 17, 13), seed=1, high=1000, spacing=(0.5, 0.25, 2.0), voxel_type="uint16")
+        header = volume.write(self.folder)
+        info = self.check_json("info", header)
+        self.assert_keys(info, KEYS)
+        self.assertEqual(info["size"], [20, 17, 13])
+        self.assertEqual(info["type"], "uint16")
+        self.assertEqual(info["spacing"], [0.5, 0.25, 2.0])
+        self.assertEqual(info["voxels"], 20 * 17 * 13)
+        self.assertEqual(info["bytes"], 2 * 20 * 17 * 13)
+        self.assertEqual(info["min"], min(volume.values))
+        self.assertEqual(info["max"], max(volume.values))
+        self.assertAlmostEqual(info["mean"], sum(volume.values) / len(volume.values), places=9)
+        self.assertEqual(info["levels"], 1)
+        self.assertEqual(len(info["histogram"]), 256)
+        self.assertEqual(sum(info["histogram"]), info["voxels"])
+
+    def test_byte_order_and_sign_do_not_matter(self):
+        values = [i - 500 for i in range(5 * 4 * 3)]
+        infos = []
+        for endian in ("little", "big"):
+            header = Volume((5, 4, 3), values, voxel_type="int16").write(self.folder, endian, endian)
+            infos.append(self.check_json("info", header))
+        for info in infos:
+            self.assertEqual((info["type"], info["min"], info["max"]), ("int16", -500, -441))
+        self.assertEqual(infos[0]["histogram"], infos[1]["histogram"])
+
+    def test_a_session_and_a_project_are_told_by_their_volume(self):
+        header = Volume.noise((8, 8, 8), seed=2).write(self.folder)
+        session = self.write_session(volume={"path": header.name})
+        info = self.check_json("info", session)
+        self.assertEqual(info["size"], [8, 8, 8])
+        self.assertEqual(info["mask"], str(self.folder / "paint.mask"))
+
+        project = self.folder / "project"
+        (project / "shvr").mkdir(parents=True)
+        header = Volume.noise((9, 8, 7), seed=2).write(project)
+        session.rename(project / "shvr" / "session.json")
+        (project / "shvr" / "session.json").write_text(
+            '{"shvr_session": 1, "volume": {"path": "../volume.nhdr"}}')
+        self.assertEqual(self.check_json("info", project)["size"], [9, 8, 7])
+
+    def test_settings_describe_bare_voxels(self):
+        (self.folder / "bare.raw").write_bytes(bytes(range(60)))
+        info = self.check_json("info", self.folder / "bare.raw", "--set", "volume.raw=5x4x3:uint8")
+        self.assertEqual((info["size"], info["min"], info["max"]), ([5, 4, 3], 0, 59))
+
+    def test_not_finite_voxels_are_left_out_and_told(self):
+        header = Volume((2, 2, 2), [1.0, 2.0, 3.0, float("nan"), float("inf"), 4.0, 5.0, 6.0],
+                        voxel_type="float").write(self.folder)
+        info = self.check_json("info", header)
+        self.assertEqual((info["min"], info["max"], info["mean"]), (1.0, 6.0, 3.5))
+        self.assertEqual(info["voxels_not_finite"], 2)
+        self.assertTrue(any("NaN" in warning for warning in info["warnings"]))
+
+    def test_people_read_aligned_lines(self):
+        header = Volume.noise((20, 17, 13), seed=1, spacing=(0.5, 0.5, 2.0)).write(self.folder)
+        lines = self.check("info", header).stdout.splitlines()
+        self.assertIn("size          20 x 17 x 13 voxels (4 420)", lines)
+        self.assertTrue(all(len(line) > 14 and line[13] == " " and line[14] != " " for line in lines), lines)
+
+    def test_it_needs_no_device(self):
+        header = Volume.noise((4, 4, 4), seed=1).write(self.folder)
+        result = run("info", header, environment={"VK_ICD_FILENAMES": "/nowhere", "VK_DRIVER_FILES": "/nowhere"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

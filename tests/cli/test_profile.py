@@ -1,0 +1,181 @@
+"""shvr profile: times, traces, tables and graphs."""
+import csv
+import json
+import shutil
+import unittest
+import xml.etree.ElementTree
+
+from harness import CliTest, run
+
+KEYS = ["passes", "first_frame", "frame_median_ms", "sum_median_ms", "counters", "bytes", "device", "driver"]
+PASS_KEYS = ["name", "count", "min_ms", "median_ms", "p95_ms", "max_ms", "bytes", "dispatches", "barrier"]
+FRAMES = 5
+
+
+class Profile(CliTest):
+    def profile(self, *arguments):
+        return self.check_json("profile", self.write_session(), "--frames", FRAMES, *arguments)
+
+    def test_keys_and_counts(self):
+        profile = self.profile()
+        self.assert_keys(profile, KEYS)
+        self.assertEqual(profile["frames"], FRAMES)
+        for one in profile["passes"]:
+            self.assert_keys(one, PASS_KEYS)
+            self.assertLessEqual(one["min_ms"], one["median_ms"])
+            self.assertLessEqual(one["median_ms"], one["p95_ms"])
+            self.assertLessEqual(one["p95_ms"], one["max_ms"])
+            self.assertEqual(one["count"], FRAMES)
+            self.assertGreater(one["bytes"], 0)
+        self.assertGreater(profile["frame_median_ms"], 0)
+        self.assertGreater(profile["counters"]["samples"], 0)
+        self.assertGreater(profile["bytes"]["device"], 0)
+
+    def test_a_pass_that_a_frame_does_not_run_has_no_value_there(self):
+        profile = self.profile()
+        first = [one["name"] for one in profile["first_frame"]]
+        steady = [one["name"] for one in profile["passes"]]
+        self.assertIn("leap_occupancy", first)
+        self.assertNotIn("leap_occupancy", steady)
+        self.assertIn("raycast", first)
+        self.assertIn("raycast", steady)
+
+        cold = self.profile("--warmup", "0")
+        counts = {one["name"]: one["count"] for one in cold["passes"]}
+        self.assertEqual((counts["leap_occupancy"], counts["raycast"]), (1, FRAMES))
+
+    def test_passes_do_not_take_longer_than_their_frame(self):
+        # The processor's driver runs one pass after the other.
+        profile = self.profile("--serialize")
+        self.assertLessEqual(profile["sum_median_ms"], 1.05 * profile["frame_median_ms"] + 0.3)
+        self.assertIs(profile["serialize"], True)
+
+    def test_counters_are_those_of_render(self):
+        session = self.write_session()
+        picture = self.check_json("render", session, "-o", self.folder / "a.png")
+        self.assertEqual(self.profile()["counters"], picture["counters"])
+
+    def test_the_trace_is_monotone_and_its_spans_nest(self):
+        path = self.folder / "trace.json"
+        profile = self.profile("--trace", path)
+        self.assertEqual(profile["written"], [str(path)])
+        events = json.loads(path.read_text())["traceEvents"]
+        self.assertEqual({event["ph"] for event in events}, {"M", "X", "C", "s", "f"})
+        timed = [event for event in events if event["ph"] != "M"]
+        self.assertEqual([event["ts"] for event in timed], sorted(event["ts"] for event in timed))
+        names = {event["args"]["name"] for event in events if event["name"] == "process_name"}
+        self.assertEqual(len(names), 2)
+
+        ends = {}
+        for event in events:
+            if event["ph"] != "X":
+                continue
+            row = (event["pid"], event["tid"])
+            self.assertGreaterEqual(event["dur"], 0)
+            self.assertGreaterEqual(event["ts"], ends.get(row, 0) - 1e-3, event)  # nothing on a row overlaps
+            ends[row] = event["ts"] + event["dur"]
+            self.assertIsInstance(event["args"], dict)
+
+        passes = [event["name"] for event in events if event["ph"] == "X" and event["cat"] == "pass"]
+        self.assertEqual(passes, [one["name"] for one in profile["passes"]] * FRAMES)
+        self.assertEqual(sum(event.get("cat") == "frame" for event in events), FRAMES)
+        starts = [event["id"] for event in events if event["ph"] == "s"]
+        self.assertEqual(starts, [event["id"] for event in events if event["ph"] == "f"])
+
+    def test_the_table_has_a_row_per_frame_and_pass(self):
+        path = self.folder / "times.csv"
+        profile = self.profile("--csv", path)
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), FRAMES * len(profile["passes"]))
+        for one in profile["passes"]:
+            times = sorted(float(row["gpu_ms"]) for row in rows if row["pass"] == one["name"])
+            self.assertAlmostEqual(times[0], one["min_ms"], places=6)
+            self.assertAlmostEqual(times[FRAMES // 2], one["median_ms"], places=6)
+            self.assertAlmostEqual(times[-1], one["max_ms"], places=6)
+
+    def test_the_graph_as_json_holds_the_passes_that_ran(self):
+        path = self.folder / "graph.json"
+        profile = self.profile("--graph", path)
+        graph = json.loads(path.read_text())
+        alive = [one["name"] for one in graph["passes"] if one["alive"]]
+        self.assertEqual(alive, [one["name"] for one in profile["passes"]])
+        resources = {one["name"]: one for one in graph["resources"]}
+        self.assertTrue(resources["atlas"]["imported"])
+        self.assertIsNone(resources["cell ranges"]["lifetime"])  # only the leap grid reads it
+
+    @unittest.skipUnless(shutil.which("dot"), "Graphviz is not installed")
+    def test_the_graph_as_a_drawing(self):
+        drawing, text = self.folder / "graph.svg", self.folder / "graph.dot"
+        self.profile("--graph", drawing, "--warmup", "0")
+        root = xml.etree.ElementTree.parse(drawing).getroot()
+        self.assertTrue(root.tag.endswith("svg"))
+        self.assertIn("raycast", drawing.read_text())
+        self.profile("--graph", text)
+        self.assertTrue(text.read_text().startswith("digraph frame {"))
+
+    def test_without_graphviz_one_sentence_says_so(self):
+        result = run("profile", self.write_session(), "--frames", "1", "--quiet", "--graph", self.folder / "a.svg",
+                     environment={"PATH": str(self.folder)})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("Graphviz", result.stderr)
+        self.assertFalse((self.folder / "a.svg").exists())
+
+    def test_people_read_a_table(self):
+        lines = self.check("profile", self.write_session(), "--frames", "2").stdout.splitlines()
+        self.assertTrue(any(line.startswith("pass ") and "median ms" in line for line in lines), lines)
+        self.assertTrue(any(line.startswith("raycast") for line in lines), lines)
+
+    def test_wrong_usage(self):
+        session = self.write_session()
+        self.check_refused("profile", status=2, says=["INPUT"])
+        self.check_refused("profile", session, "--frames", "0", status=2)
+        self.check_refused("profile", session, "--graph", "graph.pdf", status=2, says=[".svg"])
+
+
+class Diff(CliTest):
+    def write_profile(self, name, passes, frame=10.0, samples=100):
+        rows = [{"name": one, "median_ms": median, "min_ms": None if median is None else median - noise,
+                 "p95_ms": None if median is None else median + noise} for one, median, noise in passes]
+        return self.write_json(name, {"passes": rows, "frame_median_ms": frame, "frame_min_ms": frame - 0.1,
+                                      "frame_p95_ms": frame + 0.1, "counters": {"samples": samples}})
+
+    def test_every_verdict(self):
+        a = self.write_profile("a.json", [("steady", 5.0, 0.3), ("sped", 4.0, 0.1), ("slowed", 2.0, 0.1),
+                                          ("dropped", 1.0, 0.1), ("untimed", None, 0)])
+        b = self.write_profile("b.json", [("steady", 5.2, 0.3), ("sped", 2.0, 0.1), ("slowed", 3.0, 0.1),
+                                          ("added", 1.0, 0.1), ("untimed", None, 0)], frame=9.0, samples=90)
+        diff = self.check_json("profile", "diff", a, b)
+        rows = {row["name"]: row for row in diff["passes"]}
+        self.assertEqual({name: row["verdict"] for name, row in rows.items()},
+                         {"steady": "same", "sped": "faster", "slowed": "slower", "dropped": "gone", "added": "new",
+                          "untimed": "same"})
+        self.assertAlmostEqual(rows["sped"]["delta_ms"], -2.0)
+        self.assertAlmostEqual(rows["sped"]["ratio"], 0.5)
+        self.assertAlmostEqual(rows["sped"]["noise_ms"], 0.02 ** 0.5)
+        self.assertEqual(diff["frame"]["verdict"], "faster")
+        self.assertEqual(diff["counters"], [{"name": "samples", "a": 100, "b": 90, "delta": -10}])
+        text = self.check("profile", "diff", a, b).stdout
+        for word in ("faster", "slower", "gone", "new", "same"):
+            self.assertIn(word, text)
+
+    def test_a_profile_does_not_differ_from_itself(self):
+        profile = self.folder / "a.json"
+        profile.write_text(self.check("profile", self.write_session(), "--frames", "2", "--json").stdout)
+        diff = self.check_json("profile", "diff", profile, profile)
+        self.assertEqual({row["verdict"] for row in diff["passes"] + [diff["frame"]]}, {"same"})
+        self.assertEqual({row["delta"] for row in diff["counters"]}, {0})
+
+    def test_what_is_no_profile_is_refused(self):
+        good = self.write_profile("good.json", [("a", 1.0, 0.1)])
+        (self.folder / "text.json").write_text("hello")
+        self.check_refused("profile", "diff", good, self.folder / "text.json", says=["text.json"])
+        for name, value in [("list.json", []), ("empty.json", {}), ("nameless.json", {"passes": [{}]}),
+                            ("number.json", {"passes": [{"name": "a", "median_ms": "fast"}]})]:
+            self.check_refused("profile", "diff", good, self.write_json(name, value), says=[name])
+        self.check_refused("profile", "diff", good, self.folder / "none.json", says=["none.json"])
+        self.check_refused("profile", "diff", good, status=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

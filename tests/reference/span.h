@@ -1,0 +1,29 @@
+#pragma once
+// The part of a ray that lies in the volume, measured in reference voxels.
+
+#include "tests/reference/scene.h"
+
+namespace shvr::reference {
+
+struct Interval {
+    double lower = 0.0;
+    double upper = 0.0;
+};
+
+/// t where the ray is inside the closed box; nothing where it misses. A ray that runs in a face is inside: axes along
+/// which it does not move (+0 and -0 alike) are decided by where it is, not by a division.
+std::optional<Interval> clip_to_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper);
+
+/// Points entry + s * step, 0 <= s <= length.
+struct Span {
+    glm::dvec3 entry{0.0};   ///< voxel space
+    glm::dvec3 step{0.0};    ///< voxels per reference voxel of length
+    double length = 0.0;     ///< reference voxels
+    glm::dvec3 to_eye{0.0};  ///< physical space, unit
+    glm::dvec3 at(double s) const { return entry + s * step; }
+};
+
+/// The ray inside both the volume and the cut box; nothing where it misses or has no direction.
+std::optional<Span> span_of(const Scene& scene, const Ray& ray);
+
+}  // namespace shvr::reference

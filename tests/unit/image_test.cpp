@@ -1,0 +1,294 @@
+#include "engine/base/image.h"
+
+#include <doctest/doctest.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/base/image_file.h"
+
+using namespace shvr;
+
+namespace {
+
+/// What libpng makes of pixels in one of its formats. 16-bit formats count as linear there, so that the file says.
+std::vector<std::byte> png_of(png_uint_32 format, int width, int height, const void* pixels, const void* palette = {},
+                              png_uint_32 palette_entries = 0)
+{
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(height);
+    image.format = format;
+    image.colormap_entries = palette_entries;
+    std::vector<std::byte> file(4096 + 16 * static_cast<size_t>(width * height));
+    png_alloc_size_t bytes = file.size();
+    REQUIRE(png_image_write_to_memory(&image, file.data(), &bytes, 0, pixels, 0, palette) != 0);
+    file.resize(bytes);
+    return file;
+}
+
+void append_number(std::vector<std::byte>& file, uint32_t number)
+{
+    for (const int shift : {24, 16, 8, 0}) file.push_back(static_cast<std::byte>(number >> shift));
+}
+
+void append_chunk(std::vector<std::byte>& file, const std::string& type, const std::string& data)
+{
+    append_number(file, static_cast<uint32_t>(data.size()));
+    const std::string content = type + data;
+    uint32_t crc = 0xffffffffu;
+    for (const char c : content) {
+        crc ^= static_cast<uint8_t>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
+    }
+    for (const char c : content) file.push_back(static_cast<std::byte>(c));
+    append_number(file, ~crc);
+}
+
+/// A PNG file of one stored (uncompressed) deflate block; `rows` holds a filter byte before each row.
+std::vector<std::byte> bare_png(uint32_t width, uint32_t height, char depth, char type, const std::string& rows,
+                                const std::string& transparency = {})
+{
+    std::vector<std::byte> file;
+    for (const char c : {'\x89', 'P', 'N', 'G', '\r', '\n', '\x1a', '\n'}) file.push_back(static_cast<std::byte>(c));
+    std::vector<std::byte> sizes;
+    append_number(sizes, width);
+    append_number(sizes, height);
+    std::string header(reinterpret_cast<const char*>(sizes.data()), sizes.size());
+    append_chunk(file, "IHDR", header + depth + type + std::string(3, '\0'));
+    if (!transparency.empty()) append_chunk(file, "tRNS", transparency);
+    uint32_t a = 1, b = 0;
+    for (const char c : rows) {
+        a = (a + static_cast<uint8_t>(c)) % 65521;
+        b = (b + a) % 65521;
+    }
+    const auto low = [](size_t number) { return static_cast<char>(number & 0xff); };
+    const auto high = [](size_t number) { return static_cast<char>(number >> 8 & 0xff); };
+    const std::string block{
+        '\x78', '\x01', '\x01', low(rows.size()), high(rows.size()), low(~rows.size()), high(~rows.size())};
+    append_chunk(file, "IDAT", block + rows + std::string{high(b), low(b), high(a), low(a)});
+    append_chunk(file, "IEND", {});
+    return file;
+}
+
+Image8 noise(int width, int height, unsigned seed)
+{
+    std::mt19937 random(seed);
+    Image8 image{width, height, {}};
+    for (int value = 0; value < 4 * width * height; ++value) image.rgba.push_back(static_cast<uint8_t>(random()));
+    return image;
+}
+
+bool holds_chunk(const std::vector<std::byte>& file, const char* type)
+{
+    const std::string text(reinterpret_cast<const char*>(file.data()), file.size());
+    return text.find(type) != std::string::npos;
+}
+
+ImageF one_pixel(float red, float green, float blue, float alpha)
+{
+    return {1, 1, {red, green, blue, alpha}};
+}
+
+std::vector<uint8_t> bytes_of(float red, float green, float blue, float alpha)
+{
+    return to_image8(one_pixel(red, green, blue, alpha)).rgba;
+}
+
+constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+constexpr float ENDLESS = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+TEST_CASE("the sRGB curve goes through its anchors")
+{
+    CHECK(255.0 * srgb_encode(0.0031308) == doctest::Approx(10.3).epsilon(0.005));
+    CHECK(255.0 * srgb_encode(0.18) == doctest::Approx(117.65).epsilon(5e-5));
+    CHECK(255.0 * srgb_encode(0.2140411) == doctest::Approx(127.50).epsilon(5e-5));
+    CHECK(255.0 * srgb_encode(0.5) == doctest::Approx(187.52).epsilon(5e-5));
+    CHECK(srgb_encode(0.0) == 0.0);
+    CHECK(srgb_encode(1.0) == doctest::Approx(1.0).epsilon(1e-15));
+}
+
+TEST_CASE("decoding undoes encoding")
+{
+    double largest = 0.0;
+    for (int step = 0; step <= 100000; ++step) {
+        const double linear = step / 100000.0;
+        largest = std::max(largest, std::abs(srgb_decode(srgb_encode(linear)) - linear));
+    }
+    CHECK(largest < 1e-8);
+}
+
+TEST_CASE("256 greys come back from linear light as they were")
+{
+    for (int level = 0; level < 256; ++level) {
+        const auto linear = static_cast<float>(srgb_decode(level / 255.0));
+        const auto grey = static_cast<uint8_t>(level);
+        CHECK(bytes_of(linear, linear, linear, 1.0f) == std::vector<uint8_t>{grey, grey, grey, 255});
+    }
+}
+
+TEST_CASE("premultiplied colour is divided by alpha before it is encoded")
+{
+    CHECK(bytes_of(0.25f, 0.5f, 0.125f, 0.5f) == std::vector<uint8_t>{188, 255, 137, 128});
+    SUBCASE("nothing is left where alpha is nothing")
+    {
+        CHECK(bytes_of(0.5f, 0.5f, 0.5f, 0.0f) == std::vector<uint8_t>{0, 0, 0, 0});
+        CHECK(bytes_of(0.001f, 0.001f, 0.001f, 0.001f) == std::vector<uint8_t>{0, 0, 0, 0});
+    }
+    SUBCASE("what is out of range is moved into it")
+    {
+        CHECK(bytes_of(7.0f, -1.0f, 1.0f, 1.0f) == std::vector<uint8_t>{255, 0, 255, 255});
+        CHECK(bytes_of(1.0f, 1.0f, 1.0f, 3.0f) == std::vector<uint8_t>{156, 156, 156, 255});
+    }
+}
+
+TEST_CASE("values that are no numbers are counted and become defined bytes")
+{
+    const ImageF image{2, 1, {NOT_A_NUMBER, ENDLESS, -ENDLESS, 1.0f, 0.0f, 0.5f, 0.0f, NOT_A_NUMBER}};
+    CHECK(count_not_finite(image) == 4);
+    CHECK(to_image8(image).rgba == std::vector<uint8_t>{0, 255, 0, 255, 0, 0, 0, 0});
+    CHECK(count_not_finite(one_pixel(0.0f, 1.0f, 2.0f, 3.0f)) == 0);
+}
+
+TEST_CASE("a picture comes back from a PNG file as it was")
+{
+    for (const auto& [width, height] : {std::pair(1, 1), {256, 1}, {1, 300}, {37, 41}}) {
+        const Image8 image = noise(width, height, 1);
+        const auto file = encode_png(image, "noise");
+        CHECK(decode_png(file, "noise") == image);
+        CHECK(holds_chunk(file, "sRGB"));
+    }
+}
+
+TEST_CASE("PNG files of every kind become 8-bit RGBA")
+{
+    const auto pixel = [](const std::vector<std::byte>& file, size_t x) {
+        const Image8 image = decode_png(file, "test");
+        return std::vector<uint8_t>(&image.rgba[4 * x], &image.rgba[4 * x] + 4);
+    };
+    SUBCASE("grey")
+    {
+        const uint8_t grey[] = {0, 77, 255};
+        CHECK(pixel(png_of(PNG_FORMAT_GRAY, 3, 1, grey), 1) == std::vector<uint8_t>{77, 77, 77, 255});
+    }
+    SUBCASE("grey with alpha")
+    {
+        const uint8_t grey[] = {77, 9};
+        CHECK(pixel(png_of(PNG_FORMAT_GA, 1, 1, grey), 0) == std::vector<uint8_t>{77, 77, 77, 9});
+    }
+    SUBCASE("RGB")
+    {
+        const uint8_t colors[] = {1, 2, 3, 4, 5, 6};
+        CHECK(pixel(png_of(PNG_FORMAT_RGB, 2, 1, colors), 1) == std::vector<uint8_t>{4, 5, 6, 255});
+    }
+    SUBCASE("palette with alpha")
+    {
+        const uint8_t palette[] = {1, 2, 3, 255, 10, 20, 30, 40};
+        const uint8_t indices[] = {0, 1};
+        const auto file = png_of(PNG_FORMAT_RGBA_COLORMAP, 2, 1, indices, palette, 2);
+        CHECK(pixel(file, 0) == std::vector<uint8_t>{1, 2, 3, 255});
+        CHECK(pixel(file, 1) == std::vector<uint8_t>{10, 20, 30, 40});
+    }
+    SUBCASE("1 bit, one colour transparent")
+    {
+        const auto file = bare_png(3, 1, 1, 0, std::string{'\0', '\x40'}, std::string(2, '\0'));
+        CHECK(pixel(file, 0) == std::vector<uint8_t>{0, 0, 0, 0});
+        CHECK(pixel(file, 1) == std::vector<uint8_t>{255, 255, 255, 255});
+    }
+    SUBCASE("16 bits in linear light, as the file says")
+    {
+        const uint16_t linear[] = {0, 32768, 65535};
+        const std::vector<uint8_t> middle = pixel(png_of(PNG_FORMAT_LINEAR_Y, 3, 1, linear), 1);
+        // 188 by the exact curve; libpng takes a power of 2.2 for it.
+        CHECK(middle == std::vector<uint8_t>{186, 186, 186, 255});
+    }
+}
+
+TEST_CASE("16-bit values without a word on light are sRGB and rounded to nearest")
+{
+    std::string row(1, '\0');
+    for (int level = 0; level < 256; ++level) {
+        // The outermost 16-bit values that are nearest to this level: 257 * level -+ 128.
+        const int offset = level % 2 == 0 ? std::max(-128, -257 * level) : std::min(128, 257 * (255 - level));
+        row += static_cast<char>((257 * level + offset) >> 8);
+        row += static_cast<char>((257 * level + offset) & 0xff);
+    }
+    const Image8 image = decode_png(bare_png(256, 1, 16, 0, row), "test");
+    for (size_t level = 0; level < 256; ++level) CHECK(image.rgba[4 * level] == level);
+}
+
+TEST_CASE("a PNG file cut anywhere is refused in words")
+{
+    const auto file = encode_png(noise(64, 48, 2), "noise");
+    for (size_t size = 0; size < file.size(); size += size + 128 < file.size() ? 64 : 1) {
+        CAPTURE(size);
+        CHECK_THROWS_AS(decode_png(std::span(file).first(size), "cut"), Error);
+    }
+}
+
+TEST_CASE("a PNG file with changed bytes is read or refused, and nothing else")
+{
+    const auto file = encode_png(noise(16, 16, 3), "noise");
+    std::mt19937 random(4);
+    int refused = 0;
+    for (int round = 0; round < 2000; ++round) {
+        auto changed = file;
+        changed[random() % changed.size()] ^= static_cast<std::byte>(1u << random() % 8);
+        try {
+            const Image8 image = decode_png(changed, "changed");
+            CHECK(image.rgba.size() == 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    CHECK(refused > 1000);
+}
+
+TEST_CASE("hostile sizes are refused before the pixels take memory")
+{
+    const auto refusal = [](uint32_t width, uint32_t height) {
+        try {
+            static_cast<void>(decode_png(bare_png(width, height, 8, 6, std::string(5, '\0')), "bad.png"));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(refusal(0, 1) == "bad.png: the picture is 0 x 1 pixels; expected 1 to 268435456 of them");
+    CHECK(refusal(0xffffffffu, 0xffffffffu) ==
+          "bad.png: the picture is 4294967295 x 4294967295 pixels; expected 1 to 268435456 of them");
+    CHECK(refusal(16385, 16384).find("expected 1 to 268435456 of them") != std::string::npos);
+    CHECK(refusal(16384, 16384) ==
+          "bad.png: holds 73 bytes, too few for the 16384 x 16384 pixels that its header tells of");
+    CHECK_THROWS_AS(encode_png({0, 0, {}}, "empty"), Error);
+    CHECK_THROWS_AS(encode_png({1 << 15, 1 << 15, {}}, "large"), Error);
+}
+
+TEST_CASE("what is no PNG file is named")
+{
+    const std::string text = "GIF89a, which this is not either";
+    CHECK_THROWS_WITH_AS(decode_png(std::as_bytes(std::span(text)), "a.gif"), "a.gif: is no PNG file", Error);
+    CHECK_THROWS_WITH_AS(read_png("/missing/a.png"), "/missing/a.png: cannot be opened: No such file or directory",
+                         Error);
+}
+
+TEST_CASE("PNG files are written and read by path")
+{
+    const auto path = std::filesystem::temp_directory_path() / ("shvr image test " + std::to_string(::getpid()));
+    const Image8 first = noise(8, 9, 5), second = noise(9, 8, 6);
+    write_png(path, first);
+    CHECK(read_png(path) == first);
+    write_png(path, second);
+    CHECK(read_png(path) == second);
+    std::filesystem::remove(path);
+}

@@ -1,0 +1,118 @@
+#pragma once
+// What the tests of engine/volume share: a folder that goes away, volumes in memory, and whole volumes read at once.
+
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/volume/source.h"
+
+namespace shvr::test {
+
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+    {
+        std::string pattern = (std::filesystem::temp_directory_path() / "shvr_volume_XXXXXX").string();
+        if (::mkdtemp(pattern.data()) == nullptr) fail(pattern, ": cannot be made");
+        path = pattern;
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+
+    std::filesystem::path write(const std::string& name, std::string_view content) const
+    {
+        std::ofstream file(path / name, std::ios::binary);
+        file.write(content.data(), static_cast<std::streamsize>(content.size()));
+        return path / name;
+    }
+
+    std::filesystem::path path;
+};
+
+/// A volume that is a block of memory.
+class MemorySource : public VolumeSource {
+public:
+    MemorySource(VolumeInfo info, std::vector<std::byte> voxels)
+        : VolumeSource(std::move(info)), voxels_(std::move(voxels))
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        const size_t voxel_bytes = bytes_of(info().type);
+        const size_t row_bytes = static_cast<size_t>(box.size().x) * voxel_bytes;
+        std::byte* row = voxels.data();
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += row_bytes) {
+                const int64_t first = box.lower.x + info().size.x * (y + info().size.y * z);
+                std::memcpy(row, voxels_.data() + static_cast<size_t>(first) * voxel_bytes, row_bytes);
+            }
+        }
+    }
+
+private:
+    std::vector<std::byte> voxels_;
+};
+
+template <class T>
+MemorySource memory_source(const Size3& size, VoxelType type, const std::vector<T>& voxels)
+{
+    VolumeInfo info;
+    info.name = "memory";
+    info.size = size;
+    info.type = type;
+    const auto bytes = std::as_bytes(std::span(voxels));
+    return {std::move(info), {bytes.begin(), bytes.end()}};
+}
+
+template <class T>
+std::vector<T> voxels_in(const VolumeSource& source, const VoxelBox& box)
+{
+    std::vector<T> voxels(static_cast<size_t>(box.size().x * box.size().y * box.size().z));
+    source.read(box, std::as_writable_bytes(std::span(voxels)));
+    return voxels;
+}
+
+template <class T>
+std::vector<T> voxels_of(const VolumeSource& source)
+{
+    return voxels_in<T>(source, {Size3(0), source.info().size});
+}
+
+/// The sentence of the `Error` that `action` throws; empty where it throws none.
+template <class Action>
+std::string error_of(const Action& action)
+{
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+inline bool contains(std::string_view text, std::string_view part)
+{
+    return text.find(part) != std::string_view::npos;
+}
+
+inline bool warns_of(const VolumeSource& source, std::string_view part)
+{
+    for (const std::string& warning : source.info().warnings) {
+        if (contains(warning, part)) return true;
+    }
+    return false;
+}
+
+}  // namespace shvr::test

@@ -1,0 +1,193 @@
+#include "engine/volume/volume.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <doctest/doctest.h>
+
+#include "tests/unit/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+constexpr VoxelType TYPES[] = {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
+                               VoxelType::float32};
+
+uint32_t code(const IntensityWindow& window, double intensity)
+{
+    return static_cast<uint32_t>(std::lround(window.code_of(intensity)));
+}
+
+VolumeInfo info_of_size(const Size3& size)
+{
+    VolumeInfo info;
+    info.name = "a.raw";
+    info.size = size;
+    return info;
+}
+
+}  // namespace
+
+TEST_CASE("a voxel type is known by its own name and by those of the header formats")
+{
+    for (const VoxelType type : TYPES) CHECK(voxel_type_of(name_of(type)) == type);
+    CHECK(bytes_of(VoxelType::int8) == 1);
+    CHECK(bytes_of(VoxelType::uint16) == 2);
+    CHECK(bytes_of(VoxelType::float32) == 4);
+    CHECK(voxel_type_of("UCHAR") == VoxelType::uint8);
+    CHECK(voxel_type_of("MET_CHAR") == VoxelType::int8);
+    CHECK(voxel_type_of("  unsigned   short int ") == VoxelType::uint16);
+    CHECK(voxel_type_of("MET_SHORT") == VoxelType::int16);
+    CHECK(voxel_type_of("MET_FLOAT") == VoxelType::float32);
+    for (const char* unknown : {"", " ", "double", "int32", "MET_", "met_met_short", "unsigned"}) {
+        CHECK_FALSE(voxel_type_of(unknown).has_value());
+    }
+}
+
+TEST_CASE("voxels are counted in 64 bits and hostile sizes are refused by name")
+{
+    CHECK(voxel_count(info_of_size({2048, 2048, 1024})) == int64_t{1} << 32);
+    CHECK(voxel_count(info_of_size(Size3(int64_t{1} << 20))) == int64_t{1} << 60);
+    for (const int64_t side : {int64_t{0}, int64_t{-5}, (int64_t{1} << 20) + 1, int64_t{1} << 31, int64_t{1} << 32,
+                               std::numeric_limits<int64_t>::max(), std::numeric_limits<int64_t>::min()}) {
+        CHECK(error_of([&] {
+                  voxel_count(info_of_size({4, side, 4}));
+              }) == sentence("a.raw: size along y is ", side, "; expected 1 to 1048576"));
+    }
+}
+
+TEST_CASE("codes of integers are exact, and a threshold on codes is a threshold on intensities")
+{
+    struct Case {
+        VoxelType type;
+        int minimum, maximum;
+    };
+    for (const auto& [type, minimum, maximum] :
+         {Case{VoxelType::uint8, 0, 255}, Case{VoxelType::uint8, 7, 9}, Case{VoxelType::int8, -128, 127},
+          Case{VoxelType::uint16, 0, 65535}, Case{VoxelType::uint16, 10, 300}, Case{VoxelType::uint16, 1, 32769},
+          Case{VoxelType::int16, -32768, 32767}, Case{VoxelType::int16, -1024, 3033}, Case{VoxelType::int16, 5, 5}}) {
+        const IntensityWindow window = window_for(type, minimum, maximum);
+        CAPTURE(name_of(type));
+        CAPTURE(maximum);
+        CHECK(window.codes_per_unit == std::floor(window.codes_per_unit));
+        CHECK(window.codes_per_unit >= 1.0);
+        CHECK(window.code_of(maximum) <= 65535.0);
+        CHECK(window.upper() >= maximum);
+        const int step = std::max(1, (maximum - minimum) / 50);
+        for (int value = minimum; value <= maximum; value += step) {
+            CHECK(window.intensity_of(code(window, value)) == value);
+            for (const double threshold :
+                 {value - 1.0, value - 0.5, value - 1e-9, value + 0.0, value + 1e-9, value + 0.3,
+                  std::nextafter(double(value), 1e9), std::nextafter(double(value), -1e9)}) {
+                CHECK((code(window, value) >= window.threshold_code(threshold)) == (value >= threshold));
+            }
+        }
+        CHECK(window.threshold_code(window.lower) == 0);
+        CHECK(window.threshold_code(-1e300) == 0);
+        CHECK(window.threshold_code(-std::numeric_limits<double>::infinity()) == 0);
+        CHECK(window.threshold_code(std::nextafter(window.intensity_of(65535), 1e9)) == 65536);
+        CHECK(window.threshold_code(std::numeric_limits<double>::infinity()) == 65536);
+    }
+    CHECK(window_for(VoxelType::uint8, 3, 4) == IntensityWindow{0.0, 257.0});
+    CHECK(window_for(VoxelType::int8, 3, 4) == IntensityWindow{-128.0, 257.0});
+    CHECK(window_for(VoxelType::uint16, 100, 355) == IntensityWindow{100.0, 257.0});
+}
+
+TEST_CASE("the window of floats spans what there is, also where that is one value")
+{
+    const IntensityWindow window = window_for(VoxelType::float32, -0.25, 0.75);
+    CHECK(window.code_of(-0.25) == 0.0);
+    CHECK(window.code_of(0.75) == 65535.0);
+    CHECK(window.threshold_code(0.75) == 65535);
+    CHECK(window.threshold_code(0.7500001) == 65536);
+    for (const double value : {0.0, 3.5, -1e30, 1e-40}) {
+        const IntensityWindow constant = window_for(VoxelType::float32, value, value);
+        CHECK(constant.code_of(value) == 0.0);
+        CHECK(constant.threshold_code(value) == 0);
+        CHECK(constant.threshold_code(value + std::abs(value) + 2.0) == 65536);
+    }
+    const double largest = std::numeric_limits<float>::max();
+    const IntensityWindow widest = window_for(VoxelType::float32, -largest, largest);
+    CHECK(widest.code_of(largest) == doctest::Approx(65535.0));
+    CHECK(widest.threshold_code(0.0) == 32768);
+}
+
+TEST_CASE("measuring agrees with counting by hand, for every type")
+{
+    const Size3 size(7, 5, 3);
+    const auto check = [&]<class T>(VoxelType type, T first, T step) {
+        std::vector<T> voxels(105);
+        for (size_t i = 0; i < voxels.size(); ++i)
+            voxels[i] = static_cast<T>(first + static_cast<T>(i * 37 % 105) * step);
+        const VolumeStatistics found = measure(memory_source(size, type, voxels));
+        const double maximum = static_cast<double>(first) + 104.0 * static_cast<double>(step);
+        CHECK(found.minimum == static_cast<double>(first));
+        CHECK(found.maximum == maximum);
+        CHECK(found.mean == doctest::Approx(0.5 * (static_cast<double>(first) + maximum)));
+        CHECK(found.not_finite == 0);
+        REQUIRE(found.histogram.size() == 256);
+        CHECK(std::accumulate(found.histogram.begin(), found.histogram.end(), int64_t{0}) == 105);
+        for (size_t i = 0; i < 105; ++i) CHECK(found.histogram[std::min<size_t>(255, i * 256 / 104)] == 1);
+    };
+    check(VoxelType::uint8, uint8_t{3}, uint8_t{2});
+    check(VoxelType::int8, int8_t{-104}, int8_t{2});
+    check(VoxelType::uint16, uint16_t{60}, uint16_t{600});
+    check(VoxelType::int16, int16_t{-32768}, int16_t{512});
+    check(VoxelType::float32, -3.5f, 0.25f);
+}
+
+TEST_CASE("voxels that are no number are counted and left out")
+{
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const VolumeStatistics some =
+        measure(memory_source<float>({6, 1, 1}, VoxelType::float32, {nan, 1.0f, -infinity, 3.0f, infinity, 2.0f}));
+    CHECK(some.minimum == 1.0);
+    CHECK(some.maximum == 3.0);
+    CHECK(some.mean == 2.0);
+    CHECK(some.not_finite == 3);
+    CHECK(some.histogram[0] + some.histogram[128] + some.histogram[255] == 3);
+
+    const VolumeStatistics none = measure(memory_source<float>({2, 1, 1}, VoxelType::float32, {nan, infinity}));
+    CHECK(none.minimum == 0.0);
+    CHECK(none.maximum == 0.0);
+    CHECK(none.not_finite == 2);
+    CHECK(none.histogram == std::vector<int64_t>(256, 0));
+}
+
+TEST_CASE("a constant volume fills the first bin")
+{
+    const VolumeStatistics found = measure(memory_source<uint16_t>({3, 1, 1}, VoxelType::uint16, {9, 9, 9}));
+    CHECK(found.minimum == 9.0);
+    CHECK(found.maximum == 9.0);
+    CHECK(found.histogram[0] == 3);
+}
+
+TEST_CASE("measuring reads at most 32 MiB at a time, also where one slice is larger")
+{
+    class Wide : public VolumeSource {
+    public:
+        Wide() : VolumeSource(wide_info()) {}
+        void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+        {
+            largest = std::max(largest, voxels.size());
+            total += voxels.size();
+            CHECK(box.size().x * box.size().y * box.size().z == static_cast<int64_t>(voxels.size()));
+            std::memset(voxels.data(), 1, voxels.size());
+        }
+        static VolumeInfo wide_info()
+        {
+            VolumeInfo info;
+            info.size = {int64_t{1} << 20, 40, 2};
+            return info;
+        }
+        mutable size_t largest = 0, total = 0;
+    };
+    const Wide wide;
+    CHECK(measure(wide).mean == 1.0);
+    CHECK(wide.largest <= size_t{32} << 20);
+    CHECK(wide.total == size_t{80} << 20);
+}

@@ -1,0 +1,68 @@
+#pragma once
+// What the sub-commands of `shvr` share: common options, opening a session with its renderer, and printing results.
+// Each command is one file with one function that adds it to the program; main.cpp lists them.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/annotator.h"
+#include "engine/scene/session.h"
+
+namespace shvr::cli {
+
+using Json = nlohmann::ordered_json;
+
+struct Common {
+    std::string device;
+    uint64_t budget_device_mib = 0;
+    uint64_t budget_host_mib = 0;
+    std::vector<std::string> settings;
+    int threads = 0;
+    bool quiet = false;
+    bool json = false;
+};
+
+/// --device, --budget-device, --budget-host, --set, --threads
+void add_device_options(CLI::App& command, Common& common);
+/// --json, --quiet: every command has them.
+void add_output_options(CLI::App& command, Common& common);
+
+/// A line on standard error, unless --quiet.
+void say(const Common& common, const std::string& line);
+void warn(const std::vector<std::string>& warnings, const Common& common);
+/// One object on standard output.
+void print(const Json& result);
+/// "512x384"
+glm::uvec2 parse_size(const std::string& text);
+
+/// A session opened with its volume on the device and its mask, if there is one, loaded.
+struct Opened {
+    Session session;
+    std::unique_ptr<VolumeSource> source;
+    std::vector<std::string> warnings;
+    std::unique_ptr<Renderer> renderer;
+    std::unique_ptr<Annotator> annotator;
+};
+Opened open(const std::string& path, const Common& common, bool with_mask = true);
+
+/// {device, host, by_resource}
+Json bytes_of(gpu::Memory& memory);
+/// Work counters by name, summed over the passes.
+Json counters_of(const std::vector<gpu::PassReport>& passes);
+
+/// With SHVR_VALIDATION=1 the Khronos layer watches: fails, quoting the first, where it had anything to say.
+void check_validation(Opened& opened);
+
+void add_info(CLI::App& program);
+void add_render(CLI::App& program);
+void add_annotate(CLI::App& program);
+void add_compare(CLI::App& program);
+void add_profile(CLI::App& program);
+void add_phantom(CLI::App& program);
+
+}  // namespace shvr::cli

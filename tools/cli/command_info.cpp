@@ -1,0 +1,142 @@
+// shvr info: what a volume, a session or a project is. Needs no Vulkan device.
+
+#include <iomanip>
+#include <iostream>
+
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+namespace {
+
+struct Options {
+    Common common;
+    std::string input;
+};
+
+struct Described {
+    VolumeInfo info;
+    VolumeStatistics statistics;
+    std::vector<std::string> warnings;
+    std::string mask;  ///< empty: none
+};
+
+Described describe(const Options& options)
+{
+    const std::filesystem::path path = options.input;
+    const bool is_bare = std::filesystem::is_regular_file(path) && path.extension() != ".json";
+    OpenedSession opened;
+    // A session would read all of a bare volume once more, for a transfer function that nobody asked for.
+    if (is_bare && options.common.settings.empty())
+        opened.source = open_volume(path);
+    else
+        opened = open_session(path, options.common.settings);
+    Described described{.info = opened.source->info(),
+                        .statistics = measure(*opened.source),
+                        .warnings = std::move(opened.warnings),
+                        .mask = opened.session.mask_path.string()};
+    for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
+    if (described.statistics.not_finite > 0)
+        described.warnings.push_back(
+            sentence(described.statistics.not_finite, " voxels are NaN or infinite and are left out of every number"));
+    return described;
+}
+
+Json to_json(const Described& described, const std::string& input)
+{
+    const VolumeInfo& info = described.info;
+    const VolumeStatistics& statistics = described.statistics;
+    const IntensityWindow window = window_for(info.type, statistics.minimum, statistics.maximum);
+    const int64_t voxels = voxel_count(info);
+    return {{"input", input},
+            {"name", info.name},
+            {"format", info.format},
+            {"size", {info.size.x, info.size.y, info.size.z}},
+            {"type", name_of(info.type)},
+            {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
+            {"unit", info.unit},
+            {"min", statistics.minimum},
+            {"max", statistics.maximum},
+            {"mean", statistics.mean},
+            {"voxels", voxels},
+            {"voxels_not_finite", statistics.not_finite},
+            {"bytes", voxels * int64_t(bytes_of(info.type))},
+            {"levels", 1},
+            {"histogram", statistics.histogram},
+            {"window", {{"lower", window.lower}, {"upper", window.upper()}, {"codes_per_unit", window.codes_per_unit}}},
+            {"mask", described.mask.empty() ? Json(nullptr) : Json(described.mask)},
+            {"warnings", described.warnings}};
+}
+
+/// "1 024 000": long numbers are read in groups of three.
+std::string grouped(int64_t number)
+{
+    std::string digits = std::to_string(number);
+    for (int at = int(digits.size()) - 3; at > 0; at -= 3) digits.insert(size_t(at), " ");
+    return digits;
+}
+
+std::string bytes_text(int64_t bytes)
+{
+    const double mebibytes = double(bytes) / double(1 << 20);
+    return sentence(std::fixed, std::setprecision(mebibytes < 10 ? 1 : 0), mebibytes, " MiB");
+}
+
+std::string plural(const std::string& unit)
+{
+    return unit == "voxel" ? "voxels" : unit;
+}
+
+void print_line(const char* what, const std::string& value)
+{
+    std::cout << std::left << std::setw(14) << what << value << '\n';
+}
+
+void print_text(const Described& described)
+{
+    const VolumeInfo& info = described.info;
+    const VolumeStatistics& statistics = described.statistics;
+    const glm::dvec3 extent = glm::dvec3(info.size) * info.spacing;
+    const int64_t voxels = voxel_count(info);
+    print_line("name", info.name);
+    print_line("format", info.format);
+    print_line("size",
+               sentence(info.size.x, " x ", info.size.y, " x ", info.size.z, " voxels (", grouped(voxels), ")"));
+    print_line("one voxel", sentence(info.spacing.x, " x ", info.spacing.y, " x ", info.spacing.z, " ", info.unit));
+    print_line("whole volume", sentence(extent.x, " x ", extent.y, " x ", extent.z, " ", plural(info.unit)));
+    print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(voxels * int64_t(bytes_of(info.type)))));
+    print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean));
+    if (!described.mask.empty()) print_line("mask", described.mask);
+    std::cout.flush();
+    if (!std::cout) fail("standard output: cannot be written");
+}
+
+void run(const Options& options)
+{
+    const Described described = describe(options);
+    warn(described.warnings, options.common);
+    if (options.common.json)
+        print(to_json(described, options.input));
+    else
+        print_text(described);
+}
+
+}  // namespace
+
+void add_info(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("info", "Tells what a volume, a session or a project is");
+    command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
+    command
+        ->add_option("--set", options->common.settings,
+                     "Any session key, as in --set volume.raw=64x64x64:uint8; repeatable")
+        ->type_name("KEY=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    add_output_options(*command, options->common);
+    command->footer("Example:\n  shvr info scan.nhdr --json");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,127 @@
+// shvr phantom: writes a synthetic volume as a file. Needs no Vulkan device.
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/atomic_writer.h"
+#include "engine/volume/source_procedural.h"
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+namespace {
+
+/// Voxels are made and written in slabs of at most this, or of one row.
+constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
+
+struct Options {
+    Common common;
+    std::string kind, folder;
+    std::string size = "64";
+    std::string type = "uint8";
+    uint32_t seed = 1;
+};
+
+/// "64" or "64x32x16"
+Size3 parse_volume_size(const std::string& text)
+{
+    constexpr int LARGEST_SIDE = 1 << 20;
+    glm::ivec3 size{0};
+    char end = 0;
+    const int numbers = std::sscanf(text.c_str(), "%7dx%7dx%7d%c", &size.x, &size.y, &size.z, &end);
+    if (numbers == 1 && text.find_first_not_of("0123456789") == std::string::npos) size = glm::ivec3(size.x);
+    if ((numbers != 1 && numbers != 3) || glm::any(glm::lessThan(size, glm::ivec3(1))) ||
+        glm::any(glm::greaterThan(size, glm::ivec3(LARGEST_SIDE))))
+        throw UsageError(
+            sentence("--size is '", text, "'; expected N or WIDTHxHEIGHTxDEPTH, each 1 ... ", LARGEST_SIDE));
+    return size;
+}
+
+std::string nrrd_header(const VolumeInfo& info, const std::string& voxels)
+{
+    const char* type = info.type == VoxelType::float32 ? "float" : name_of(info.type);
+    const char* endian = std::endian::native == std::endian::little ? "little" : "big";
+    return sentence("NRRD0004\ntype: ", type, "\ndimension: 3\nsizes: ", info.size.x, " ", info.size.y, " ",
+                    info.size.z,
+                    "\nspacings: 1 1 1\nunits: \"voxel\" \"voxel\" \"voxel\"\nencoding: raw\nendian: ", endian,
+                    "\ndata file: ", voxels, "\n");
+}
+
+void write_voxels(const std::filesystem::path& path, const VolumeSource& source)
+{
+    const Size3 size = source.info().size;
+    const int64_t row_bytes = size.x * int64_t(bytes_of(source.info().type));
+    const int64_t rows = std::clamp<int64_t>(SLAB_BYTES / row_bytes, 1, size.y);
+    const int64_t slices = rows < size.y ? 1 : std::clamp<int64_t>(SLAB_BYTES / (row_bytes * rows), 1, size.z);
+    std::vector<std::byte> slab(size_t(row_bytes * rows * slices));
+    AtomicWriter writer(path);
+    for (int64_t z = 0; z < size.z; z += slices)
+        for (int64_t y = 0; y < size.y; y += rows) {
+            const VoxelBox box{{0, y, z}, {size.x, std::min(y + rows, size.y), std::min(z + slices, size.z)}};
+            const std::span<std::byte> voxels = std::span(slab).first(size_t(row_bytes * box.size().y * box.size().z));
+            source.read(box, voxels);
+            writer.append(voxels);
+        }
+    writer.commit();
+}
+
+void run(const Options& options)
+{
+    const std::optional<VoxelType> type = voxel_type_of(options.type);
+    if (!type) throw UsageError(sentence("--type is '", options.type, "'; expected a voxel type"));
+    const std::unique_ptr<VolumeSource> source = open_procedural(
+        {.kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type});
+
+    const std::filesystem::path folder = options.folder;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) fail(options.folder, ": cannot be made: ", error.message());
+    const std::filesystem::path header = folder / (options.kind + ".nhdr");
+    const std::filesystem::path voxels = folder / (options.kind + ".raw");
+    write_voxels(voxels, *source);
+    // Last, so that a header never speaks of voxels that are not there yet.
+    const std::string text = nrrd_header(source->info(), voxels.filename().string());
+    write_file_atomically(header, std::as_bytes(std::span(text)));
+
+    if (!options.common.json) return say(options.common, header.string());
+    const Size3 size = source->info().size;
+    print({{"volume", header.string()},
+           {"truth_mask", nullptr},
+           {"truth_trace", nullptr},
+           {"size", {size.x, size.y, size.z}},
+           {"type", name_of(*type)},
+           {"kind", options.kind},
+           {"seed", options.seed}});
+}
+
+std::vector<std::string> type_names()
+{
+    std::vector<std::string> names;
+    for (const VoxelType type :
+         {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16, VoxelType::float32})
+        names.emplace_back(name_of(type));
+    return names;
+}
+
+}  // namespace
+
+void add_phantom(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("phantom", "Writes a synthetic volume");
+    command->add_option("KIND", options->kind, "What it shows")->required()->check(CLI::IsMember(procedural_kinds()));
+    command->add_option("--size", options->size, "Voxels, as in 64 or 64x32x16")->capture_default_str();
+    command->add_option("--seed", options->seed, "Equal seeds give equal volumes")->capture_default_str();
+    command->add_option("--type", options->type, "Type of the voxels")
+        ->check(CLI::IsMember(type_names()))
+        ->capture_default_str();
+    command->add_option("-o,--output", options->folder, "Folder for KIND.nhdr and KIND.raw; made where missing")
+        ->required();
+    add_output_options(*command, options->common);
+    command->footer("Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,159 @@
+// shvr profile: where a frame's time goes, pass by pass; shvr profile diff: what changed between two profiles.
+
+#include <chrono>
+#include <iostream>
+
+#include "engine/base/file.h"
+#include "tools/cli/profile_report.h"
+
+namespace shvr::cli {
+
+namespace {
+
+constexpr int64_t LARGEST_PROFILE = int64_t(64) << 20;
+
+struct Options {
+    Common common;
+    std::string input, size, camera, trace, csv, graph;
+    int frames = 20;
+    int warmup = 3;  ///< kernels are compiled, and the device wakes up, in the first frames
+    bool serialize = false;
+    std::string a, b;  ///< of diff
+};
+
+void print_text(const std::string& text)
+{
+    std::cout << text << std::flush;
+    if (!std::cout) fail("standard output: cannot be written");
+}
+
+Profile measure_frames(const Options& options, Opened& opened)
+{
+    Renderer& renderer = *opened.renderer;
+    const std::string& camera_name = options.camera.empty() ? opened.session.camera_name : options.camera;
+    const Camera camera = camera_named(opened.session, camera_name, opened.source->info());
+    const gpu::DeviceTraits& traits = renderer.device().traits();
+    Profile profile{.input = options.input,
+                    .device = traits.name,
+                    .driver = traits.driver,
+                    .size = opened.session.render.size,
+                    .warmup = options.warmup,
+                    .serialize = options.serialize,
+                    .warnings = opened.warnings};
+    if (traits.timestamp_bits == 0)
+        profile.warnings.push_back(sentence(traits.name, " has no timestamps: passes have no times"));
+
+    say(options.common, sentence(options.warmup, " frames to warm up, ", options.frames, " to measure"));
+
+    using Milliseconds = std::chrono::duration<double, std::milli>;
+    const auto started = std::chrono::steady_clock::now();
+    const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
+    double measured_from = 0.0;
+    for (int i = 0; i < options.warmup + options.frames; ++i) {
+        const double begin = now();
+        Picture picture = renderer.render(opened.session, camera, {.serialize = options.serialize});
+        const double end = now();
+        if (i == 0) profile.first_frame = picture.passes;
+        if (i < options.warmup) continue;
+        if (i == options.warmup) measured_from = begin;
+        profile.frames.push_back({.begin_ms = begin - measured_from,
+                                  .end_ms = end - measured_from,
+                                  .wall_ms = picture.wall_ms,
+                                  .device_bytes = renderer.memory().device_bytes(),
+                                  .passes = std::move(picture.passes)});
+        profile.graph = std::move(picture.graph);
+    }
+    profile.bytes = bytes_of(renderer.memory());
+    // Counting costs time, so it has a frame of its own.
+    profile.counted = renderer.render(opened.session, camera, {.count_work = true}).passes;
+    return profile;
+}
+
+void run(Options options)
+{
+    if (options.input.empty())
+        throw UsageError("INPUT is missing; expected a session (.json), project folder or volume");
+    if (!options.graph.empty()) check_graph_extension(options.graph);
+    if (!options.size.empty()) {
+        const glm::uvec2 size = parse_size(options.size);
+        options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
+    }
+    Opened opened = open(options.input, options.common);
+    const Profile profile = measure_frames(options, opened);
+    check_validation(opened);
+
+    Json written = Json::array();
+    const auto write = [&](const std::string& path, const auto& how) {
+        if (path.empty()) return;
+        how();
+        written.push_back(path);
+    };
+    write(options.trace, [&] { write_text(options.trace, trace_of(profile)); });
+    write(options.csv, [&] { write_text(options.csv, csv_of(profile)); });
+    write(options.graph, [&] { write_graph(options.graph, profile.graph); });
+
+    Json summary = summary_of(profile);
+    summary["written"] = written;
+    if (options.common.json)
+        print(summary);
+    else
+        print_text(text_of(summary));
+}
+
+Json read_profile(const std::string& path)
+{
+    const Json summary = Json::parse(read_text(path, LARGEST_PROFILE), nullptr, false);
+    if (summary.is_discarded()) fail(path, ": is no JSON; expected what shvr profile --json prints");
+    return summary;
+}
+
+void run_diff(const Options& options)
+{
+    const Json difference = difference_of(read_profile(options.a), options.a, read_profile(options.b), options.b);
+    if (options.common.json)
+        print(difference);
+    else
+        print_text(difference_text(difference));
+}
+
+void add_diff(CLI::App& profile, const std::shared_ptr<Options>& options)
+{
+    CLI::App* command = profile.add_subcommand("diff", "What changed from profile A to profile B");
+    command->add_option("A", options->a, "What shvr profile --json printed")->required();
+    command->add_option("B", options->b, "The same, later")->required();
+    add_output_options(*command, options->common);
+    command->footer("Example:\n  shvr profile diff before.json after.json");
+    command->callback([options] { run_diff(*options); });
+}
+
+}  // namespace
+
+void add_profile(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("profile", "Times the passes of a frame");
+    command->add_option("INPUT", options->input, "Session (.json), project folder or volume");
+    command->add_option("--frames", options->frames, "Frames to measure")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--warmup", options->warmup, "Frames to throw away first")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Pixels, as in 512x384");
+    command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
+    command->add_option("--trace", options->trace, "Trace to write (.json), for ui.perfetto.dev or chrome://tracing");
+    command->add_option("--csv", options->csv, "Table to write (.csv): one row per frame and pass");
+    command->add_option("--graph", options->graph, "Frame graph to write (.dot, .svg, .json)");
+    command->add_flag("--serialize", options->serialize, "A full barrier between passes: times that do not overlap");
+    add_device_options(*command, options->common);
+    add_output_options(*command, options->common);
+    add_diff(*command, options);
+    command->footer(
+        "Example:\n  shvr profile scan.nhdr --frames 100 --json > before.json\n"
+        "  shvr profile diff before.json after.json");
+    command->callback([options, command] {
+        if (!command->got_subcommand("diff")) run(*options);
+    });
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,68 @@
+// shvr render: a picture of a session, a project or a bare volume.
+
+#include "engine/base/file.h"
+#include "engine/base/image_file.h"
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+namespace {
+
+struct Options {
+    Common common;
+    std::string input, output, size, camera, transfer_function;
+};
+
+void run(Options options)
+{
+    if (!options.size.empty()) {
+        const glm::uvec2 size = parse_size(options.size);
+        options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
+    }
+    if (!options.transfer_function.empty())
+        options.common.settings.push_back("transfer_function=" + read_text(options.transfer_function, 1 << 20));
+    Opened opened = open(options.input, options.common);
+    const Camera camera = camera_named(opened.session, options.camera, opened.source->info());
+    const Picture picture = opened.renderer->render(opened.session, camera, {.count_work = options.common.json});
+    if (std::filesystem::path(options.output).extension() == ".pfm")
+        write_pfm(options.output, picture.image);
+    else
+        write_png(options.output, to_image8(picture.image));
+    check_validation(opened);
+    if (!options.common.json) return say(options.common, options.output);
+
+    Json passes = Json::array();
+    for (const gpu::PassReport& pass : picture.passes)
+        passes.push_back({{"name", pass.name}, {"gpu_ms", pass.timed ? Json(pass.gpu_ms) : Json(nullptr)}});
+    const glm::uvec2 size = opened.session.render.size;
+    print({{"output", options.output},
+           {"size", {size.x, size.y}},
+           {"complete", picture.complete},
+           {"device", opened.renderer->device().traits().name},
+           {"passes", passes},
+           {"counters", counters_of(picture.passes)},
+           {"bytes", bytes_of(opened.renderer->memory())},
+           {"warnings", opened.warnings}});
+}
+
+}  // namespace
+
+void add_render(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("render", "Makes a picture");
+    command->add_option("INPUT", options->input, "Session (.json), project folder or volume")->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "Picture to write: .png, or .pfm for linear light in 32-bit floats")
+        ->required();
+    command->add_option("--size", options->size, "Pixels, as in 512x384");
+    command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
+    command->add_option("--tf", options->transfer_function, "Transfer function: JSON file with its points");
+    add_device_options(*command, options->common);
+    add_output_options(*command, options->common);
+    command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,236 @@
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <iomanip>
+#include <sstream>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
+#include "engine/graph/graph_text.h"
+#include "tools/cli/profile_report.h"
+
+extern char** environ;
+
+namespace shvr::cli {
+
+namespace {
+
+constexpr int HOST = 1, DEVICE = 2;  // "processes" of the trace
+constexpr int64_t LARGEST_GRAPH = int64_t(64) << 20;
+
+double microseconds(double milliseconds)
+{
+    return milliseconds * 1000.0;
+}
+
+Json name_event(const char* kind, int process, int thread, const std::string& name)
+{
+    return {{"ph", "M"}, {"name", kind}, {"pid", process}, {"tid", thread}, {"args", {{"name", name}}}};
+}
+
+Json span_event(const std::string& name, int process, size_t thread, double begin_ms, double length_ms, Json args)
+{
+    return {{"ph", "X"},
+            {"name", name},
+            {"cat", process == DEVICE ? "pass" : "frame"},
+            {"pid", process},
+            {"tid", thread},
+            {"ts", microseconds(begin_ms)},
+            {"dur", microseconds(length_ms)},
+            {"args", std::move(args)}};
+}
+
+/// Passes of a frame that ran side by side stand on lanes of their own: spans of one lane must not cross.
+class Lanes {
+public:
+    size_t take(double begin_ms, double end_ms)
+    {
+        size_t lane = 0;
+        while (lane < free_from_.size() && free_from_[lane] > begin_ms) ++lane;
+        if (lane == free_from_.size()) free_from_.push_back(0.0);
+        free_from_[lane] = end_ms;
+        return lane + 1;
+    }
+    size_t count() const { return free_from_.size(); }
+    double end() const { return free_from_.empty() ? 0.0 : *std::max_element(free_from_.begin(), free_from_.end()); }
+
+private:
+    std::vector<double> free_from_;
+};
+
+void add_passes(Json& events, const ProfiledFrame& frame, size_t index, Lanes& lanes)
+{
+    // The clocks of host and device are not tied to each other, so the passes are drawn to end with their frame.
+    const double origin = std::max({lanes.end(), frame.begin_ms, frame.end_ms - frame.wall_ms});
+    bool first = true;
+    for (const gpu::PassReport& pass : frame.passes) {
+        if (!pass.timed) continue;
+        const double begin = origin + pass.start_ms;
+        const size_t lane = lanes.take(begin, begin + pass.gpu_ms);
+        events.push_back(span_event(pass.name, DEVICE, lane, begin, pass.gpu_ms,
+                                    {{"frame", index},
+                                     {"kernel", pass.kernel},
+                                     {"dispatches", pass.dispatches},
+                                     {"bytes", pass.bytes},
+                                     {"barrier", pass.barrier}}));
+        if (std::exchange(first, false))
+            events.push_back({{"ph", "f"},
+                              {"bp", "e"},
+                              {"name", "submit"},
+                              {"cat", "submit"},
+                              {"id", index},
+                              {"pid", DEVICE},
+                              {"tid", lane},
+                              {"ts", microseconds(begin)}});
+    }
+}
+
+void add_frame(Json& events, const ProfiledFrame& frame, size_t index)
+{
+    const double begin_us = microseconds(frame.begin_ms);
+    events.push_back(span_event(sentence("frame ", index), HOST, 1, frame.begin_ms, frame.end_ms - frame.begin_ms,
+                                {{"submit_to_done_ms", frame.wall_ms}}));
+    events.push_back({{"ph", "s"},
+                      {"name", "submit"},
+                      {"cat", "submit"},
+                      {"id", index},
+                      {"pid", HOST},
+                      {"tid", 1},
+                      {"ts", begin_us}});
+    double sum = 0.0;
+    for (const gpu::PassReport& pass : frame.passes) sum += pass.gpu_ms;
+    events.push_back({{"ph", "C"},
+                      {"name", "milliseconds"},
+                      {"pid", HOST},
+                      {"ts", begin_us},
+                      {"args", {{"frame", frame.wall_ms}, {"sum of passes", sum}}}});
+    events.push_back({{"ph", "C"},
+                      {"name", "device memory"},
+                      {"pid", DEVICE},
+                      {"ts", begin_us},
+                      {"args", {{"bytes", frame.device_bytes}}}});
+}
+
+/// A field of a CSV table, quoted where RFC 4180 asks for it.
+std::string field(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+/// A folder for one run of `dot`.
+struct TemporaryFolder {
+    std::filesystem::path path;
+
+    TemporaryFolder()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "shvr-graph-XXXXXX").string();
+        if (!::mkdtemp(name.data())) fail(name, ": cannot be made: ", reason_of(errno));
+        path = name;
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;  // what cannot be removed stays in the temporary folder
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+std::string svg_of(const std::string& graphviz)
+{
+    const TemporaryFolder folder;
+    std::string input = (folder.path / "graph.dot").string(), output = (folder.path / "graph.svg").string();
+    write_text(input, graphviz);
+    std::string program = "dot", format = "-Tsvg", option = "-o";
+    char* const arguments[] = {program.data(), format.data(), option.data(), output.data(), input.data(), nullptr};
+    pid_t process = 0;
+    const int error = ::posix_spawnp(&process, "dot", nullptr, nullptr, arguments, environ);
+    if (error != 0)
+        fail("the program dot cannot be started: ", reason_of(error),
+             "; expected Graphviz, or --graph with the extension .dot or .json");
+    int status = 0;
+    while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        fail("the program dot failed with status ", WIFEXITED(status) ? WEXITSTATUS(status) : status, "; expected 0");
+    return read_text(output, LARGEST_GRAPH);
+}
+
+}  // namespace
+
+std::string trace_of(const Profile& profile)
+{
+    Json spans = Json::array();
+    Lanes lanes;
+    for (size_t i = 0; i < profile.frames.size(); ++i) {
+        add_frame(spans, profile.frames[i], i);
+        add_passes(spans, profile.frames[i], i, lanes);
+    }
+    std::stable_sort(spans.begin(), spans.end(),
+                     [](const Json& a, const Json& b) { return a["ts"].get<double>() < b["ts"].get<double>(); });
+    Json events = Json::array({name_event("process_name", HOST, 1, "CPU"), name_event("thread_name", HOST, 1, "frames"),
+                               name_event("process_name", DEVICE, 1, "GPU: " + profile.device)});
+    for (size_t lane = 1; lane <= lanes.count(); ++lane)
+        events.push_back(name_event("thread_name", DEVICE, int(lane), sentence("passes ", lane)));
+    for (Json& span : spans) events.push_back(std::move(span));
+    const Json trace = {{"traceEvents", events},
+                        {"displayTimeUnit", "ms"},
+                        {"otherData",
+                         {{"input", profile.input},
+                          {"device", profile.device},
+                          {"driver", profile.driver},
+                          {"serialize", profile.serialize},
+                          {"counters", counters_of(profile.counted)}}}};
+    return trace.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string csv_of(const Profile& profile)
+{
+    std::ostringstream text;
+    text << "frame,step,pass,kernel,start_ms,gpu_ms,dispatches,bytes,barrier,frame_ms\n";
+    text << std::setprecision(9);
+    for (size_t i = 0; i < profile.frames.size(); ++i)
+        for (size_t step = 0; step < profile.frames[i].passes.size(); ++step) {
+            const gpu::PassReport& pass = profile.frames[i].passes[step];
+            text << i << ',' << step << ',' << field(pass.name) << ',' << field(pass.kernel) << ',';
+            if (pass.timed)
+                text << pass.start_ms << ',' << pass.gpu_ms;
+            else
+                text << ',';
+            text << ',' << pass.dispatches << ',' << pass.bytes << ',' << field(pass.barrier) << ','
+                 << profile.frames[i].wall_ms << '\n';
+        }
+    return text.str();
+}
+
+void check_graph_extension(const std::filesystem::path& path)
+{
+    const std::string extension = path.extension().string();
+    if (extension != ".dot" && extension != ".svg" && extension != ".json")
+        throw UsageError(
+            sentence("--graph is '", path.string(), "'; expected a name that ends in .dot, .svg or .json"));
+}
+
+void write_graph(const std::filesystem::path& path, const FrameGraph& graph)
+{
+    check_graph_extension(path);
+    const CompiledGraph compiled = graph.compile();
+    if (path.extension() == ".json") return write_text(path, to_json_text(graph, compiled));
+    const std::string graphviz = to_graphviz(graph, compiled);
+    write_text(path, path.extension() == ".svg" ? svg_of(graphviz) : graphviz);
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text)
+{
+    write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,65 @@
+#pragma once
+// What `shvr profile` measures, and the forms it is written in: a summary, a trace for Perfetto, a table, a graph.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+struct ProfiledFrame {
+    double begin_ms = 0.0, end_ms = 0.0;  ///< of the call that rendered it, on the host's clock, from the first frame
+    double wall_ms = 0.0;                 ///< from submission to completion
+    uint64_t device_bytes = 0;
+    std::vector<gpu::PassReport> passes;
+};
+
+struct Profile {
+    std::string input, device, driver;
+    glm::uvec2 size{0};
+    int warmup = 0;
+    bool serialize = false;
+    std::vector<gpu::PassReport> first_frame;  ///< the frame that also prepares: uploads, leap grid
+    std::vector<ProfiledFrame> frames;         ///< after the warm-up
+    std::vector<gpu::PassReport> counted;      ///< of one more frame, which counted its work
+    Json bytes;
+    FrameGraph graph;  ///< of the last frame
+    std::vector<std::string> warnings;
+};
+
+/// Of equal work done several times. p95: at least 95 % are at or below.
+struct Spread {
+    double minimum = 0.0, median = 0.0, p95 = 0.0, maximum = 0.0;
+};
+/// Nothing where there is no value.
+std::optional<Spread> spread_of(std::vector<double> values);
+
+/// The keys of README.md.
+Json summary_of(const Profile& profile);
+std::string text_of(const Json& summary);
+
+/// Chrome's trace events, which Perfetto reads. Times in microseconds from the first frame.
+std::string trace_of(const Profile& profile);
+/// One row per frame and pass.
+std::string csv_of(const Profile& profile);
+
+/// .dot, .svg (by the program `dot`) or .json, by the extension of `path`.
+void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
+/// Fails with a `UsageError` where the extension is none of these.
+void check_graph_extension(const std::filesystem::path& path);
+
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+/// Two summaries side by side: {"frame", "passes", "counters"}. Names are those of the files.
+Json difference_of(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name);
+std::string difference_text(const Json& difference);
+
+/// Lines of equally wide columns; the first is aligned to the left, the others to the right.
+std::string table_text(const std::vector<std::vector<std::string>>& rows);
+/// Three decimals, or "-" for null.
+std::string number_text(const Json& value);
+
+}  // namespace shvr::cli
