@@ -6,6 +6,24 @@
 
 namespace shvr {
 
+namespace {
+
+constexpr int64_t SIDE = gpu::BRICK_SIZE;
+
+/// Whether all voxels of a run lie in the volume, of which the brick holds `extent` voxels along each axis.
+bool is_inside(const MaskRun& run, const Size3& extent)
+{
+    const Size3 first(run.first % SIDE, run.first / SIDE % SIDE, run.first / (SIDE * SIDE));
+    const Size3 last(run.last % SIDE, run.last / SIDE % SIDE, run.last / (SIDE * SIDE));
+    // A run that goes on in the next row, or slice, passes through all that lies between the two.
+    const bool rows_are_full = extent.x == SIDE || run.first / SIDE == run.last / SIDE;
+    const bool slices_are_full = extent.y == SIDE || first.z == last.z;
+    return rows_are_full && slices_are_full && glm::all(glm::lessThan(first, extent)) &&
+           glm::all(glm::lessThan(last, extent));
+}
+
+}  // namespace
+
 int64_t MaskBrickChange::voxels() const
 {
     int64_t sum = 0;
@@ -13,18 +31,18 @@ int64_t MaskBrickChange::voxels() const
     return sum;
 }
 
-Mask::Mask(Size3 size) : size_(size), counts_((size + Size3(gpu::BRICK_SIZE - 1)) / Size3(gpu::BRICK_SIZE))
+Mask::Mask(Size3 size) : size_(size), counts_((size + Size3(SIDE - 1)) / Size3(SIDE))
 {
     voxels_by_group_[0] = size.x * size.y * size.z;
 }
 
 uint8_t Mask::at(const Size3& voxel) const
 {
-    const Size3 where = voxel / Size3(gpu::BRICK_SIZE);
+    SHVR_CHECK(glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size_)), "voxel ",
+               voxel.x, ", ", voxel.y, ", ", voxel.z);
+    const Size3 where = voxel / Size3(SIDE), in = voxel % Size3(SIDE);
     const MaskBrick* found = brick(where.x + counts_.x * (where.y + counts_.y * where.z));
-    if (!found) return 0;
-    const Size3 in = voxel % Size3(gpu::BRICK_SIZE);
-    return (*found)[size_t(in.x + gpu::BRICK_SIZE * (in.y + gpu::BRICK_SIZE * in.z))];
+    return found ? (*found)[size_t(in.x + SIDE * (in.y + SIDE * in.z))] : uint8_t{0};
 }
 
 const MaskBrick* Mask::brick(int64_t index) const
@@ -48,20 +66,28 @@ std::array<int64_t, 256> Mask::voxels_by_group() const
 void Mask::apply(const MaskBrickChange& change, Direction direction)
 {
     SHVR_CHECK(change.brick >= 0 && change.brick < counts_.x * counts_.y * counts_.z, "brick ", change.brick);
+    const Size3 where(change.brick % counts_.x, change.brick / counts_.x % counts_.y,
+                      change.brick / (counts_.x * counts_.y));
+    const Size3 extent = glm::min(Size3(SIDE), size_ - SIDE * where);
     std::unique_ptr<MaskBrick>& brick = bricks_[change.brick];
     if (!brick) brick = std::make_unique<MaskBrick>(MaskBrick{});
+    const bool forwards = direction == Direction::forwards;
+    int64_t free_from = 0;  // where the next run may begin
     for (const MaskRun& run : change.runs) {
-        const bool forwards = direction == Direction::forwards;
         const uint8_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
-        SHVR_CHECK(run.first <= run.last && run.last < MASK_BRICK_VOXELS, "run ", run.first, " ... ", run.last);
+        SHVR_CHECK(
+            free_from <= run.first && run.first <= run.last && run.last < MASK_BRICK_VOXELS && is_inside(run, extent),
+            "brick ", change.brick, " run ", run.first, " ... ", run.last);
         const auto begin = brick->begin() + run.first, end = brick->begin() + run.last + 1;
         SHVR_CHECK(std::all_of(begin, end, [&](uint8_t group) { return group == from; }), "brick ", change.brick,
                    " does not hold group ", int(from), " at ", run.first, " ... ", run.last);
         std::fill(begin, end, to);
         voxels_by_group_[from] -= end - begin;
         voxels_by_group_[to] += end - begin;
+        free_from = run.last + 1;
     }
-    if (std::all_of(brick->begin(), brick->end(), [](uint8_t group) { return group == 0; })) bricks_.erase(change.brick);
+    if (std::all_of(brick->begin(), brick->end(), [](uint8_t group) { return group == 0; }))
+        bricks_.erase(change.brick);
 }
 
 }  // namespace shvr

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -10,23 +11,40 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MOST_REGION_VOXELS = 256;  // a side
+constexpr int64_t SIDE = gpu::BRICK_SIZE;
+constexpr int64_t MOST_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count in whole words
 
-/// First and one past the last voxel whose centre lies within `reach` of `centre`, by the test itself: the estimate
-/// from floor() may be one off where the centre lies on the border.
 struct Range {
     int64_t begin, end;
 };
+
+/// The voxels of `within` from the first to the last for which `holds`, by that test itself: the estimate, `reach` to
+/// both sides of `centre`, only tells where to begin.
 template <class Test>
-Range range_where(double centre, double reach, int64_t count, const Test& holds)
+Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
-    int64_t begin = int64_t(std::floor(std::clamp(centre - reach, -2.0, double(count) + 2.0))) - 1;
-    int64_t end = int64_t(std::ceil(std::clamp(centre + reach, -2.0, double(count) + 2.0))) + 1;
-    begin = std::clamp<int64_t>(begin, 0, count);
-    end = std::clamp<int64_t>(end, 0, count);
-    while (begin < end && !holds(begin)) ++begin;
-    while (begin < end && !holds(end - 1)) --end;
-    return {begin, end};
+    constexpr double FAR_AWAY = 1 << 22;  // beyond it (or where it is not a number) the estimate is no help
+    Range range = within;
+    if (reach < FAR_AWAY && std::abs(centre) < FAR_AWAY) {
+        range.begin = std::clamp(int64_t(std::floor(centre - reach)) - 1, within.begin, within.end);
+        range.end = std::clamp(int64_t(std::ceil(centre + reach)) + 1, within.begin, within.end);
+    }
+    while (range.begin < range.end && !holds(range.begin)) ++range.begin;
+    while (range.begin < range.end && !holds(range.end - 1)) --range.end;
+    return range;
+}
+
+/// Bits `begin` ... `end` - 1 of a row, as they lie in its word `word`.
+uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
+{
+    const int64_t begin = std::max<int64_t>(span.begin - 32 * word, 0);
+    const int64_t end = std::min<int64_t>(span.end - 32 * word, 32);
+    return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
+}
+
+bool is_inside(const Size3& voxel, const Size3& size)
+{
+    return glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size));
 }
 
 }  // namespace
@@ -39,41 +57,42 @@ bool BrushRegion::contains(const Size3& voxel) const
     return at.x >= span.begin && at.x < span.end;
 }
 
-BrushRegion make_region(RegionShape shape, const glm::dvec3& centre, double radius_voxels, const glm::dvec3& spacing,
-                        const Size3& volume_size)
+BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
+                        const glm::dvec3& spacing, const Size3& volume_size)
 {
     if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))
         fail("brush radius is ", radius_voxels, " voxels; expected a number above 0");
-    if (!std::isfinite(centre.x + centre.y + centre.z)) fail("brush position is not finite; expected three numbers");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(centre_voxel[axis]))
+            fail("brush position along ", "xyz"[axis], " is ", centre_voxel[axis], "; expected a number");
     const double radius = radius_voxels * spacing.x;
     const auto squared = [&](int axis, int64_t voxel) {
-        const double distance = (double(voxel) + 0.5 - centre[axis]) * spacing[axis];
+        const double distance = (double(voxel) + 0.5 - centre_voxel[axis]) * spacing[axis];
         return distance * distance;
     };
     BrushRegion region;
     for (int axis = 0; axis < 3; ++axis) {
-        const Range range = range_where(centre[axis], radius / spacing[axis], volume_size[axis],
+        const Range range = range_where(centre_voxel[axis], radius / spacing[axis], {0, volume_size[axis]},
                                         [&](int64_t voxel) { return squared(axis, voxel) <= radius * radius; });
+        if (range.begin == range.end) return {};
         region.box.lower[axis] = range.begin;
         region.box.upper[axis] = range.end;
-        if (range.end - range.begin > MOST_REGION_VOXELS)
-            fail("brush radius is ", radius_voxels, " voxels: its region is ", range.end - range.begin,
-                 " voxels wide; expected at most ", MOST_REGION_VOXELS);
     }
     const Size3 size = region.box.size();
-    if (size.x * size.y * size.z == 0) {
-        region.box = {};
-        return region;
-    }
+    if (32 * region.words_per_row() * size.y * size.z > MOST_REGION_VOXELS)
+        fail("brush radius is ", radius_voxels, " voxels: its region is ", size.x, " x ", size.y, " x ", size.z,
+             " voxels; expected at most ", MOST_REGION_VOXELS,
+             " (256 x 256 x 256), each row filled up to a multiple of 32");
     region.rows.reserve(size_t(size.y * size.z));
     for (int64_t z = region.box.lower.z; z < region.box.upper.z; ++z)
         for (int64_t y = region.box.lower.y; y < region.box.upper.y; ++y) {
             Range row{region.box.lower.x, region.box.upper.x};
             if (shape == RegionShape::ball) {
-                const double yz = squared(1, y) + squared(2, z);
-                const auto inside = [&](int64_t x) { return squared(0, x) + yz <= radius * radius; };
-                while (row.begin < row.end && !inside(row.begin)) ++row.begin;
-                while (row.begin < row.end && !inside(row.end - 1)) --row.end;
+                const double left = radius * radius - squared(1, y) - squared(2, z);
+                const double reach = left <= 0.0 ? 0.0 : std::sqrt(left) / spacing.x;
+                row = range_where(centre_voxel.x, reach, row, [&](int64_t x) {
+                    return squared(0, x) + squared(1, y) + squared(2, z) <= radius * radius;
+                });
             }
             region.rows.push_back({int(row.begin - region.box.lower.x), int(row.end - region.box.lower.x)});
         }
@@ -100,67 +119,95 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 
 VoxelSelection::VoxelSelection(Size3 size)
     : size_(size), counts_((size + Size3(gpu::BRICK_SIZE - 1)) / Size3(gpu::BRICK_SIZE))
-{
-}
+{}
 
-// A brick's row along x is one word of the selection. A word of the region covers parts of two of them.
+// A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks that
+// a row of the region goes through are looked up once for all rows that go through the same ones.
 void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> words)
 {
-    constexpr int64_t SIDE = gpu::BRICK_SIZE;
     const Size3 size = region.box.size();
     const int64_t per_row = region.words_per_row();
     SHVR_CHECK(int64_t(words.size()) == per_row * size.y * size.z, words.size(), " words");
-    const auto merge = [&](int64_t x, int64_t y, int64_t z, uint32_t bits) {
+    if (words.empty()) return;
+    const int64_t first_brick = region.box.lower.x / SIDE, shift = region.box.lower.x % SIDE;
+    std::vector<Bits*> row_of_bricks(size_t(per_row + 1));
+    const auto merge = [&](int64_t i, int64_t y, int64_t z, uint32_t bits) {
         if (bits == 0) return;
-        const int64_t brick = x / SIDE + counts_.x * (y / SIDE + counts_.y * (z / SIDE));
-        bricks_[brick][size_t(y % SIDE + SIDE * (z % SIDE))] |= bits;
+        Bits*& brick = row_of_bricks[size_t(i)];
+        if (!brick) brick = &bricks_[first_brick + i + counts_.x * (y / SIDE + counts_.y * (z / SIDE))];
+        (*brick)[size_t(y % SIDE + SIDE * (z % SIDE))] |= bits;
     };
-    for (int64_t z = 0; z < size.z; ++z)
-        for (int64_t y = 0; y < size.y; ++y)
+    size_t row = 0;
+    for (int64_t z = region.box.lower.z; z < region.box.upper.z; ++z)
+        for (int64_t y = region.box.lower.y; y < region.box.upper.y; ++y, ++row) {
+            if (y == region.box.lower.y || y % SIDE == 0)
+                std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                const uint32_t word = words[size_t(w + per_row * (y + size.y * z))];
-                if (word == 0) continue;
-                const Size3 voxel = region.box.lower + Size3(32 * w, y, z);
-                const int64_t shift = voxel.x % SIDE;
-                merge(voxel.x, voxel.y, voxel.z, word << shift);
-                if (shift > 0) merge(voxel.x + SIDE - shift, voxel.y, voxel.z, word >> (SIDE - shift));
+                // Where spans were honoured already this changes nothing; where not, nothing is selected outside.
+                const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
+                merge(w, y, z, word << shift);
+                if (shift > 0) merge(w + 1, y, z, word >> (SIDE - shift));
             }
+        }
 }
 
 bool VoxelSelection::contains(const Size3& voxel) const
 {
-    const Size3 where = voxel / Size3(gpu::BRICK_SIZE), in = voxel % Size3(gpu::BRICK_SIZE);
+    if (!is_inside(voxel, size_)) return false;
+    const Size3 where = voxel / Size3(SIDE), in = voxel % Size3(SIDE);
     const auto found = bricks_.find(where.x + counts_.x * (where.y + counts_.y * where.z));
-    return found != bricks_.end() && (found->second[size_t(in.y + gpu::BRICK_SIZE * in.z)] >> in.x & 1);
+    return found != bricks_.end() && (found->second[size_t(in.y + SIDE * in.z)] >> in.x & 1) != 0;
 }
 
 int64_t VoxelSelection::count() const
 {
     int64_t sum = 0;
     for (const auto& [index, bits] : bricks_)
-        for (uint32_t word : bits) sum += std::popcount(word);
+        for (const uint32_t word : bits) sum += std::popcount(word);
     return sum;
 }
 
+namespace {
+
+/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`. Joins the last run where it can.
+void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, uint8_t group)
+{
+    while (first < end) {
+        const uint8_t old = before[first];
+        size_t next = first + 1;
+        while (next < end && before[next] == old) ++next;
+        if (old != group) {
+            const auto last = uint16_t(next - 1);
+            if (!runs.empty() && runs.back().last + size_t{1} == first && runs.back().before == old)
+                runs.back().last = last;
+            else
+                runs.push_back({uint16_t(first), last, old, group});
+        }
+        first = next;
+    }
+}
+
+}  // namespace
+
 std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group)
 {
-    static const MaskBrick UNPAINTED{};
+    static constexpr MaskBrick UNPAINTED{};
     std::vector<Change> changes;
     for (const auto& [index, bits] : selection.bricks()) {
         const MaskBrick* painted = mask.brick(index);
-        const MaskBrick& before = painted ? *painted : UNPAINTED;
+        if (!painted && group == 0) continue;
         MaskBrickChange change{.brick = index, .runs = {}};
         for (size_t row = 0; row < bits.size(); ++row)
-            for (uint32_t left = bits[row]; left != 0; left &= left - 1) {
-                const auto voxel = uint16_t(row * 32 + size_t(std::countr_zero(left)));
-                if (before[voxel] == group) continue;
-                if (!change.runs.empty() && change.runs.back().last + 1 == voxel &&
-                    change.runs.back().before == before[voxel])
-                    ++change.runs.back().last;
-                else
-                    change.runs.push_back({voxel, voxel, before[voxel], group});
+            for (uint32_t left = bits[row]; left != 0;) {
+                const int first = std::countr_zero(left), length = std::countr_one(left >> first);
+                append_runs(change.runs, painted ? *painted : UNPAINTED, 32 * row + size_t(first),
+                            32 * row + size_t(first + length), group);
+                // In two steps: a shift by 32 would leave the word as it is.
+                left = first + length == 32 ? 0 : left >> (first + length) << (first + length);
             }
-        if (!change.runs.empty()) changes.emplace_back(std::move(change));
+        if (change.runs.empty()) continue;
+        change.runs.shrink_to_fit();  // the history keeps it
+        changes.emplace_back(std::move(change));
     }
     return changes;
 }

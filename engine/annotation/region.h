@@ -19,8 +19,8 @@ namespace shvr {
 enum class RegionShape { ball, box };
 
 struct BrushRegion {
-    VoxelBox box;                          ///< cut at the volume's border; may be empty
-    std::vector<gpu::RowSpan> rows;        ///< box.size().y * box.size().z spans, y fastest, x relative to box.lower.x
+    VoxelBox box;                    ///< cut at the volume's border; may be empty
+    std::vector<gpu::RowSpan> rows;  ///< box.size().y * box.size().z spans, y fastest, x relative to box.lower.x
     bool contains(const Size3& voxel) const;
     /// 32-bit words per row: bit b of word w is voxel x = box.lower.x + 32 w + b.
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -16,9 +19,24 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int64_t MOST_SCRIPT_BYTES = int64_t(256) << 20;
+constexpr int64_t MOST_SCRIPT_BYTES = int64_t{256} << 20;
 
-/// Reads the keys of one line, each exactly once, and refuses what is left over.
+/// A key or value as a message shows it: at most 60 characters of ASCII, on one line.
+std::string shown(const Json& value)
+{
+    constexpr size_t LONGEST = 60;
+    const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() <= LONGEST ? text : text.substr(0, LONGEST - 3) + "...";
+}
+
+/// The same for a key, without its quotation marks.
+std::string shown_key(const std::string& key)
+{
+    const std::string quoted = shown(key);
+    return quoted.back() == '"' ? quoted.substr(1, quoted.size() - 2) : quoted.substr(1);
+}
+
+/// Reads the keys of one line and refuses what is unknown.
 class Fields {
 public:
     Fields(const Json& object, std::string where) : object_(object), where_(std::move(where)) {}
@@ -34,9 +52,10 @@ public:
         for (const auto& [key, value] : object_.items()) {
             if (key == "op" || std::any_of(names.begin(), names.end(), [&, &k = key](const char* n) { return k == n; }))
                 continue;
+            if (names.size() == 0) refuse("unknown key ", shown_key(key), "; expected none but op");
             std::string known;
             for (const char* name : names) known += (known.empty() ? "" : ", ") + std::string(name);
-            refuse("unknown key ", key, "; expected one of: ", known.empty() ? "none but op" : known);
+            refuse("unknown key ", shown_key(key), "; expected one of: ", known);
         }
     }
 
@@ -55,17 +74,16 @@ public:
     double number(const char* key, const Json& value) const
     {
         if (!value.is_number() || !std::isfinite(value.get<double>()))
-            refuse("key ", key, " is ", value.dump(), "; expected a number");
+            refuse("key ", key, " is ", shown(value), "; expected a number");
         return value.get<double>();
     }
-    int64_t whole(const char* key, const Json& value, int64_t least, int64_t most) const
+    int64_t whole(const std::string& key, const Json& value, int64_t least, int64_t most) const
     {
+        // What does not fit into int64_t is unsigned and larger than any `most`.
         const bool fits = value.is_number_integer() &&
-                          (value.is_number_unsigned() ? value.get<uint64_t>() <= uint64_t(most)
-                                                      : value.get<int64_t>() <= most) &&
-                          (value.is_number_unsigned() || value.get<int64_t>() >= least);
-        if (!fits || value.get<int64_t>() < least)
-            refuse("key ", key, " is ", value.dump(), "; expected a whole number from ", least, " to ", most);
+                          !(value.is_number_unsigned() && value.get<uint64_t>() > uint64_t(most)) &&
+                          value.get<int64_t>() >= least && value.get<int64_t>() <= most;
+        if (!fits) refuse("key ", key, " is ", shown(value), "; expected a whole number from ", least, " to ", most);
         return value.get<int64_t>();
     }
     /// The index of the value among `names`.
@@ -77,19 +95,22 @@ public:
             if (value.is_string() && value.get<std::string>() == name) return index;
             known += (index++ == 0 ? "" : ", ") + std::string(name);
         }
-        refuse("key ", key, " is ", value.dump(), "; expected one of: ", known);
+        refuse("key ", key, " is ", shown(value), "; expected one of: ", known);
     }
-    std::vector<glm::dvec3> path(const char* key, const Json& value) const
+    glm::dvec3 point(const std::string& key, const Json& value) const
     {
-        const auto is_point = [](const Json& p) {
-            return p.is_array() && p.size() == 3 && std::all_of(p.begin(), p.end(), [](const Json& c) {
-                       return c.is_number() && std::isfinite(c.get<double>());
-                   });
-        };
-        if (!value.is_array() || value.empty() || !std::all_of(value.begin(), value.end(), is_point))
-            refuse("key ", key, " is ", value.dump().substr(0, 60), "; expected [[x,y,z], ...] with at least one point");
+        const auto is_coordinate = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
+        if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), is_coordinate))
+            refuse("key ", key, " is ", shown(value), "; expected three numbers [x,y,z]");
+        return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+    }
+    std::vector<glm::dvec3> path(const std::string& key, const Json& value) const
+    {
+        if (!value.is_array() || value.empty())
+            refuse("key ", key, " is ", shown(value), "; expected [[x,y,z], ...] with at least one point");
         std::vector<glm::dvec3> points;
-        for (const Json& p : value) points.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+        points.reserve(value.size());
+        for (const Json& p : value) points.push_back(point(sentence(key, ".", points.size()), p));
         return points;
     }
 
@@ -126,20 +147,28 @@ int read_count(const Fields& fields)
     return count ? int(fields.whole("count", *count, 1, 1000000000)) : 1;
 }
 
+/// The group that a key such as "3" names; nothing where it names none.
+std::optional<uint8_t> group_of(const std::string& key)
+{
+    const bool is_number = !key.empty() && key.size() <= 3 &&
+                           key.find_first_not_of("0123456789") == std::string::npos &&
+                           (key.size() == 1 || key[0] != '0');
+    if (!is_number || std::stoi(key) > 255) return {};
+    return uint8_t(std::stoi(key));
+}
+
 ExpectOp read_expect(const Fields& fields)
 {
-    constexpr int64_t MOST = int64_t(1) << 62;
+    constexpr int64_t MOST = int64_t{1} << 62;
     fields.allow({"voxels_in_group", "nodes", "internodes"});
     ExpectOp op;
     if (const Json* groups = fields.find("voxels_in_group")) {
         if (!groups->is_object())
-            fields.refuse("key voxels_in_group is ", groups->dump(), "; expected an object such as {\"3\": 1234}");
-        for (const auto& [name, voxels] : groups->items()) {
-            const bool is_number = !name.empty() && name.size() <= 3 &&
-                                   name.find_first_not_of("0123456789") == std::string::npos && std::stoi(name) <= 255;
-            if (!is_number) fields.refuse("key voxels_in_group.", name, " is no group; expected 0 ... 255");
-            op.voxels_in_group[uint8_t(std::stoi(name))] =
-                fields.whole(("voxels_in_group." + name).c_str(), voxels, 0, MOST);
+            fields.refuse("key voxels_in_group is ", shown(*groups), "; expected an object such as {\"3\": 1234}");
+        for (const auto& [key, voxels] : groups->items()) {
+            const std::optional<uint8_t> group = group_of(key);
+            if (!group) fields.refuse("key voxels_in_group.", shown_key(key), " is no group; expected 0 ... 255");
+            op.voxels_in_group[*group] = fields.whole("voxels_in_group." + key, voxels, 0, MOST);
         }
     }
     if (const Json* nodes = fields.find("nodes")) op.nodes = fields.whole("nodes", *nodes, 0, MOST);
@@ -158,11 +187,47 @@ ScriptOp read_op(const Fields& fields)
         fields.allow({});
         return SaveOp{};
     }
-    const char* const later[] = {"density", "node", "select", "deselect", "link", "move", "delete", "group",
-                                 "select_segment"};
+    const char* const later[] = {"density", "node",   "select", "deselect",      "link",
+                                 "move",    "delete", "group",  "select_segment"};
     const bool is_later = std::any_of(std::begin(later), std::end(later), [&](const char* op) { return name == op; });
-    fields.refuse("op ", name.dump(), is_later ? " is not supported by this version" : " is unknown",
+    fields.refuse("op ", shown(name), is_later ? " is not supported by this version" : " is unknown",
                   "; known: paint, undo, redo, save, expect");
+}
+
+/// Refuses what the parser itself lets pass: a key given twice, of which it would silently keep the last.
+class Strictness {
+public:
+    explicit Strictness(const std::string& where) : where_(&where) {}
+
+    bool operator()(int depth, Json::parse_event_t event, const Json& parsed)
+    {
+        constexpr int DEEPEST_NESTING = 8;
+        if (depth > DEEPEST_NESTING)
+            fail(*where_, ": nests deeper than ", DEEPEST_NESTING, " levels; expected at most 3");
+        if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+        if (event == Json::parse_event_t::object_end) keys_.pop_back();
+        if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            fail(*where_, ": key ", shown_key(parsed.get<std::string>()), " appears twice; expected once");
+        return true;
+    }
+
+private:
+    const std::string* where_;
+    std::vector<std::set<std::string>> keys_;
+};
+
+Json parse_line(const std::string& line, const std::string& where)
+{
+    Json object;
+    try {
+        object = Json::parse(line, Strictness(where));
+    } catch (const Json::parse_error& error) {
+        fail(where, ": is not JSON from character ", error.byte, " on; expected one object on the line");
+    } catch (const Json::out_of_range&) {
+        fail(where, ": holds a number too large to represent; expected numbers up to 1.8e308");
+    }
+    if (!object.is_object()) fail(where, ": is ", shown(object), "; expected an object such as {\"op\":\"save\"}");
+    return object;
 }
 
 }  // namespace
@@ -176,9 +241,7 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& path)
         const size_t start = line.find_first_not_of(" \t\r");
         if (start == std::string::npos || line.compare(start, 2, "//") == 0) continue;
         const std::string where = sentence(path.string(), ":", number);
-        Json object = Json::parse(line, nullptr, false);
-        if (object.is_discarded()) fail(where, ": is not JSON; expected one object on the line");
-        if (!object.is_object()) fail(where, ": is ", object.type_name(), "; expected an object such as {\"op\":\"save\"}");
+        const Json object = parse_line(line, where);
         script.push_back({number, read_op(Fields(object, where))});
     }
     return script;

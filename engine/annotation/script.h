@@ -16,14 +16,18 @@ enum class Brush { fill, flood, speckle };
 struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
-    uint8_t group = 1;                 ///< 0 erases
-    double threshold = 0.0;            ///< intensity units of the file; at or above
-    double radius_voxels = 6.0;        ///< along x
-    int connectivity = 6;              ///< 6 or 26
-    std::vector<glm::dvec3> path;      ///< voxel coordinates
+    uint8_t group = 1;             ///< 0 erases
+    double threshold = 0.0;        ///< intensity units of the file; at or above
+    double radius_voxels = 6.0;    ///< along x
+    int connectivity = 6;          ///< 6 or 26
+    std::vector<glm::dvec3> path;  ///< voxel coordinates
 };
-struct UndoOp { int count = 1; };
-struct RedoOp { int count = 1; };
+struct UndoOp {
+    int count = 1;
+};
+struct RedoOp {
+    int count = 1;
+};
 struct SaveOp {};
 struct ExpectOp {
     std::map<uint8_t, int64_t> voxels_in_group;

@@ -398,8 +398,9 @@ double Executor::Frame::submit()
     fence = created;
     SHVR_VK(vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX));
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
+    // Barriers are global, so they settle imports that no living pass touches, too.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
-        if (compiled.used[i]) object(i).state = compiled.final_states[i];
+        if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
     return wall.count();
 }
 

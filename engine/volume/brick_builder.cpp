@@ -163,8 +163,8 @@ private:
 
 // ---- Who does what, when --------------------------------------------------------------------------------------------
 
-/// The work in the order in which it is handed out: for each layer of bricks its reads, then its rows. No task waits for
-/// a later one, so workers that take them in turn never wait for each other in a circle.
+/// The work in the order in which it is handed out: for each layer of bricks its reads, then its rows. No task waits
+/// for a later one, so workers that take them in turn never wait for each other in a circle.
 ///
 /// Two slabs are kept: while the rows of one are built, the other is read. A read waits until the rows that used its
 /// slab are built; a row waits for the reads of its slab, and for `take` to have a place free among `rows_`.

@@ -13,12 +13,12 @@ namespace shvr {
 /// the nearest voxel inside. `cell_ranges` holds, for each of the gpu::BRICK_CELLS^3 cells, minimum and maximum code
 /// over every voxel that a trilinear sample inside the cell can touch (the cell's voxels and one voxel around).
 struct BrickTexels {
-    std::array<uint16_t, gpu::BRICK_TEXELS * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS> codes;
+    std::array<uint16_t, size_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS> codes;
     struct Range {
         uint16_t minimum, maximum;
         bool operator==(const Range&) const = default;
     };
-    std::array<Range, gpu::BRICK_CELLS * gpu::BRICK_CELLS * gpu::BRICK_CELLS> cell_ranges;
+    std::array<Range, size_t{gpu::BRICK_CELLS} * gpu::BRICK_CELLS * gpu::BRICK_CELLS> cell_ranges;
     Range range;  ///< over the whole brick, apron included
 };
 
@@ -26,9 +26,9 @@ struct BrickTexels {
 glm::ivec3 brick_counts(const Size3& size);
 
 /// Builds every brick of the volume, in order of their index (x fastest), reading the source slab by slab, each slice
-/// once: two slabs of 34 slices are held at a time, as the source gives them, and a few rows of bricks. `take` is called
-/// once per brick, on the calling thread and in order, while the next bricks are built on `threads` workers, which also
-/// read. An exception of the source or of `take` ends the work and is thrown on.
+/// once: two slabs of 34 slices are held at a time, as the source gives them, and a few rows of bricks. `take` is
+/// called once per brick, on the calling thread and in order, while the next bricks are built on `threads` workers,
+/// which also read. An exception of the source or of `take` ends the work and is thrown on.
 void build_bricks(const VolumeSource& source, const IntensityWindow& window, int threads,
                   const std::function<void(const glm::ivec3& brick, const BrickTexels& texels)>& take);
 

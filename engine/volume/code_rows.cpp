@@ -53,8 +53,8 @@ void convert_any(std::span<const std::byte> voxels, std::span<uint16_t> codes, c
         for (size_t i = 0; i < BLOCK; ++i) {
             double code = (static_cast<double>(in[i]) - lower) * factor;
             code = code > 0.0 ? code : 0.0;  // NaN too
-            code = code < 65535.0 ? code : 65535.0;
-            out[i] = static_cast<uint16_t>(static_cast<int32_t>(code + 0.5));
+            code = (code < 65535.0 ? code : 65535.0) + 0.5;
+            out[i] = static_cast<uint16_t>(static_cast<int32_t>(code));
         }
     });
 }

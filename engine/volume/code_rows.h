@@ -7,9 +7,9 @@
 
 namespace shvr {
 
-/// code = round((voxel - lower) * codes_per_unit), clamped to 0 ... 65535 (integers above the window: to the last one that
-/// has a code); NaN becomes 0. `voxels` has native byte order
-/// and need not be aligned; it holds exactly `codes.size()` voxels.
+/// code = round((voxel - lower) * codes_per_unit), clamped to 0 ... 65535 (integers above the window: to the last one
+/// that has a code); NaN becomes 0. `voxels` has native byte order and need not be aligned; it holds exactly
+/// `codes.size()` voxels.
 class CodeRows {
 public:
     CodeRows(VoxelType type, const IntensityWindow& window);

@@ -20,8 +20,8 @@ int64_t floor_of(double coordinate)
     return static_cast<int64_t>(std::floor(coordinate));
 }
 
-/// Every fourth cell of 8^3 voxels, by chance, holds one ball. Balls keep a voxel's distance from their cell's faces, so
-/// that no two of them touch: each is one component. All lengths are sixteenths of a voxel: distances are exact.
+/// Every fourth cell of 8^3 voxels, by chance, holds one ball. Balls keep a voxel's distance from their cell's faces,
+/// so that no two of them touch: each is one component. All lengths are sixteenths of a voxel: distances are exact.
 class Speckles final : public ProceduralKind {
 public:
     explicit Speckles(uint32_t seed) : seed_(seed) {}

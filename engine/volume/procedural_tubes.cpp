@@ -1,6 +1,6 @@
 // Tubes like the vascular bundles of a stem: eight bent ones from the bottom to the top, fanning out, and five thinner
-// ones that branch off. Their centre lines are cubic Bezier curves cut into short straight segments; a tube is what lies
-// within its radius of them. Noise is one random number a voxel; between voxel centres it does not vary.
+// ones that branch off. Their centre lines are cubic Bezier curves cut into short straight segments; a tube is what
+// lies within its radius of them. Noise is one random number a voxel; between voxel centres it does not vary.
 
 #include <algorithm>
 #include <array>

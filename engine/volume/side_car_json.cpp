@@ -1,5 +1,5 @@
-// Our own side-car: {"size": [x,y,z], "type": "int16", "endian": "little", "offset": 0, "spacing": [x,y,z], "unit": "um"}.
-// Size and type are required.
+// Our own side-car; size and type are required:
+// {"size": [x,y,z], "type": "int16", "endian": "little", "offset": 0, "spacing": [x,y,z], "unit": "um"}
 
 #include <cmath>
 

@@ -57,7 +57,8 @@ VolumeStatistics measure_integers(const VolumeSource& source)
     });
 
     std::vector<std::pair<double, int64_t>> present;  // value, how often; ascending
-    for (int value = std::numeric_limits<T>::min(); value <= std::numeric_limits<T>::max(); ++value) {
+    constexpr int LOWEST = std::is_signed_v<T> ? -static_cast<int>(VALUES / 2) : 0;
+    for (int value = LOWEST; value < LOWEST + static_cast<int>(VALUES); ++value) {
         int64_t count = 0;
         for (size_t table = 0; table < TABLES; ++table) {
             count += counts[table * VALUES + static_cast<Unsigned>(value)];

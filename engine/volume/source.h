@@ -29,8 +29,8 @@ private:
     VolumeInfo info_;
 };
 
-/// One pass over the whole volume (float32: a second one for the histogram, whose range the first one finds) in slabs of
-/// bounded size: at most 32 MiB, at least one row. A volume without a finite voxel has minimum = maximum = mean = 0.
+/// One pass over the whole volume (float32: a second one for the histogram, whose range the first one finds) in slabs
+/// of bounded size: at most 32 MiB, at least one row. A volume without a finite voxel has minimum = maximum = mean = 0.
 VolumeStatistics measure(const VolumeSource& source);
 
 }  // namespace shvr

@@ -234,7 +234,8 @@ std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path)
     info.size = fields.size("sizes");
     info.type = fields.type("type");
     read_spacing(fields, info);
-    return open_raw_voxels(std::move(info), place_voxels(header, info.type));
+    const RawVoxels voxels = place_voxels(header, info.type);
+    return open_raw_voxels(std::move(info), voxels);
 }
 
 }  // namespace shvr

@@ -71,7 +71,8 @@ void store(std::span<const double> values, std::byte* voxels)
             voxel = static_cast<T>(value);
         } else {
             const int shift = std::is_same_v<T, int8_t> ? -128 : 0;
-            voxel = static_cast<T>(static_cast<int>(value + 0.5) + shift);
+            const double raised = value + 0.5;
+            voxel = static_cast<T>(static_cast<int>(raised) + shift);
         }
         std::memcpy(voxels, &voxel, sizeof(T));
         voxels += sizeof(T);

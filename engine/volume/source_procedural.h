@@ -11,8 +11,9 @@ namespace shvr {
 /// A scalar field in voxel coordinates (centre of voxel i at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// d value / d voxel; empty where the field has no useful derivative (speckles). That of `tubes` leaves out the noise,
-    /// which is constant within a voxel and jumps at its faces. Where the field has a kink, it is the slope of one side.
+    /// d value / d voxel; empty where the field has no useful derivative (speckles). That of `tubes` leaves out the
+    /// noise, which is constant within a voxel and jumps at its faces. Where the field has a kink, it is the slope of
+    /// one side.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
 
@@ -25,15 +26,16 @@ struct ProceduralSpec {
     std::string unit = "voxel";
 };
 
-/// Voxels are the field at their centres, rounded half up; in int8 every intensity is lower by 128, so that none is cut.
+/// Voxels are the field at their centres, rounded half up; in int8 every intensity is lower by 128, so that none is
+/// cut.
 ///
 /// constant        every voxel 128.
 /// ramp            rises along x from 0 at voxel centre 0 to 250 at the last centre.
-/// sphere          radial ramp: 125 on the sphere of radius 0.35 * shortest side, slope 250 over a quarter of that side,
-///                 clamped.
+/// sphere          radial ramp: 125 on the sphere of radius 0.35 * shortest side, slope 250 over a quarter of that
+///                 side, clamped.
 /// marschner_lobb  Marschner and Lobb 1994, f_M = 6, alpha = 0.25, over [-1,1]^3, scaled to 0 ... 250.
-/// tubes           bent and branching tubes of several radii (profile soft over 2 voxels): background 40, tubes up to 220,
-///                 normal noise with a standard deviation of 3 % of the difference.
+/// tubes           bent and branching tubes of several radii (profile soft over 2 voxels): background 40, tubes up to
+///                 220, normal noise with a standard deviation of 3 % of the difference.
 /// speckles        small balls scattered at random, no two of which touch: background 20, balls 200.
 /// fog             smooth value noise, 60 ... 160 everywhere: nothing to skip.
 /// checker         one voxel 50, its neighbours 200: the highest frequency a grid holds. Trilinear between voxels.

@@ -77,7 +77,7 @@ TEST_CASE("every type and byte order comes back from a raw file as it was writte
     const auto check = [&]<class T>(VoxelType type, T) {
         for (const bool big_endian : {false, true}) {
             for (const int64_t offset : {0, 13}) {
-                const Sample<T> sample = sample_of<T>(7 * 5 * 3, big_endian);
+                const Sample<T> sample = sample_of<T>(105, big_endian);
                 const fs::path path =
                     folder.write("a.raw", std::string(static_cast<size_t>(offset), '?') + sample.file);
                 const auto source = open_raw(path, {{7, 5, 3}, type, big_endian, offset});
@@ -99,7 +99,7 @@ TEST_CASE("any box of a raw file is what the whole holds there, from several thr
 {
     const TemporaryFolder folder;
     const Size3 size(9, 7, 5);
-    const Sample<uint16_t> sample = sample_of<uint16_t>(9 * 7 * 5, true);
+    const Sample<uint16_t> sample = sample_of<uint16_t>(315, true);
     const auto source = open_raw(folder.write("a.raw", sample.file), {size, VoxelType::uint16, true});
     const auto check_boxes = [&](unsigned seed) {
         std::mt19937 random(seed);
@@ -204,7 +204,7 @@ TEST_CASE("a raw layout larger than any file is refused at once")
 TEST_CASE("a raw file cut short while it is open is an error, not a signal")
 {
     const TemporaryFolder folder;
-    const fs::path path = folder.write("a.raw", std::string(64 * 64 * 64, 'x'));
+    const fs::path path = folder.write("a.raw", std::string(262144, 'x'));
     const auto source = open_raw(path, {Size3(64), VoxelType::uint8});
     fs::resize_file(path, 1000);
     CHECK(error_of([&] { voxels_of<uint8_t>(*source); }) ==
@@ -317,7 +317,7 @@ TEST_CASE("a JSON side-car is read strictly")
         CAPTURE(bad);
         const std::string start = key == "size" ? R"({"type": "uint8", )" : R"({"size": [5,4,3], )";
         const std::string said = refused(start + bad + "}");
-        CHECK((said.starts_with(at + ": " + key + " is ") || contains(said, "is not valid JSON")));
+        CHECK((said.starts_with(sentence(at, ": ", key, " is ")) || contains(said, "is not valid JSON")));
         CHECK(contains(said, "expected"));
     }
 }

@@ -33,6 +33,8 @@ public:
 
     std::filesystem::path write(const std::string& name, std::string_view content) const
     {
+        // A new file instead of an emptied one: some file systems wait for the disk when those are closed.
+        std::filesystem::remove(path / name);
         std::ofstream file(path / name, std::ios::binary);
         file.write(content.data(), static_cast<std::streamsize>(content.size()));
         return path / name;

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdio>
 
-#include "engine/base/atomic_file.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/volume/source_procedural.h"
 #include "tools/cli/cli.h"
@@ -80,10 +79,13 @@ void run(const Options& options)
     if (error) fail(options.folder, ": cannot be made: ", error.message());
     const std::filesystem::path header = folder / (options.kind + ".nhdr");
     const std::filesystem::path voxels = folder / (options.kind + ".raw");
-    write_voxels(voxels, *source);
-    // Last, so that a header never speaks of voxels that are not there yet.
     const std::string text = nrrd_header(source->info(), voxels.filename().string());
-    write_file_atomically(header, std::as_bytes(std::span(text)));
+    // Begun first, so that a name that cannot be written is refused before the long work; there last, so that no header
+    // speaks of voxels that are still to come.
+    AtomicWriter header_writer(header);
+    header_writer.append(std::as_bytes(std::span(text)));
+    write_voxels(voxels, *source);
+    header_writer.commit();
 
     if (!options.common.json) return say(options.common, header.string());
     const Size3 size = source->info().size;

@@ -22,7 +22,8 @@ void run(Options options)
     if (!options.transfer_function.empty())
         options.common.settings.push_back("transfer_function=" + read_text(options.transfer_function, 1 << 20));
     Opened opened = open(options.input, options.common);
-    const Camera camera = camera_named(opened.session, options.camera, opened.source->info());
+    const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
+    const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const Picture picture = opened.renderer->render(opened.session, camera, {.count_work = options.common.json});
     if (std::filesystem::path(options.output).extension() == ".pfm")
         write_pfm(options.output, picture.image);

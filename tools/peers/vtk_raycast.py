@@ -44,6 +44,7 @@ def open_volume(vtk, path):
     reader = vtk.vtkImageReader2()
     reader.SetFileName(str(path.parent / fields["data file"]))
     reader.SetFileDimensionality(3)
+    reader.FileLowerLeftOn()  # rows stay in the order of the file
     reader.SetDataScalarType(types[fields["type"]])
     reader.SetDataExtent(0, sizes[0] - 1, 0, sizes[1] - 1, 0, sizes[2] - 1)
     reader.SetDataSpacing(spacing)
