@@ -17,11 +17,11 @@ SHARED_CONST uint LEAP_LIMIT = 15u;
 struct OccupancyParams {
     uvec3 cell_counts;
     uvec3 brick_counts;
-    float table_scale;   ///< table coordinate = normalised code * table_scale + table_bias
+    float table_scale;  ///< table coordinate = normalised code * table_scale + table_bias
     float table_bias;
     uint table_entries;
-    uint skipping;       ///< 0: every cell counts as occupied
-    uvec3 mask_slots;    ///< atlas of mask bricks; used with a mask
+    uint skipping;     ///< 0: every cell counts as occupied
+    uvec3 mask_slots;  ///< atlas of mask bricks; used with a mask
 };
 
 struct LeapDistanceParams {

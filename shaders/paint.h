@@ -21,12 +21,12 @@ struct RowSpan {
 };
 
 struct RegionParams {
-    uvec3 origin;           ///< voxel of the region's box
-    uvec3 size;             ///< voxels
+    uvec3 origin;  ///< voxel of the region's box
+    uvec3 size;    ///< voxels
     uint words_per_row;
-    uint threshold_code;    ///< 0 ... 65536
-    uint connectivity;      ///< 6 or 26
-    uint seed;              ///< index of the seed's bit; flood fill
+    uint threshold_code;  ///< 0 ... 65536
+    uint connectivity;    ///< 6 or 26
+    uint seed;            ///< index of the seed's bit; flood fill
     uvec3 brick_counts;
 };
 

@@ -18,30 +18,30 @@ struct RaycastParams {
     vec3 far_dx;
     vec3 far_dy;
     uvec2 pixels;
-    vec3 box_lower;        ///< what is drawn of the volume, voxel space
+    vec3 box_lower;  ///< what is drawn of the volume, voxel space
     vec3 box_upper;
-    vec3 spacing;          ///< reference lengths per voxel
+    vec3 spacing;  ///< reference lengths per voxel
     uvec3 cell_counts;
     uvec3 brick_counts;
-    uvec3 mask_slots;      ///< atlas of mask bricks
-    float step;            ///< reference lengths
-    float opacity_limit;   ///< a ray stops at or above it
-    float table_scale;     ///< table coordinate = normalised code * table_scale + table_bias
+    uvec3 mask_slots;     ///< atlas of mask bricks
+    float step;           ///< reference lengths
+    float opacity_limit;  ///< a ray stops at or above it
+    float table_scale;    ///< table coordinate = normalised code * table_scale + table_bias
     float table_bias;
     uint table_entries;
-    vec4 background;       ///< linear light, straight alpha
-    vec3 light;            ///< unit vector towards the light, volume space
+    vec4 background;  ///< linear light, straight alpha
+    vec3 light;       ///< unit vector towards the light, volume space
     float ambient;
     float diffuse;
     float specular;
     float shininess;
-    float gradient_fade;   ///< normalised codes per reference length
+    float gradient_fade;  ///< normalised codes per reference length
 };
 
 /// What a voxel of a colour group looks like, for one step.
 struct GroupLook {
     vec3 color;
-    float opacity;         ///< of one full step
+    float opacity;  ///< of one full step
 };
 
 SHARED_END

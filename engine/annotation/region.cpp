@@ -42,6 +42,13 @@ uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
     return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
 }
 
+/// Along a stroke, at least 1: a point given twice stays two positions.
+double steps_between(const glm::dvec3& a, const glm::dvec3& b)
+{
+    const glm::dvec3 way = glm::abs(b - a);
+    return std::max(1.0, std::ceil(std::max({way.x, way.y, way.z})));
+}
+
 bool is_inside(const Size3& voxel, const Size3& size)
 {
     return glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size));
@@ -99,27 +106,29 @@ BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, doubl
     return region;
 }
 
+double stroke_position_count(std::span<const glm::dvec3> path)
+{
+    double count = path.empty() ? 0.0 : 1.0;
+    for (size_t i = 1; i < path.size(); ++i) count += steps_between(path[i - 1], path[i]);
+    return count;
+}
+
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 {
-    constexpr double MOST_POSITIONS = 1e6;
+    const double count = stroke_position_count(path);
+    if (!(count <= double(MOST_STROKE_POSITIONS)))
+        fail("the stroke makes ", count, " positions a voxel apart; expected at most ", MOST_STROKE_POSITIONS);
     std::vector<glm::dvec3> positions;
+    positions.reserve(size_t(count));
     for (size_t i = 0; i < path.size(); ++i) {
-        if (i > 0) {
-            const glm::dvec3 way = glm::abs(path[i] - path[i - 1]);
-            const double steps = std::ceil(std::max({way.x, way.y, way.z}));
-            if (!(steps + double(positions.size()) < MOST_POSITIONS))
-                fail("the stroke is ", steps, " voxels long; expected fewer than ", MOST_POSITIONS, " in all");
-            for (double step = 1.0; step < steps; ++step)
-                positions.push_back(glm::mix(path[i - 1], path[i], step / steps));
-        }
+        const double steps = i == 0 ? 1.0 : steps_between(path[i - 1], path[i]);
+        for (double step = 1.0; step < steps; ++step) positions.push_back(glm::mix(path[i - 1], path[i], step / steps));
         positions.push_back(path[i]);
     }
     return positions;
 }
 
-VoxelSelection::VoxelSelection(Size3 size)
-    : size_(size), counts_((size + Size3(gpu::BRICK_SIZE - 1)) / Size3(gpu::BRICK_SIZE))
-{}
+VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_((size + Size3(SIDE - 1)) / Size3(SIDE)) {}
 
 // A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks that
 // a row of the region goes through are looked up once for all rows that go through the same ones.
@@ -128,6 +137,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
     const Size3 size = region.box.size();
     const int64_t per_row = region.words_per_row();
     SHVR_CHECK(int64_t(words.size()) == per_row * size.y * size.z, words.size(), " words");
+    SHVR_CHECK(glm::all(glm::lessThanEqual(region.box.upper, size_)), "the region is of another volume");
     if (words.empty()) return;
     const int64_t first_brick = region.box.lower.x / SIDE, shift = region.box.lower.x % SIDE;
     std::vector<Bits*> row_of_bricks(size_t(per_row + 1));
@@ -202,7 +212,7 @@ std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& select
                 const int first = std::countr_zero(left), length = std::countr_one(left >> first);
                 append_runs(change.runs, painted ? *painted : UNPAINTED, 32 * row + size_t(first),
                             32 * row + size_t(first + length), group);
-                // In two steps: a shift by 32 would leave the word as it is.
+                // A shift by 32 would be undefined.
                 left = first + length == 32 ? 0 : left >> (first + length) << (first + length);
             }
         if (change.runs.empty()) continue;

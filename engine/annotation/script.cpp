@@ -97,20 +97,18 @@ public:
         }
         refuse("key ", key, " is ", shown(value), "; expected one of: ", known);
     }
-    glm::dvec3 point(const std::string& key, const Json& value) const
+    std::vector<glm::dvec3> path(const char* key, const Json& value) const
     {
         const auto is_coordinate = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
-        if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), is_coordinate))
-            refuse("key ", key, " is ", shown(value), "; expected three numbers [x,y,z]");
-        return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
-    }
-    std::vector<glm::dvec3> path(const std::string& key, const Json& value) const
-    {
         if (!value.is_array() || value.empty())
             refuse("key ", key, " is ", shown(value), "; expected [[x,y,z], ...] with at least one point");
         std::vector<glm::dvec3> points;
         points.reserve(value.size());
-        for (const Json& p : value) points.push_back(point(sentence(key, ".", points.size()), p));
+        for (const Json& p : value) {
+            if (!p.is_array() || p.size() != 3 || !std::all_of(p.begin(), p.end(), is_coordinate))
+                refuse("key ", key, ".", points.size(), " is ", shown(p), "; expected three numbers [x,y,z]");
+            points.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+        }
         return points;
     }
 
@@ -130,13 +128,15 @@ PaintOp read_paint(const Fields& fields)
     op.threshold = fields.number("threshold", fields.need("threshold"));
     op.radius_voxels = fields.number("radius", fields.need("radius"));
     if (op.radius_voxels <= 0.0 || op.radius_voxels > 128.0)
-        fields.refuse("key radius is ", op.radius_voxels, "; expected a number above 0, at most 128");
+        fields.refuse("key radius is ", shown(fields.need("radius")), "; expected a number above 0, at most 128");
     if (const Json* connectivity = fields.find("connectivity")) {
         op.connectivity = int(fields.whole("connectivity", *connectivity, 6, 26));
         if (op.connectivity != 6 && op.connectivity != 26)
             fields.refuse("key connectivity is ", op.connectivity, "; expected 6 or 26");
     }
     op.path = fields.path("path", fields.need("path"));
+    if (const double count = stroke_position_count(op.path); !(count <= double(MOST_STROKE_POSITIONS)))
+        fields.refuse("key path makes ", count, " positions a voxel apart; expected at most ", MOST_STROKE_POSITIONS);
     return op;
 }
 
@@ -218,11 +218,16 @@ private:
 
 Json parse_line(const std::string& line, const std::string& where)
 {
+    const auto refuse_from = [&](size_t character) {
+        fail(where, ": is not JSON from character ", character, " on; expected one object on the line");
+    };
+    // The parser would take a zero byte for the end of the line.
+    if (const size_t zero = line.find('\0'); zero != std::string::npos) refuse_from(zero + 1);
     Json object;
     try {
         object = Json::parse(line, Strictness(where));
     } catch (const Json::parse_error& error) {
-        fail(where, ": is not JSON from character ", error.byte, " on; expected one object on the line");
+        refuse_from(error.byte);
     } catch (const Json::out_of_range&) {
         fail(where, ": holds a number too large to represent; expected numbers up to 1.8e308");
     }

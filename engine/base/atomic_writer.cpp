@@ -48,8 +48,7 @@ void sync_folder(const fs::path& path)
 
 AtomicWriter::AtomicWriter(const fs::path& path)
     : target_(path), old_permissions_(permissions_of_old_file(path)), descriptor_(create())
-{
-}
+{}
 
 AtomicWriter::~AtomicWriter()
 {

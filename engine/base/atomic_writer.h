@@ -4,11 +4,11 @@
 //
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
 
+#include <sys/types.h>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <sys/types.h>
 
 #include "engine/base/file.h"
 

@@ -56,7 +56,7 @@ template <class... Parts>
 }  // namespace shvr
 
 /// SHVR_CHECK(claim, values...): aborts, printing the claim and the values, when the claim is false.
-#define SHVR_CHECK(claim, ...)                                                                                        \
-    do {                                                                                                              \
+#define SHVR_CHECK(claim, ...)                                                                                         \
+    do {                                                                                                               \
         if (!(claim)) ::shvr::abort_on_failed_check(#claim, __FILE__, __LINE__, ::shvr::sentence(__VA_ARGS__));        \
     } while (false)

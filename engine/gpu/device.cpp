@@ -122,9 +122,8 @@ void Device::destroy() noexcept
 
 void Device::create_instance(bool validation)
 {
-    const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                        .pApplicationName = "shvr",
-                                        .apiVersion = VK_API_VERSION_1_3};
+    const VkApplicationInfo application{
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "shvr", .apiVersion = VK_API_VERSION_1_3};
     std::vector<const char*> layers;
     std::vector<const char*> extensions;
     if (validation) {
@@ -132,8 +131,9 @@ void Device::create_instance(bool validation)
             fail("Vulkan layer ", VALIDATION_LAYER, " is not installed; expected the package vulkan-validationlayers");
         layers.push_back(VALIDATION_LAYER);
     }
-    const bool debug_utils = instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, nullptr) ||
-                             (validation && instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, layers[0]));
+    const bool debug_utils =
+        instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, nullptr) ||
+        (validation && instance_extension_is_present(VK_EXT_DEBUG_UTILS_EXTENSION_NAME, layers[0]));
     if (debug_utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
 
     const VkDebugUtilsMessengerCreateInfoEXT messenger{
@@ -163,16 +163,14 @@ void Device::create_instance(bool validation)
     begin_label_ = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(load("vkCmdBeginDebugUtilsLabelEXT"));
     end_label_ = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(load("vkCmdEndDebugUtilsLabelEXT"));
     if (!validation) return;
-    const auto create =
-        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(load("vkCreateDebugUtilsMessengerEXT"));
+    const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(load("vkCreateDebugUtilsMessengerEXT"));
     SHVR_VK(create(instance_, &messenger, nullptr, &messenger_));
 }
 
 void Device::choose_physical(const std::string& wanted)
 {
-    const auto devices = enumerate<VkPhysicalDevice>([&](uint32_t* count, VkPhysicalDevice* items) {
-        return vkEnumeratePhysicalDevices(instance_, count, items);
-    });
+    const auto devices = enumerate<VkPhysicalDevice>(
+        [&](uint32_t* count, VkPhysicalDevice* items) { return vkEnumeratePhysicalDevices(instance_, count, items); });
     struct Candidate {
         VkPhysicalDevice physical;
         VkPhysicalDeviceProperties properties;
@@ -197,8 +195,7 @@ void Device::choose_physical(const std::string& wanted)
         if (candidate.properties.apiVersion < VK_API_VERSION_1_3 || !compute_family(candidate.physical)) continue;
         if (!best || rank(candidate.properties.deviceType) < rank(best->properties.deviceType)) best = &candidate;
     }
-    if (!best)
-        fail("no Vulkan 1.3 device ", wanted.empty() ? "" : "matches '" + wanted + "' ", "among: ", names);
+    if (!best) fail("no Vulkan 1.3 device ", wanted.empty() ? "" : "matches '" + wanted + "' ", "among: ", names);
     physical_ = best->physical;
     queue_family_ = *compute_family(physical_);
 

@@ -20,20 +20,20 @@ void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
-    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
-    bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
+    std::string device;       ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
+    bool validation = false;  ///< Khronos layer with synchronisation validation; fails where it is not installed
 };
 
 /// What the rest of the program may ask of the device.
 struct DeviceTraits {
     std::string name;
-    std::string driver;               ///< name and version
-    bool is_cpu = false;              ///< lavapipe and its like
-    float nanoseconds_per_tick = 0;   ///< 0: no timestamps
+    std::string driver;              ///< name and version
+    bool is_cpu = false;             ///< lavapipe and its like
+    float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
-    bool linear_r16 = false;          ///< R16_UNORM can be filtered by the sampler
-    bool storage_r16 = false;         ///< R16_UNORM can be read with imageLoad
-    uint64_t device_bytes = 0;        ///< the largest device-local heap, as reported
+    bool linear_r16 = false;    ///< R16_UNORM can be filtered by the sampler
+    bool storage_r16 = false;   ///< R16_UNORM can be read with imageLoad
+    uint64_t device_bytes = 0;  ///< the largest device-local heap, as reported
     VkPhysicalDeviceLimits limits{};
     uint64_t max_allocation_bytes = 0;
 };

@@ -68,27 +68,26 @@ struct Executor::Frame {
     const FrameGraph& graph;
     const Options& options;
     CompiledGraph compiled;
-    std::vector<Storage*> storages;              // per resource, transients only
-    std::vector<Storage*> taken;                 // transients to give back
+    std::vector<Storage*> storages;  // per resource, transients only
+    std::vector<Storage*> taken;     // transients to give back
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
     VkDescriptorPool descriptors = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
-    std::vector<VkCommandBuffer> chunks;         // one submission each
+    std::vector<VkCommandBuffer> chunks;  // one submission each
     struct Prepared {
         const Kernel* kernel = nullptr;
         VkDescriptorSet set = VK_NULL_HANDLE;
         uint64_t counters_offset = 0;
         uint32_t dispatches = 0;
     };
-    std::vector<Prepared> prepared;              // per step
+    std::vector<Prepared> prepared;  // per step
 
     Frame(Executor& owner, const FrameGraph& frame_graph, const Options& frame_options)
         : executor(owner), graph(frame_graph), options(frame_options), compiled(frame_graph.compile())
-    {
-    }
+    {}
     Frame(const Frame&) = delete;
     Frame& operator=(const Frame&) = delete;
     ~Frame()
@@ -197,8 +196,8 @@ void Executor::Frame::write_descriptors(const PassData& data, const Prepared& st
         const KernelInterface::Slot& slot = slots[i];
         const auto binding = std::find_if(data.bindings.begin(), data.bindings.end(),
                                           [&](const Binding& b) { return b.name == slot.name; });
-        const auto block = std::find_if(data.blocks.begin(), data.blocks.end(),
-                                        [&](const auto& b) { return b.first == slot.name; });
+        const auto block =
+            std::find_if(data.blocks.begin(), data.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
         if (binding != data.bindings.end()) {
             const Memory::Object& bound = object(binding->resource);
             buffers[i] = {bound.buffer, 0, VK_WHOLE_SIZE};
@@ -206,7 +205,8 @@ void Executor::Frame::write_descriptors(const PassData& data, const Prepared& st
         } else if (block != data.blocks.end()) {
             std::memcpy(blocks->mapped().data() + block_offset, block->second.data(), block->second.size());
             buffers[i] = {executor.memory_.object(blocks->import().id).buffer, block_offset, block->second.size()};
-            block_offset += aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
+            block_offset +=
+                aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
         } else {
             buffers[i] = {executor.memory_.object(counters->import().id).buffer, step.counters_offset, COUNTER_BYTES};
         }
@@ -285,8 +285,7 @@ void Executor::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        if (queries)
-            vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, queries, uint32_t(2 * i));
+        if (queries) vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
         if (queries)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i + 1));
@@ -384,9 +383,8 @@ double Executor::Frame::submit()
     for (size_t i = 0; i < chunks.size(); ++i) {
         const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                                  .commandBuffer = chunks[i]};
-        const VkSubmitInfo2 info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                                 .commandBufferInfoCount = 1,
-                                 .pCommandBufferInfos = &commands};
+        const VkSubmitInfo2 info{
+            .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commands};
         const bool last = i + 1 == chunks.size();
         const VkResult result = vkQueueSubmit2(executor.device_.queue(), 1, &info, last ? created : VK_NULL_HANDLE);
         if (result < 0) {

@@ -19,27 +19,27 @@ inline constexpr size_t COUNTERS = 16;
 
 struct PassReport {
     std::string name;
-    std::string kernel;                          ///< empty for copies and fills
-    double start_ms = 0.0;                       ///< since the first pass of the frame began
-    double gpu_ms = 0.0;                         ///< 0 where the device has no timestamps, see `timed`
+    std::string kernel;     ///< empty for copies and fills
+    double start_ms = 0.0;  ///< since the first pass of the frame began
+    double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     uint32_t dispatches = 0;
-    uint64_t bytes = 0;                          ///< sizes of the resources it binds: what it could touch
-    std::string barrier;                         ///< "compute -> transfer", empty if none
-    std::vector<uint64_t> counters;              ///< empty where the kernel has none
+    uint64_t bytes = 0;              ///< sizes of the resources it binds: what it could touch
+    std::string barrier;             ///< "compute -> transfer", empty if none
+    std::vector<uint64_t> counters;  ///< empty where the kernel has none
 };
 
 struct FrameResult {
-    std::vector<std::vector<std::byte>> read_backs;   ///< by the index FrameGraph::read_back gave
-    std::vector<PassReport> passes;                   ///< in order of execution
-    double wall_ms = 0.0;                             ///< from first submission to completion, on the host's clock
+    std::vector<std::vector<std::byte>> read_backs;  ///< by the index FrameGraph::read_back gave
+    std::vector<PassReport> passes;                  ///< in order of execution
+    double wall_ms = 0.0;                            ///< from first submission to completion, on the host's clock
 };
 
 class Executor {
 public:
     struct Options {
         bool timestamps = true;
-        bool serialize = false;   ///< a full barrier between passes, for attributable times
+        bool serialize = false;  ///< a full barrier between passes, for attributable times
     };
 
     Executor(Device& device, Memory& memory);

@@ -56,7 +56,8 @@ void check_bindings(const PassData& pass, const KernelInterface& interface,
     for (const KernelInterface::Slot& slot : interface.slots) {
         const bool bound =
             slot.name == "counters" ||  // the executor's own
-            std::any_of(pass.bindings.begin(), pass.bindings.end(), [&](const auto& b) { return b.name == slot.name; }) ||
+            std::any_of(pass.bindings.begin(), pass.bindings.end(),
+                        [&](const auto& b) { return b.name == slot.name; }) ||
             std::any_of(pass.blocks.begin(), pass.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
         if (!bound) fail("pass '", pass.name, "' leaves '", slot.name, "' of kernel '", pass.kernel, "' unbound");
     }
@@ -145,9 +146,8 @@ void Kernel::create_layouts()
 
 void Kernel::create_pipeline(std::span<const uint32_t> spirv, const VkSpecializationInfo& specialization)
 {
-    const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                               .codeSize = spirv.size_bytes(),
-                                               .pCode = spirv.data()};
+    const VkShaderModuleCreateInfo module_info{
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
     VkShaderModule module = VK_NULL_HANDLE;
     SHVR_VK(vkCreateShaderModule(device_.handle(), &module_info, nullptr, &module));
     const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,

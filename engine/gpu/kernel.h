@@ -30,7 +30,7 @@ struct KernelInterface {
         std::string name;
         uint32_t offset = 0;
     };
-    std::vector<Slot> slots;          ///< by binding number
+    std::vector<Slot> slots;  ///< by binding number
     std::vector<Constant> constants;
     std::array<uint32_t, 3> local_size{1, 1, 1};
     uint32_t push_bytes = 0;

@@ -141,12 +141,11 @@ Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placem
         allocate(object, needs);
         if (object.image) {
             SHVR_VK(vkBindImageMemory(device_.handle(), object.image, object.memory, 0));
-            const VkImageViewCreateInfo info{
-                .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                .image = object.image,
-                .viewType = VK_IMAGE_VIEW_TYPE_3D,
-                .format = vulkan_format(desc.format),
-                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+            const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                             .image = object.image,
+                                             .viewType = VK_IMAGE_VIEW_TYPE_3D,
+                                             .format = vulkan_format(desc.format),
+                                             .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
             SHVR_VK(vkCreateImageView(device_.handle(), &info, nullptr, &object.view));
             device_.set_name(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(object.view), name);
         } else {

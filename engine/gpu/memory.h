@@ -69,10 +69,10 @@ public:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        uint64_t bytes = 0;          ///< as the device counts them
+        uint64_t bytes = 0;  ///< as the device counts them
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
-        ResourceState state;         ///< what the last submitted frame left in flight
+        ResourceState state;  ///< what the last submitted frame left in flight
     };
     Object& object(uint32_t id);
 

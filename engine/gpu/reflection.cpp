@@ -21,7 +21,8 @@ struct Reflector {
         spvc_parsed_ir ir = nullptr;
         require(spvc_context_create(&context));
         require(spvc_context_parse_spirv(context, spirv.data(), spirv.size(), &ir));
-        require(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler));
+        require(
+            spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler));
         require(spvc_compiler_create_shader_resources(compiler, &resources));
     }
     ~Reflector() { spvc_context_destroy(context); }
@@ -31,8 +32,8 @@ struct Reflector {
     void require(spvc_result result) const
     {
         if (result != SPVC_SUCCESS)
-            fail("kernel '", kernel, "' cannot be reflected: ",
-                 context ? spvc_context_get_last_error_string(context) : "out of memory");
+            fail("kernel '", kernel,
+                 "' cannot be reflected: ", context ? spvc_context_get_last_error_string(context) : "out of memory");
     }
 
     std::span<const spvc_reflected_resource> list(spvc_resource_type type) const
@@ -70,9 +71,10 @@ struct Reflector {
     void add_slots(KernelInterface& interface, spvc_resource_type kind, VkDescriptorType type) const
     {
         for (const spvc_reflected_resource& resource : list(kind)) {
-            KernelInterface::Slot slot{.name = spvc_compiler_get_name(compiler, resource.id),
-                                       .binding = spvc_compiler_get_decoration(compiler, resource.id, SpvDecorationBinding),
-                                       .type = type};
+            KernelInterface::Slot slot{
+                .name = spvc_compiler_get_name(compiler, resource.id),
+                .binding = spvc_compiler_get_decoration(compiler, resource.id, SpvDecorationBinding),
+                .type = type};
             if (slot.name.empty()) slot.name = resource.name;
             bool read_only = spvc_compiler_has_decoration(compiler, resource.id, SpvDecorationNonWritable);
             bool write_only = spvc_compiler_has_decoration(compiler, resource.id, SpvDecorationNonReadable);
@@ -122,8 +124,8 @@ KernelInterface reflect(const std::string& kernel, std::span<const uint32_t> spi
         interface.constants.push_back(
             {spvc_compiler_get_name(reflector.compiler, constants[i].id), constants[i].constant_id});
     for (unsigned axis = 0; axis < 3; ++axis)
-        interface.local_size[axis] = spvc_compiler_get_execution_mode_argument_by_index(
-            reflector.compiler, SpvExecutionModeLocalSize, axis);
+        interface.local_size[axis] =
+            spvc_compiler_get_execution_mode_argument_by_index(reflector.compiler, SpvExecutionModeLocalSize, axis);
     return interface;
 }
 

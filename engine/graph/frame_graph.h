@@ -60,10 +60,10 @@ std::string names_of(Stages stages);
 
 /// What is still in flight on a resource. Carried from frame to frame for imported ones.
 struct ResourceState {
-    Stages written_by = 0;    ///< stages of the last write
-    Stages visible_to = 0;    ///< stages which that write has been made visible to
-    Stages read_by = 0;       ///< stages that have read since the last write
-    Stages after_reads = 0;   ///< stages that are ordered after all those reads
+    Stages written_by = 0;   ///< stages of the last write
+    Stages visible_to = 0;   ///< stages which that write has been made visible to
+    Stages read_by = 0;      ///< stages that have read since the last write
+    Stages after_reads = 0;  ///< stages that are ordered after all those reads
     bool operator==(const ResourceState&) const = default;
 };
 /// Nothing is known of what came before; the first use waits for everything.
@@ -85,14 +85,14 @@ struct Barrier {
 };
 
 struct Binding {
-    std::string name;   ///< the GLSL variable (images) or block instance (buffers)
+    std::string name;  ///< the GLSL variable (images) or block instance (buffers)
     uint32_t resource = 0;
     bool reads = false;
     bool writes = false;
 };
 
 struct ImageRegion {
-    uint64_t buffer_offset = 0;   ///< bytes; texels are tightly packed, x fastest
+    uint64_t buffer_offset = 0;  ///< bytes; texels are tightly packed, x fastest
     glm::uvec3 texel{0};
     glm::uvec3 texels{0};
 };
@@ -108,11 +108,11 @@ struct PassData {
     Kind kind = Kind::compute;
     std::string kernel;
     std::vector<Binding> bindings;
-    std::vector<std::pair<std::string, uint32_t>> constants;   ///< specialization constants by name
-    std::vector<std::byte> push;                               ///< push constants
+    std::vector<std::pair<std::string, uint32_t>> constants;             ///< specialization constants by name
+    std::vector<std::byte> push;                                         ///< push constants
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
-    glm::uvec3 tile{0};                    ///< threads per dispatch, 0 = all at once; bounds the time of one dispatch
+    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; bounds the time of one dispatch
     uint32_t fill_value = 0;
     std::vector<ImageRegion> image_regions;
     std::vector<BufferRegion> buffer_regions;
@@ -158,14 +158,14 @@ private:
 };
 
 struct Step {
-    uint32_t pass = 0;                 ///< index into FrameGraph::passes()
-    std::optional<Barrier> barrier;    ///< before the pass
+    uint32_t pass = 0;               ///< index into FrameGraph::passes()
+    std::optional<Barrier> barrier;  ///< before the pass
 };
 
 struct CompiledGraph {
     std::vector<Step> steps;
-    std::vector<ResourceState> final_states;   ///< per resource
-    std::vector<bool> used;                    ///< per resource: does any living pass touch it?
+    std::vector<ResourceState> final_states;  ///< per resource
+    std::vector<bool> used;                   ///< per resource: does any living pass touch it?
 };
 
 class FrameGraph {
@@ -200,7 +200,7 @@ public:
         uint32_t import_id = 0;
         ResourceState state = UNKNOWN_STATE;
         uint32_t version = 0;
-        std::vector<uint32_t> writers;   ///< pass that made version i + 1
+        std::vector<uint32_t> writers;  ///< pass that made version i + 1
         bool kept = false;
     };
     const std::vector<PassData>& passes() const { return passes_; }

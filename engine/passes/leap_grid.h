@@ -14,9 +14,9 @@ namespace shvr {
 
 struct LeapGridInput {
     gpu::OccupancyParams params;
-    std::vector<uint32_t> visible_intervals;      ///< engine/scene/transfer_function.h
+    std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
     std::optional<MaskBinding> mask;
-    std::array<uint32_t, 8> visible_groups{};     ///< bit per group; used with a mask
+    std::array<uint32_t, 8> visible_groups{};  ///< bit per group; used with a mask
 };
 
 /// Returns the new version of `volume.leap`.

@@ -11,7 +11,7 @@ namespace shvr {
 
 struct RegionInput {
     gpu::RegionParams params;
-    std::span<const gpu::RowSpan> rows;      ///< params.size.y * params.size.z, y fastest
+    std::span<const gpu::RowSpan> rows;  ///< params.size.y * params.size.z, y fastest
 };
 
 /// Every voxel at or above the threshold.

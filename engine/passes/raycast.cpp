@@ -5,8 +5,8 @@ namespace shvr {
 Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input)
 {
     const glm::uvec3 pixels(input.params.pixels, 1);
-    Pass pass = graph.compute(std::string("raycast") + (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""),
-                              "raycast");
+    Pass pass = graph.compute(
+        std::string("raycast") + (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""), "raycast");
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     pass.read("leap", volume.leap);

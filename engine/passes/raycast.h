@@ -12,13 +12,13 @@ namespace shvr {
 
 struct RaycastInput {
     gpu::RaycastParams params;
-    Resource table;                          ///< rgba32f image: linear RGB, opacity of a full step
+    Resource table;  ///< rgba32f image: linear RGB, opacity of a full step
     std::optional<MaskBinding> mask;
-    std::vector<gpu::GroupLook> groups;      ///< 256, used with a mask
+    std::vector<gpu::GroupLook> groups;  ///< 256, used with a mask
     bool shaded = true;
     bool count_work = false;
-    uint32_t group_width = 8;                ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
-    glm::uvec2 tile{0};                      ///< pixels of one dispatch, multiples of 64; 0 = all at once
+    uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
+    glm::uvec2 tile{0};        ///< pixels of one dispatch, multiples of 64; 0 = all at once
 };
 
 /// An rgba32_float image of params.pixels: linear light, premultiplied, over the background.

@@ -65,10 +65,7 @@ std::vector<int64_t> bricks_of(const Command& command)
 
 }  // namespace
 
-Annotator::Annotator(Renderer& renderer)
-    : renderer_(renderer), document_{Mask(renderer.volume().info().size)}
-{
-}
+Annotator::Annotator(Renderer& renderer) : renderer_(renderer), document_{Mask(renderer.volume().info().size)} {}
 
 VoxelSelection Annotator::select(const PaintOp& op)
 {
@@ -91,8 +88,7 @@ VoxelSelection Annotator::select(const PaintOp& op)
             const gpu::RegionParams params =
                 region_params(region, volume, op, threshold_code, voxel_at(positions[next]));
             regions.push_back(std::move(region));
-            read_backs.push_back(
-                graph.read_back(add_brush(graph, volume, op.brush, {params, regions.back().rows})));
+            read_backs.push_back(graph.read_back(add_brush(graph, volume, op.brush, {params, regions.back().rows})));
         }
         if (regions.empty()) break;
         const gpu::FrameResult result = renderer_.executor().run(graph, {.timestamps = false});

@@ -27,7 +27,8 @@ void DeviceMask::grow(uint64_t slots)
     atlas_ = memory_.create("mask", image_desc(Format::r8_uint, atlas_slots_ * gpu::BRICK_SIZE));
     free_slots_.clear();
     slots_.clear();
-    for (uint32_t slot = atlas_slots_.x * atlas_slots_.y * atlas_slots_.z; slot > 0; --slot) free_slots_.push_back(slot);
+    for (uint32_t slot = atlas_slots_.x * atlas_slots_.y * atlas_slots_.z; slot > 0; --slot)
+        free_slots_.push_back(slot);
 }
 
 void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
@@ -87,9 +88,8 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
     auto* entries = reinterpret_cast<uint32_t*>(staging.mapped().data());
     for (const auto& [brick, slot] : slots_) entries[brick] = slot;
     FrameGraph graph;
-    static_cast<void>(graph.copy(graph.import("staging", staging.import()),
-                                 graph.import("mask table", table_.import()), {{0, 0, table.bytes}},
-                                 "upload mask table"));
+    static_cast<void>(graph.copy(graph.import("staging", staging.import()), graph.import("mask table", table_.import()),
+                                 {{0, 0, table.bytes}}, "upload mask table"));
     executor_.run(graph, {.timestamps = false});
 }
 

@@ -26,7 +26,7 @@ private:
     gpu::Executor& executor_;
     gpu::Memory& memory_;
     glm::uvec3 atlas_slots_{0};
-    std::map<int64_t, uint32_t> slots_;      ///< painted brick -> slot, from 1
+    std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot, from 1
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;
 };

@@ -23,9 +23,9 @@ public:
         : executor_(executor),
           codes_per_texel_(codes_per_texel, 1, 1),
           capacity_(uint32_t(std::min<uint64_t>(BATCH, bricks))),
-          staging_(memory.create("staging", buffer_desc(capacity_ * (TEXEL_BYTES + CELL_BYTES)), gpu::Placement::upload))
-    {
-    }
+          staging_(
+              memory.create("staging", buffer_desc(capacity_ * (TEXEL_BYTES + CELL_BYTES)), gpu::Placement::upload))
+    {}
 
     void add(const glm::uvec3& brick, uint32_t packed_slot, const BrickTexels& texels)
     {
@@ -35,8 +35,8 @@ public:
         std::memcpy(staged + capacity_ * TEXEL_BYTES + count * CELL_BYTES, texels.cell_ranges.data(), CELL_BYTES);
         atlas_regions_.push_back(
             {count * TEXEL_BYTES, gpu::slot_origin(packed_slot) / codes_per_texel_, BRICK_EXTENT / codes_per_texel_});
-        cell_regions_.push_back({capacity_ * TEXEL_BYTES + count * CELL_BYTES, brick * gpu::BRICK_CELLS,
-                                 glm::uvec3(gpu::BRICK_CELLS)});
+        cell_regions_.push_back(
+            {capacity_ * TEXEL_BYTES + count * CELL_BYTES, brick * gpu::BRICK_CELLS, glm::uvec3(gpu::BRICK_CELLS)});
     }
     bool full() const { return atlas_regions_.size() == capacity_; }
 
@@ -77,8 +77,7 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
     const uint64_t rows = ceil_div(slots, x);
     const uint64_t y = std::min<uint64_t>(most, uint64_t(std::ceil(std::sqrt(double(rows)))));
     const uint64_t z = ceil_div(rows, y);
-    if (z > most)
-        fail("the volume needs ", slots, " bricks on the device; its textures hold ", most * most * most);
+    if (z > most) fail("the volume needs ", slots, " bricks on the device; its textures hold ", most * most * most);
     return {uint32_t(x), uint32_t(y), uint32_t(z)};
 }
 

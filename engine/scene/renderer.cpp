@@ -121,14 +121,14 @@ Renderer::Renderer(const Options& options)
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
       mask_(executor_, memory_)
-{
-}
+{}
 
 bool Renderer::filters(Sampling sampling) const
 {
     const gpu::DeviceTraits& traits = device_.traits();
     if (sampling == Sampling::hardware && !traits.linear_r16)
-        fail("render.sampling is hardware; device ", traits.name, " cannot filter R16_UNORM, expected automatic or exact");
+        fail("render.sampling is hardware; device ", traits.name,
+             " cannot filter R16_UNORM, expected automatic or exact");
     // A CPU filters slower than it loads and computes; a GPU's sampler is nearly free.
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
@@ -211,8 +211,7 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
     if (stale) volume.leap = leap_grid(graph, volume, leap);
 
     const uint32_t pixels = graph.read_back(raycast(graph, volume, input));
-    gpu::FrameResult result =
-        executor_.run(graph, {.timestamps = options.timestamps, .serialize = options.serialize});
+    gpu::FrameResult result = executor_.run(graph, {.timestamps = options.timestamps, .serialize = options.serialize});
     if (stale) leap_state_ = {leap.params, leap.visible_intervals, leap.visible_groups};
     picture.image = {int(session.render.size.x), int(session.render.size.y), {}};
     picture.image.rgba.resize(result.read_backs[pixels].size() / sizeof(float));

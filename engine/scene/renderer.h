@@ -19,17 +19,17 @@
 namespace shvr {
 
 struct RenderOptions {
-    bool count_work = false;                ///< keep the exact work counters (a little slower)
-    bool serialize = false;                 ///< a full barrier between passes
+    bool count_work = false;  ///< keep the exact work counters (a little slower)
+    bool serialize = false;   ///< a full barrier between passes
     bool timestamps = true;
 };
 
 struct Picture {
-    ImageF image;                           ///< linear light, premultiplied, over the background
-    bool complete = true;                   ///< every brick was there at its wanted level
+    ImageF image;          ///< linear light, premultiplied, over the background
+    bool complete = true;  ///< every brick was there at its wanted level
     std::vector<gpu::PassReport> passes;
     double wall_ms = 0.0;
-    FrameGraph graph;                       ///< what was run, for `profile --graph`
+    FrameGraph graph;  ///< what was run, for `profile --graph`
 };
 
 class Renderer {
@@ -37,7 +37,7 @@ public:
     struct Options {
         gpu::DeviceOptions device;
         gpu::Budget budget;
-        int threads = 0;                    ///< workers that build bricks; 0: one a core
+        int threads = 0;  ///< workers that build bricks; 0: one a core
     };
     explicit Renderer(const Options& options);
 

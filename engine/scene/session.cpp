@@ -77,9 +77,10 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     OpenedSession opened;
     opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
     opened.source = open_source(opened.session);
+    opened.statistics = measure(*opened.source);
     if (!document.contains("transfer_function")) {
         TransferFunction& function = opened.session.transfer_function;
-        function = automatic_transfer_function(measure(*opened.source));
+        function = automatic_transfer_function(opened.statistics);
         opened.warnings.push_back(sentence("no transfer function given; a ramp from ", function.lower(), " to ",
                                            function.upper(), " was made from the histogram"));
     }

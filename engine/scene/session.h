@@ -81,6 +81,7 @@ ColorGroup group_of(const Session& session, uint8_t group);
 struct OpenedSession {
     Session session;
     std::unique_ptr<VolumeSource> source;
+    VolumeStatistics statistics;
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});

@@ -13,15 +13,36 @@ void add_output_options(CLI::App& command, Common& common)
     command.add_flag("--quiet", common.quiet, "No progress and no warnings on standard error");
 }
 
+void add_input_options(CLI::App& command, Common& common)
+{
+    command.add_option("--set", common.settings, "Any session key, as in --set render.step_voxels=0.25; repeatable")
+        ->type_name("KEY=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    const auto shorthand = [&](const char* option, const char* key, const char* form, const char* help) {
+        command
+            .add_option_function<std::string>(
+                option,
+                [&common, key](const std::string& value) { common.settings.push_back(sentence(key, "=", value)); },
+                help)
+            ->type_name(form);
+    };
+    shorthand("--raw", "volume.raw", "WxHxD:TYPE[:big|little][:OFFSET]", "How a file of bare voxels is laid out");
+    shorthand("--unit", "volume.unit", "UNIT", "Unit of --spacing, as in um");
+    command
+        .add_option_function<std::string>(
+            "--spacing",
+            [&common](const std::string& value) { common.settings.push_back("volume.spacing=[" + value + "]"); },
+            "Size of a voxel of --raw")
+        ->type_name("X,Y,Z");
+}
+
 void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");
     command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")->type_name("MIB");
     command.add_option("--budget-host", common.budget_host_mib, "Mapped host memory SHVR may use")->type_name("MIB");
-    command.add_option("--set", common.settings, "Any session key, as in --set render.step_voxels=0.25; repeatable")
-        ->type_name("KEY=VALUE")
-        ->take_all()
-        ->allow_extra_args(false);
+    add_input_options(command, common);
     command.add_option("--threads", common.threads, "Worker threads; 0: one a core")->check(CLI::Range(0, 1024));
 }
 
@@ -63,7 +84,7 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
         Renderer::Options{.device = {common.device, validation && *validation == '1'},
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads});
-    opened.renderer->load(*opened.source, measure(*opened.source));
+    opened.renderer->load(*opened.source, session.statistics, opened.session.render.sampling);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_mask && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);

@@ -27,7 +27,9 @@ struct Common {
     bool json = false;
 };
 
-/// --device, --budget-device, --budget-host, --set, --threads
+/// --set, --raw, --spacing, --unit
+void add_input_options(CLI::App& command, Common& common);
+/// Those, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);

@@ -16,7 +16,7 @@ struct Replay {
     Opened& opened;
     const Options& options;
     int64_t voxels_changed = 0;
-    std::string at;   ///< "file:line"
+    std::string at;  ///< "file:line"
 
     void operator()(const PaintOp& op)
     {
@@ -46,7 +46,8 @@ struct Replay {
         const std::array<int64_t, 256> counts = opened.annotator->document().mask.voxels_by_group();
         for (const auto& [group, voxels] : op.voxels_in_group)
             if (counts[group] != voxels)
-                throw GateError(sentence(at, ": group ", int(group), " has ", counts[group], " voxels; expected ", voxels));
+                throw GateError(
+                    sentence(at, ": group ", int(group), " has ", counts[group], " voxels; expected ", voxels));
         const std::pair<const char*, std::optional<int64_t>> traced[] = {{"nodes", op.nodes},
                                                                          {"internodes", op.internodes}};
         for (const auto& [what, expected] : traced)

@@ -26,13 +26,15 @@ Described describe(const Options& options)
     const std::filesystem::path path = options.input;
     const bool is_bare = std::filesystem::is_regular_file(path) && path.extension() != ".json";
     OpenedSession opened;
-    // A session would read all of a bare volume once more, for a transfer function that nobody asked for.
-    if (is_bare && options.common.settings.empty())
+    // A session would make a transfer function for a bare volume, and say so: nobody asked.
+    if (is_bare && options.common.settings.empty()) {
         opened.source = open_volume(path);
-    else
+        opened.statistics = measure(*opened.source);
+    } else {
         opened = open_session(path, options.common.settings);
+    }
     Described described{.info = opened.source->info(),
-                        .statistics = measure(*opened.source),
+                        .statistics = opened.statistics,
                         .warnings = std::move(opened.warnings),
                         .mask = opened.session.mask_path.string()};
     for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
@@ -128,12 +130,7 @@ void add_info(CLI::App& program)
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand("info", "Tells what a volume, a session or a project is");
     command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
-    command
-        ->add_option("--set", options->common.settings,
-                     "Any session key, as in --set volume.raw=64x64x64:uint8; repeatable")
-        ->type_name("KEY=VALUE")
-        ->take_all()
-        ->allow_extra_args(false);
+    add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr info scan.nhdr --json");
     command->callback([options] { run(*options); });

@@ -78,7 +78,7 @@ def make_property(vtk, points, light, unit):
     opacity.ClampingOff()  # nothing outside the outermost points
     for point in points:
         opacity.AddPoint(point["intensity"], point["opacity"])
-        color.AddRGBPoint(point["intensity"], *linear_color(point.get("color", "#ffffff")))
+        color.AddRGBPoint(point["intensity"], *linear_color(point["color"]))
     look = vtk.vtkVolumeProperty()
     look.SetScalarOpacity(opacity)
     look.SetScalarOpacityUnitDistance(unit)
@@ -92,7 +92,7 @@ def make_property(vtk, points, light, unit):
     return look
 
 
-def aim(vtk, renderer, camera, direction):
+def aim(vtk, renderer, camera, direction, ambient):
     """`direction` leads towards the light along the camera's right, up and back."""
     view = renderer.GetActiveCamera()
     view.SetPosition(camera["eye"])
@@ -100,6 +100,7 @@ def aim(vtk, renderer, camera, direction):
     view.SetViewUp(camera.get("up", [0, 0, 1]))
     view.SetViewAngle(camera.get("fov_y_degrees", 30))
     light = vtk.vtkLight()
+    light.SetAmbientColor(ambient)  # VTK's default is none
     light.PositionalOff()
     light.SetLightTypeToCameraLight()
     light.SetPosition(direction if any(direction) else [0.3, 0.5, 1.0])
@@ -138,9 +139,12 @@ def import_vtk():
     """Only what is used: all of VTK takes a second to load, and memory."""
     import types
 
-    from vtkmodules import (vtkCommonCore, vtkCommonDataModel, vtkIOImage, vtkRenderingCore, vtkRenderingVolume,
-                            vtkRenderingOpenGL2, vtkRenderingVolumeOpenGL2)
-    from vtkmodules.util import vtkConstants
+    try:
+        from vtkmodules import (vtkCommonCore, vtkCommonDataModel, vtkIOImage, vtkRenderingCore, vtkRenderingOpenGL2,
+                                vtkRenderingVolume, vtkRenderingVolumeOpenGL2)
+        from vtkmodules.util import vtkConstants
+    except ImportError as error:
+        sys.exit(f"{sys.executable}: {error}; expected an interpreter with VTK (Debian: /usr/bin/python3, python3-vtk9)")
     parts = (vtkCommonCore, vtkCommonDataModel, vtkIOImage, vtkRenderingCore, vtkRenderingVolume, vtkRenderingOpenGL2,
              vtkRenderingVolumeOpenGL2, vtkConstants)
     return types.SimpleNamespace(**{name: value for part in parts for name, value in vars(part).items()})
@@ -161,7 +165,8 @@ def draw(options):
     mapper.SetInputConnection(reader.GetOutputPort())
     volume = vtk.vtkVolume()
     volume.SetMapper(mapper)
-    volume.SetProperty(make_property(vtk, session["transfer_function"]["points"], light, unit))
+    points = session["transfer_function"]["points"]
+    volume.SetProperty(make_property(vtk, points, light, unit))
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(linear_color(settings["background"]))
     renderer.AddVolume(volume)
@@ -170,7 +175,10 @@ def draw(options):
     window.SetMultiSamples(0)
     window.SetSize(settings["size"])
     window.AddRenderer(renderer)
-    aim(vtk, renderer, session["cameras"][options.camera], light["direction"])
+    # The OpenGL mapper adds ambient light without the volume's colour, so the light brings that of a volume of one
+    # colour. The fixed-point mapper multiplies.
+    ambient = linear_color(points[0]["color"]) if options.mapper == "gpu" else [1.0, 1.0, 1.0]
+    aim(vtk, renderer, session["cameras"][options.camera], light["direction"], ambient)
 
     for frame in range(options.frames + 1):
         volume.Modified()

@@ -1,0 +1,215 @@
+#include "engine/annotation/script.h"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "tests/unit/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+std::vector<ScriptLine> script_of(const std::string& text)
+{
+    const TemporaryFolder folder;
+    return read_script(folder.write("a.jsonl", text));
+}
+
+/// The only operation of a script of one line.
+template <class Op>
+Op op_of(const std::string& line)
+{
+    const std::vector<ScriptLine> script = script_of(line);
+    REQUIRE(script.size() == 1);
+    REQUIRE(std::holds_alternative<Op>(script[0].op));
+    return std::get<Op>(script[0].op);
+}
+
+std::string refusal(const std::string& text)
+{
+    return error_of([&] { script_of(text); });
+}
+
+/// A complete line of paint, with `keys` in place of those of the same name.
+std::string paint(const std::vector<std::pair<std::string, std::string>>& keys)
+{
+    std::vector<std::pair<std::string, std::string>> all = {{"op", "\"paint\""}, {"brush", "\"flood\""},
+                                                            {"group", "3"},      {"threshold", "120"},
+                                                            {"radius", "6"},     {"path", "[[1,2,3]]"}};
+    for (const auto& [key, value] : keys) {
+        const auto same = [&, &k = key](const auto& pair) { return pair.first == k; };
+        const auto found = std::find_if(all.begin(), all.end(), same);
+        if (found == all.end())
+            all.emplace_back(key, value);
+        else
+            found->second = value;
+    }
+    std::string line = "{";
+    for (const auto& [key, value] : all)
+        if (!value.empty()) line += (line.size() > 1 ? ",\"" : "\"") + key + "\":" + value;
+    return line + "}";
+}
+
+}  // namespace
+
+TEST_CASE("a line of paint is read with every key")
+{
+    const auto op =
+        op_of<PaintOp>(R"({"op":"paint","brush":"speckle","region":"box","group":255,"threshold":-12.5,"radius":0.25,)"
+                       R"("connectivity":26,"path":[[1,2,3],[4.5,-6e1,7]]})");
+    CHECK(op.brush == Brush::speckle);
+    CHECK(op.region == RegionShape::box);
+    CHECK(op.group == 255);
+    CHECK(op.threshold == -12.5);
+    CHECK(op.radius_voxels == 0.25);
+    CHECK(op.connectivity == 26);
+    CHECK(op.path == std::vector<glm::dvec3>{{1.0, 2.0, 3.0}, {4.5, -60.0, 7.0}});
+}
+
+TEST_CASE("a line of paint without region and connectivity means a ball and 6")
+{
+    const auto op = op_of<PaintOp>(paint({}));
+    CHECK(op.brush == Brush::flood);
+    CHECK(op.region == RegionShape::ball);
+    CHECK(op.connectivity == 6);
+    CHECK(op.group == 3);
+    CHECK(op_of<PaintOp>(paint({{"brush", "\"fill\""}})).brush == Brush::fill);
+    CHECK(op_of<PaintOp>(paint({{"region", "\"ball\""}, {"group", "0"}, {"radius", "128"}})).radius_voxels == 128.0);
+}
+
+TEST_CASE("undo and redo count, once where nothing is said")
+{
+    CHECK(op_of<UndoOp>(R"({"op":"undo"})").count == 1);
+    CHECK(op_of<UndoOp>(R"({"op":"undo","count":7})").count == 7);
+    CHECK(op_of<RedoOp>(R"({"op":"redo"})").count == 1);
+    CHECK(op_of<RedoOp>(R"({"op":"redo","count":1000000000})").count == 1000000000);
+    op_of<SaveOp>(R"({"op":"save"})");
+}
+
+TEST_CASE("an expectation holds what is written and nothing else")
+{
+    const auto all = op_of<ExpectOp>(
+        R"({"op":"expect","voxels_in_group":{"3":1234,"0":0,"255":5000000000},"nodes":12,"internodes":11})");
+    CHECK(all.voxels_in_group == std::map<uint8_t, int64_t>{{0, 0}, {3, 1234}, {255, 5000000000}});
+    CHECK(all.nodes == 12);
+    CHECK(all.internodes == 11);
+    const auto none = op_of<ExpectOp>(R"({"op":"expect"})");
+    CHECK(none.voxels_in_group.empty());
+    CHECK(!none.nodes.has_value());
+    CHECK(!none.internodes.has_value());
+}
+
+TEST_CASE("blank lines and comments are skipped, and lines keep their numbers")
+{
+    const std::vector<ScriptLine> script =
+        script_of("\n// what this is\n{\"op\":\"save\"}\r\n  \t \r\n  // {\"op\":\"nonsense\"}\n  {\"op\":\"undo\"}");
+    REQUIRE(script.size() == 2);
+    CHECK(script[0].number == 3);
+    CHECK(std::holds_alternative<SaveOp>(script[0].op));
+    CHECK(script[1].number == 6);
+    CHECK(std::holds_alternative<UndoOp>(script[1].op));
+    CHECK(script_of("").empty());
+    CHECK(script_of("\n\n// nothing\n").empty());
+}
+
+TEST_CASE("a bad line is refused with its file, line, key and value")
+{
+    struct BadLine {
+        std::string line;
+        std::vector<const char*> parts;  // of the message
+    };
+    const std::vector<BadLine> bad_lines = {
+        {paint({{"brush", "\"pencil\""}}), {"key brush is \"pencil\"", "fill, flood, speckle"}},
+        {paint({{"brush", ""}}), {"key brush is missing"}},
+        {paint({{"brush", "1"}}), {"key brush is 1"}},
+        {paint({{"region", "\"cube\""}}), {"key region is \"cube\"", "ball, box"}},
+        {paint({{"group", ""}}), {"key group is missing"}},
+        {paint({{"group", "256"}}), {"key group is 256", "0 to 255"}},
+        {paint({{"group", "-1"}}), {"key group is -1", "0 to 255"}},
+        {paint({{"group", "1.5"}}), {"key group is 1.5", "whole"}},
+        {paint({{"group", "\"3\""}}), {"key group is \"3\""}},
+        {paint({{"group", "18446744073709551615"}}), {"key group is 18446744073709551615"}},
+        {paint({{"threshold", ""}}), {"key threshold is missing"}},
+        {paint({{"threshold", "\"high\""}}), {"key threshold is \"high\"", "number"}},
+        {paint({{"threshold", "null"}}), {"key threshold is null", "number"}},
+        {paint({{"threshold", "1e999"}}), {"number"}},
+        {paint({{"threshold", "NaN"}}), {"is not JSON"}},
+        {paint({{"radius", ""}}), {"key radius is missing"}},
+        {paint({{"radius", "0"}}), {"key radius is 0", "above 0"}},
+        {paint({{"radius", "-3"}}), {"key radius is -3", "above 0"}},
+        {paint({{"radius", "128.5"}}), {"key radius is 128.5", "128"}},
+        {paint({{"radius", "true"}}), {"key radius is true"}},
+        {paint({{"connectivity", "18"}}), {"key connectivity is 18", "6 or 26"}},
+        {paint({{"connectivity", "6.5"}}), {"key connectivity is 6.5"}},
+        {paint({{"connectivity", "27"}}), {"key connectivity is 27"}},
+        {paint({{"path", ""}}), {"key path is missing"}},
+        {paint({{"path", "[]"}}), {"key path is []", "at least one point"}},
+        {paint({{"path", "[1,2,3]"}}), {"key path.0 is 1", "[x,y,z]"}},
+        {paint({{"path", "[[1,2,3],[1,2]]"}}), {"key path.1 is [1,2]", "three numbers"}},
+        {paint({{"path", "[[1,2,3],[1,2,3,4]]"}}), {"key path.1 is [1,2,3,4]"}},
+        {paint({{"path", "[[1,2,\"3\"]]"}}), {"key path.0 is [1,2,\"3\"]"}},
+        {paint({{"path", "{\"x\":1}"}}), {"key path is {\"x\":1}"}},
+        {paint({{"path", "[[0,0,0],[1e9,0,0]]"}}), {"key path", "1000000"}},
+        {paint({{"path", "[[-1e308,0,0],[1.7e308,0,0]]"}}), {"key path", "1000000"}},
+        {paint({{"colour", "1"}}), {"unknown key colour", "threshold"}},
+        {R"({"op":"undo","count":0})", {"key count is 0", "from 1"}},
+        {R"({"op":"undo","count":-1})", {"key count is -1"}},
+        {R"({"op":"redo","count":"2"})", {"key count is \"2\""}},
+        {R"({"op":"redo","times":2})", {"unknown key times", "count"}},
+        {R"({"op":"save","path":"a.mask"})", {"unknown key path", "none but op"}},
+        {R"({"op":"expect","voxels_in_group":5})", {"key voxels_in_group is 5", "object"}},
+        {R"({"op":"expect","voxels_in_group":{"256":1}})", {"key voxels_in_group.256", "0 ... 255"}},
+        {R"({"op":"expect","voxels_in_group":{"03":1}})", {"key voxels_in_group.03"}},
+        {R"({"op":"expect","voxels_in_group":{"":1}})", {"key voxels_in_group."}},
+        {R"({"op":"expect","voxels_in_group":{"3":-1}})", {"key voxels_in_group.3 is -1"}},
+        {R"({"op":"expect","nodes":1.5})", {"key nodes is 1.5"}},
+        {R"({"op":"expect","internodes":[]})", {"key internodes is []"}},
+        {R"({"op":"expect","voxels":1})", {"unknown key voxels"}},
+        {R"({"op":"erase"})", {"op \"erase\" is unknown", "paint, undo, redo, save, expect"}},
+        {R"({"op":5})", {"op 5 is unknown"}},
+        {R"({"brush":"flood"})", {"key op is missing"}},
+        {R"({"op":"undo","count":1,"count":2})", {"key count appears twice"}},
+        {R"(["op","save"])", {"[\"op\",\"save\"]", "object"}},
+        {R"("save")", {"\"save\"", "object"}},
+        {R"({"op":"save")", {"is not JSON"}},
+        {R"({"op":"save"} {"op":"save"})", {"is not JSON"}},
+        {R"({"op":"save"} // done)", {"is not JSON"}},
+        {"\xff\xfe", {"is not JSON"}},
+        {"{\"op\":\"\xff\"}", {"is not JSON"}},
+        {R"({"op":"save","a":[[[[[[[[[[[[1]]]]]]]]]]]]})", {"nests"}},
+    };
+    for (const BadLine& bad : bad_lines) {
+        CAPTURE(bad.line);
+        const std::string message = refusal("{\"op\":\"save\"}\n\n" + bad.line + "\n{\"op\":\"save\"}\n");
+        CAPTURE(message);
+        CHECK(contains(message, "a.jsonl:3: "));
+        for (const char* part : bad.parts) CHECK(contains(message, part));
+        CHECK(message.find('\n') == std::string::npos);
+    }
+}
+
+TEST_CASE("operations of later versions are named as such")
+{
+    for (const char* op :
+         {"density", "node", "select", "deselect", "link", "move", "delete", "group", "select_segment"}) {
+        const std::string message = refusal("{\"op\":\"" + std::string(op) + "\",\"at\":[1,2,3]}");
+        CHECK(contains(message, "a.jsonl:1: "));
+        CHECK(contains(message, "op \"" + std::string(op) + "\" is not supported by this version"));
+    }
+}
+
+TEST_CASE("a long value is shown in part, on one line")
+{
+    const std::string message = refusal(paint({{"brush", "\"" + std::string(100000, 'x') + "\""}}));
+    CHECK(contains(message, "..."));
+    CHECK(message.size() < 400);
+}
+
+TEST_CASE("a script that cannot be read is refused with its path")
+{
+    const TemporaryFolder folder;
+    CHECK(contains(error_of([&] { read_script(folder.path / "missing.jsonl"); }), "missing.jsonl"));
+    CHECK(contains(error_of([&] { read_script(folder.path); }), folder.path.string()));
+}
