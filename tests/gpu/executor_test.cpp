@@ -1,0 +1,193 @@
+// The executor and the memory book on a device: what goes in comes out, budgets hold, mistakes are named, and the
+// validation layer has nothing to say.
+
+#include <cstring>
+#include <functional>
+#include <numeric>
+
+#include <doctest/doctest.h>
+
+#include "engine/gpu/executor.h"
+#include "shaders/leap.h"
+
+using namespace shvr;
+
+namespace {
+
+struct Fixture {
+    gpu::Device device{{.device = "", .validation = true}};
+    gpu::Memory memory{device, {.device_bytes = uint64_t(64) << 20, .host_bytes = uint64_t(64) << 20}};
+    gpu::Executor executor{device, memory};
+    ~Fixture()
+    {
+        const std::vector<std::string> messages = device.take_validation_messages();
+        CHECK_MESSAGE(messages.empty(), (messages.empty() ? std::string() : messages.front()));
+    }
+};
+
+template <class T>
+std::vector<T> values_of(const std::vector<std::byte>& bytes)
+{
+    std::vector<T> values(bytes.size() / sizeof(T));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+std::string message_of(const std::function<void()>& action)
+{
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Fixture, "bytes go to a buffer, through an image and back unchanged")
+{
+    const glm::uvec3 texels(5, 7, 3);
+    gpu::Storage upload = memory.create("upload", buffer_desc(5 * 7 * 3 * 4), gpu::Placement::upload);
+    gpu::Storage image = memory.create("image", image_desc(Format::r32_uint, texels));
+    std::vector<uint32_t> wanted(5 * 7 * 3);
+    std::iota(wanted.begin(), wanted.end(), 1000u);
+    std::memcpy(upload.mapped().data(), wanted.data(), upload.mapped().size());
+
+    for (int frame = 0; frame < 3; ++frame) {  // the second and third frame meet what the ones before left in flight
+        FrameGraph graph;
+        const Resource written =
+            graph.copy_to_image(graph.import("upload", upload.import()), graph.import("image", image.import()),
+                                {{0, glm::uvec3(0), texels}});
+        const uint32_t back = graph.read_back(written);
+        CHECK(values_of<uint32_t>(executor.run(graph).read_backs[back]) == wanted);
+    }
+}
+
+TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch gives")
+{
+    const glm::uvec3 cells(50, 41, 3);
+    const auto run = [&](const glm::uvec3& tile) {
+        FrameGraph graph;
+        const Resource buffer = graph.fill(graph.create("zero", buffer_desc(cells.x * cells.y * cells.z * 4)), 0);
+        Resource source = graph.copy_to_image(buffer, graph.create("source", image_desc(Format::r32_uint, cells)),
+                                              {{0, glm::uvec3(0), cells}});
+        Pass pass = graph.compute("leap_distance");
+        pass.read("source", source);
+        pass.push(gpu::LeapDistanceParams{cells, 0});
+        pass.dispatch(cells, tile);
+        const uint32_t back =
+            graph.read_back(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
+        const gpu::FrameResult result = executor.run(graph);
+        return std::pair(result.read_backs[back], result.passes[2].dispatches);
+    };
+    const auto [whole, one] = run(glm::uvec3(0));
+    const auto [tiled, many] = run(glm::uvec3(16, 16, 1));
+    CHECK(one == 1);
+    CHECK(many == 4 * 3 * 3);
+    CHECK(whole == tiled);
+}
+
+TEST_CASE_FIXTURE(Fixture, "an allocation over the budget is refused by name before it is made, and nothing is lost")
+{
+    const gpu::Storage some = memory.create("some", buffer_desc(uint64_t(40) << 20));
+    const uint64_t used = memory.device_bytes();
+    const std::string message =
+        message_of([&] { static_cast<void>(memory.create("atlas", buffer_desc(uint64_t(30) << 20))); });
+    CHECK(message.find("'atlas' needs 30 MiB") != std::string::npos);
+    CHECK(message.find("40 MiB of the budget of 64 MiB") != std::string::npos);
+    CHECK(memory.device_bytes() == used);
+    CHECK(memory.create("small", buffer_desc(uint64_t(20) << 20)).desc().bytes == uint64_t(20) << 20);
+    CHECK(memory.device_bytes() == used);  // the temporary has gone
+    CHECK(memory.bytes_by_name().at("some") >= uint64_t(40) << 20);
+}
+
+TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same shape, and given back later")
+{
+    const auto run = [&](uint64_t bytes) {
+        FrameGraph graph;
+        static_cast<void>(graph.read_back(graph.fill(graph.create("transient", buffer_desc(bytes)), 7)));
+        executor.run(graph);
+    };
+    run(1 << 20);
+    const uint64_t after_one = memory.device_bytes();
+    for (int i = 0; i < 5; ++i) run(1 << 20);
+    CHECK(memory.device_bytes() == after_one);
+    for (int i = 0; i < 40; ++i) run(1024);
+    CHECK(memory.device_bytes() < after_one);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a pass that disagrees with its kernel is refused by name")
+{
+    const glm::uvec3 cells(8);
+    const auto refused = [&](const std::function<void(FrameGraph&, Pass&)>& declare) {
+        FrameGraph graph;
+        Pass pass = graph.compute("leap_distance");
+        declare(graph, pass);
+        pass.dispatch(cells);
+        return message_of([&] { executor.run(graph); });
+    };
+    const auto image = [&](FrameGraph& graph, const char* name) {
+        return graph.create(name, image_desc(Format::r32_uint, cells));
+    };
+    const auto filled = [&](FrameGraph& graph) {
+        const Resource zero = graph.fill(graph.create("zero", buffer_desc(8 * 8 * 8 * 4)), 0);
+        return graph.copy_to_image(zero, image(graph, "source"), {{0, glm::uvec3(0), cells}});
+    };
+    CHECK(refused([&](FrameGraph& graph, Pass& pass) {
+              graph.keep(pass.write("leep", image(graph, "leap")));
+          }).find("binds 'leep'; kernel 'leap_distance' declares source, leap") != std::string::npos);
+    CHECK(refused([&](FrameGraph& graph, Pass& pass) {
+              graph.keep(pass.write("leap", image(graph, "leap")));
+          }).find("leaves 'source'") != std::string::npos);
+    CHECK(refused([&](FrameGraph& graph, Pass& pass) {
+              const Resource source = filled(graph);
+              graph.keep(pass.modify("source", source));
+          }).find("only reads") != std::string::npos);
+    CHECK(refused([&](FrameGraph& graph, Pass& pass) {
+              pass.read("source", filled(graph));
+              pass.push(uint32_t(1));
+              graph.keep(pass.write("leap", image(graph, "leap")));
+          }).find("pushes 4 bytes") != std::string::npos);
+    CHECK(refused([&](FrameGraph& graph, Pass& pass) {
+              pass.read("source", filled(graph));
+              pass.push(gpu::LeapDistanceParams{cells, 0});
+              pass.constant("SPEED", 1);
+              graph.keep(pass.write("leap", image(graph, "leap")));
+          }).find("no specialization constant 'SPEED'") != std::string::npos);
+    FrameGraph graph;
+    Pass pass = graph.compute("warp");
+    graph.keep(pass.write("leap", image(graph, "leap")));
+    pass.dispatch(cells);
+    const std::string message = message_of([&] { executor.run(graph); });
+    CHECK(message.find("no kernel is called 'warp'; known: ") != std::string::npos);
+    CHECK(message.find("raycast") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture, "every pass has a time, in order, and the sum is within the frame's")
+{
+    FrameGraph graph;
+    const Resource a = graph.fill(graph.create("a", buffer_desc(1 << 22)), 1, "fill a");
+    const Resource b = graph.fill(graph.create("b", buffer_desc(1 << 22)), 2, "fill b");
+    static_cast<void>(graph.read_back(a));
+    static_cast<void>(graph.read_back(b));
+    const gpu::FrameResult result = executor.run(graph);
+    REQUIRE(result.passes.size() == 4);
+    if (device.traits().timestamp_bits == 0) return;
+    double sum = 0.0;
+    for (size_t i = 0; i < result.passes.size(); ++i) {
+        CHECK(result.passes[i].timed);
+        if (i > 0) CHECK(result.passes[i].start_ms >= result.passes[i - 1].start_ms);
+        sum += result.passes[i].gpu_ms;
+    }
+    CHECK(result.passes[0].name == "fill a");
+    CHECK(result.passes[2].barrier == "transfer -> transfer");
+    if (device.traits().is_cpu) CHECK(sum <= result.wall_ms * 1.05 + 0.3);  // passes of a GPU may overlap
+}
+
+TEST_CASE("a device that does not exist is refused with the list of those that do")
+{
+    const std::string message =
+        message_of([] { gpu::Device device({.device = "no such device", .validation = false}); });
+    CHECK(message.find("matches 'no such device' among: 0: ") != std::string::npos);
+}
