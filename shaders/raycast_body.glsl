@@ -200,7 +200,8 @@ void main()
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (distance > 0u && i < steps);
-        if (distance == 0u) accumulate(sum, sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work));
+        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last `distance`.
+        if (distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work));
         ++i;
     }
 

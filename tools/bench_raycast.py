@@ -252,7 +252,7 @@ def report(result, mapper_names):
                       *(text for m in mapper_names for text in
                         (f"{scene[m]['load_ms']['median'] + scene[m]['first_frame_ms']['median']:.0f}",
                          f"{scene[m]['peak_mib']:.0f}"))])
-        errors.append([name, f"{scene['visible_share']:.0%}",
+        errors.append([name, f"{scene['visible_share']:.1%}",
                        *(f"{e['rmse']:.5f} {e['max']:.4f}" if (e := scene[m].get("error")) else "-"
                          for m in ("shvr", *mapper_names))])
     return "\n\n".join(table(one) for one in (rows, costs, errors))

@@ -11,8 +11,10 @@ namespace shvr {
 
 namespace {
 
-/// Regions of one frame: as many as keep the labels of all of them below this.
+/// Regions of one frame: as many as keep the labels of all of them below this, and no more than that many, since each
+/// has buffers of its own.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
+constexpr size_t MOST_REGIONS = 64;
 
 Size3 voxel_at(const glm::dvec3& position)
 {
@@ -79,9 +81,10 @@ VoxelSelection Annotator::select(const PaintOp& op)
         FrameGraph graph;
         const VolumeBinding volume = renderer_.volume().import(graph);
         std::vector<BrushRegion> regions;
-        regions.reserve(positions.size() - next);
+        regions.reserve(std::min(positions.size() - next, MOST_REGIONS));  // spans of earlier ones stay where they are
         std::vector<uint32_t> read_backs;
-        for (uint64_t labels = 0; next < positions.size() && labels < LABEL_BYTES; ++next) {
+        uint64_t labels = 0;
+        for (; next < positions.size() && labels < LABEL_BYTES && regions.size() < MOST_REGIONS; ++next) {
             BrushRegion region = make_region(op.region, positions[next], op.radius_voxels, info.spacing, info.size);
             if (region.rows.empty() || region.words_per_row() == 0) continue;
             labels += uint64_t(region.words_per_row()) * 32 * region.rows.size() * sizeof(uint32_t);

@@ -31,6 +31,14 @@ void DeviceMask::grow(uint64_t slots)
         free_slots_.push_back(slot);
 }
 
+void DeviceMask::clear()
+{
+    atlas_.reset();
+    table_.reset();
+    slots_.clear();
+    free_slots_.clear();
+}
+
 void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
 {
     std::vector<int64_t> changed(bricks.begin(), bricks.end());
@@ -45,12 +53,7 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
         }
     }
     const uint64_t needed = slots_.size() + added;
-    if (needed == 0) {
-        atlas_.reset();
-        table_.reset();
-        free_slots_.clear();
-        return;
-    }
+    if (needed == 0) return clear();
     if (added > free_slots_.size()) {
         grow(std::max<uint64_t>(needed + needed / 2, 8));
         changed = mask.painted_bricks();

@@ -18,6 +18,8 @@ public:
     /// Copies `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
+    /// Unpainted again: nothing is left on the device.
+    void clear();
     bool empty() const { return slots_.empty(); }
     MaskBinding import(FrameGraph& graph) const;
 

@@ -138,6 +138,7 @@ void Renderer::load(const VolumeSource& source, const VolumeStatistics& statisti
     const IntensityWindow window = window_for(source.info().type, statistics.minimum, statistics.maximum);
     volume_.reset();
     leap_state_.reset();
+    mask_.clear();  // paint belongs to the volume it was painted on
     statistics_ = statistics;
     volume_.emplace(executor_, memory_, source, window, filters(sampling), threads_);
 }

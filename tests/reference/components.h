@@ -22,8 +22,8 @@ std::vector<uint32_t> fill_words(const BrushRegion& region, const OpenVoxel& ope
 /// probe's centre, the floor of its position; one that is outside the region or not open selects nothing.
 std::vector<uint32_t> flood_words(const BrushRegion& region, const OpenVoxel& open, Size3 seed, int connectivity);
 
-/// The components of open voxels that hold no edge voxel of the region, which is one with a face neighbour that does not
-/// belong to the region (no voxel outside the volume does). A neighbour that belongs but is not open makes no edge.
+/// The components of open voxels that hold no edge voxel of the region, which is one with a face neighbour that does
+/// not belong to the region (no voxel outside the volume does). A neighbour that belongs but is not open makes no edge.
 std::vector<uint32_t> speckle_words(const BrushRegion& region, const OpenVoxel& open, int connectivity);
 
 }  // namespace shvr::reference

@@ -14,7 +14,8 @@ using namespace shvr::test;
 
 namespace {
 
-constexpr glm::dvec3 SPACINGS[] = {{1, 1, 1}, {1, 1, 20}, {0.957, 0.957, 1.5}, {1.5, 0.957, 0.957}};
+constexpr glm::dvec3 SPACINGS[] = {
+    {1, 1, 1}, {1, 1, 20}, {0.957, 0.957, 1.5}, {1.5, 0.957, 0.957}, {0.957, 0.957, 0.957}};
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 template <class Visit>

@@ -178,6 +178,8 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {R"({"op":"save"} // done)", {"is not JSON"}},
         {"\xff\xfe", {"is not JSON"}},
         {"{\"op\":\"\xff\"}", {"is not JSON"}},
+        // The parser takes a zero byte for the end, and would not see what follows.
+        {std::string("{\"op\":\"save\"}\0{\"op\":\"undo\"}", 27), {"is not JSON from character 14 on"}},
         {R"({"op":"save","a":[[[[[[[[[[[[1]]]]]]]]]]]]})", {"nests"}},
     };
     for (const BadLine& bad : bad_lines) {

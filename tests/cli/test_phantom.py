@@ -1,0 +1,77 @@
+"""shvr phantom: synthetic volumes as files."""
+import json
+import struct
+import unittest
+
+from harness import CliTest
+
+
+class Phantom(CliTest):
+    def test_the_file_is_the_procedural_volume(self):
+        result = self.check_json("phantom", "tubes", "--size", "20x18x16", "--seed", 7, "-o", self.folder / "new")
+        self.assert_keys(result, ["volume", "truth_mask", "truth_trace", "size", "type"])
+        self.assertEqual((result["size"], result["type"]), ([20, 18, 16], "uint8"))
+        file = self.check_json("info", result["volume"])
+        self.assertEqual(file["warnings"], [])
+        same = self.write_session(volume={"procedural": "tubes", "size": [20, 18, 16], "seed": 7})
+        expected = self.check_json("info", same)
+        for key in ("size", "type", "spacing", "unit", "histogram", "mean"):
+            self.assertEqual(file[key], expected[key], key)
+
+    def test_every_kind_and_type(self):
+        for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"):
+            for voxel_type in ("uint8", "int8", "uint16", "int16", "float32"):
+                result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
+                self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
+
+    def test_seeds_decide(self):
+        volumes = []
+        for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+            self.check("phantom", "fog", "--size", 9, "--seed", seed, "-o", self.folder / name)
+            volumes.append((self.folder / name / "fog.raw").read_bytes())
+        self.assertEqual(volumes[0], volumes[1])
+        self.assertNotEqual(volumes[0], volumes[2])
+
+    def test_wrong_usage(self):
+        for size in ("0", "-3", "4x4", "4x4x4y", "1048577", "4x4x", ""):
+            self.check_refused("phantom", "fog", f"--size={size}", "-o", self.folder, status=2)
+        self.check_refused("phantom", "nothing", "-o", self.folder, status=2, says=["tubes"])
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_nothing_is_left_behind_where_a_file_cannot_be_written(self):
+        for name in ("fog.raw", "fog.nhdr"):
+            folder = self.folder / name.replace(".", "_")
+            (folder / name).mkdir(parents=True)
+            self.check_refused("phantom", "fog", "-o", folder, says=[name])
+            self.assertEqual([path.name for path in folder.iterdir()], [name])
+
+
+class LinearPictures(CliTest):
+    """shvr render -o OUT.pfm (belongs into test_render.py)."""
+
+    def test_linear_light_in_floats_from_the_bottom(self):
+        session = self.write_session(render={"size": [3, 2], "background": "#bc00ff"},
+                                     transfer_function={"points": []})
+        picture = self.folder / "a.pfm"
+        self.check("render", session, "-o", picture)
+        header, values = b"PF\n3 2\n-1.0\n", picture.read_bytes()
+        self.assertTrue(values.startswith(header))
+        floats = struct.unpack("<18f", values[len(header):])
+        for red, green, blue in zip(floats[0::3], floats[1::3], floats[2::3]):
+            self.assertAlmostEqual(red, 0.5029, places=4)
+            self.assertEqual((green, blue), (0.0, 1.0))
+
+    def test_rows_go_up(self):
+        session = self.write_session(
+            volume={"procedural": "constant", "size": [8, 8, 8]}, light={"shaded": False},
+            render={"size": [4, 4], "background": "#000000"}, cut={"lower": [0, 0, 4]},
+            transfer_function={"points": [{"intensity": 100, "opacity": 1}, {"intensity": 200, "opacity": 1}]})
+        picture = self.folder / "a.pfm"
+        self.check("render", session, "-o", picture, "--camera", json.dumps(
+            {"projection": "orthographic", "eye": [4, -20, 4], "target": [4, 4, 4], "up": [0, 0, 1], "height": 8}))
+        reds = struct.unpack("<48f", picture.read_bytes()[len(b"PF\n4 4\n-1.0\n"):])[0::3]
+        self.assertEqual([round(red) for red in reds], [0] * 8 + [1] * 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
