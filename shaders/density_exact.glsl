@@ -68,12 +68,12 @@ float bilinear(float a, float b, float c, float d, float x, float y)
     return low + (high - low) * y;
 }
 
-/// Normalised, 0 ... 1.
+/// A 16-bit code, with its fraction. Between equal codes it is that code exactly, so thresholds hold at voxels.
 float value_of(const Density d)
 {
     const float low = bilinear(d.v[0], d.v[1], d.v[2], d.v[3], d.fraction.x, d.fraction.y);
     const float high = bilinear(d.v[4], d.v[5], d.v[6], d.v[7], d.fraction.x, d.fraction.y);
-    return (low + (high - low) * d.fraction.z) / 65535.0;
+    return low + (high - low) * d.fraction.z;
 }
 
 // The derivative of three values in a row, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their interpolant.
@@ -84,7 +84,7 @@ float central(float low, float high, float beyond, float f)
     return inner + (outer - inner) * abs(f - 0.5);
 }
 
-/// Per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight corners.
+/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight corners.
 vec3 gradient_of(const Density d)
 {
     const vec3 f = d.fraction;
@@ -101,5 +101,5 @@ vec3 gradient_of(const Density d)
     const float along_z = central(bilinear(d.v[0], d.v[1], d.v[2], d.v[3], f.x, f.y),
                                   bilinear(d.v[4], d.v[5], d.v[6], d.v[7], f.x, f.y),
                                   bilinear(z0.x, z0.y, z1.x, z1.y, f.x, f.y), f.z);
-    return vec3(along_x, along_y, along_z) / 65535.0;
+    return vec3(along_x, along_y, along_z);
 }

@@ -13,14 +13,15 @@ Density density_at(ivec3 corner, vec3 fraction)
 
 float value_of(const Density d)
 {
-    return textureLod(atlas, d.at, 0.0).x;
+    return 65535.0 * textureLod(atlas, d.at, 0.0).x;
 }
 
 vec3 gradient_of(const Density d)
 {
     const vec3 h = 0.5 / vec3(textureSize(atlas, 0));
     const vec3 x = vec3(h.x, 0.0, 0.0), y = vec3(0.0, h.y, 0.0), z = vec3(0.0, 0.0, h.z);
-    return vec3(textureLod(atlas, d.at + x, 0.0).x - textureLod(atlas, d.at - x, 0.0).x,
+    return 65535.0 *
+           vec3(textureLod(atlas, d.at + x, 0.0).x - textureLod(atlas, d.at - x, 0.0).x,
                 textureLod(atlas, d.at + y, 0.0).x - textureLod(atlas, d.at - y, 0.0).x,
                 textureLod(atlas, d.at + z, 0.0).x - textureLod(atlas, d.at - z, 0.0).x);
 }

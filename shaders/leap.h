@@ -17,8 +17,9 @@ SHARED_CONST uint LEAP_LIMIT = 15u;
 struct OccupancyParams {
     uvec3 cell_counts;
     uvec3 brick_counts;
-    float table_scale;  ///< table coordinate = normalised code * table_scale + table_bias
-    float table_bias;
+    float table_lower;  ///< as in RaycastParams
+    float table_upper;
+    float table_scale;
     uint table_entries;
     uint skipping;     ///< 0: every cell counts as occupied
     uvec3 mask_slots;  ///< atlas of mask bricks; used with a mask

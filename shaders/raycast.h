@@ -20,14 +20,16 @@ struct RaycastParams {
     uvec2 pixels;
     vec3 box_lower;  ///< what is drawn of the volume, voxel space
     vec3 box_upper;
-    vec3 spacing;  ///< reference lengths per voxel
+    vec3 position_limit;  ///< an ulp before the end of the volume: samples in its upper faces belong to the last voxel
+    vec3 spacing;         ///< reference lengths per voxel
     uvec3 cell_counts;
     uvec3 brick_counts;
     uvec3 mask_slots;     ///< atlas of mask bricks
     float step;           ///< reference lengths
     float opacity_limit;  ///< a ray stops at or above it
-    float table_scale;    ///< table coordinate = normalised code * table_scale + table_bias
-    float table_bias;
+    float table_lower;    ///< codes; nothing is drawn below
+    float table_upper;    ///< codes; nothing is drawn above
+    float table_scale;    ///< table coordinate = (code - table_lower) * table_scale
     uint table_entries;
     vec4 background;  ///< linear light, straight alpha
     vec3 light;       ///< unit vector towards the light, volume space
@@ -35,7 +37,7 @@ struct RaycastParams {
     float diffuse;
     float specular;
     float shininess;
-    float gradient_fade;  ///< normalised codes per reference length
+    float gradient_fade;  ///< codes per reference length
 };
 
 /// What a voxel of a colour group looks like, for one step.

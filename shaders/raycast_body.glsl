@@ -63,12 +63,10 @@ vec4 table_entry(uint entry)
 vec4 classify(const RaycastParams params, float density)
 {
     const float last = float(params.table_entries - 1u);
-    const float at = density * params.table_scale + params.table_bias;
-    const float inside = clamp(at, 0.0, last - 1.0);
-    const uint entry = uint(inside);
-    const float f = clamp(at - float(entry), 0.0, 1.0);
-    vec4 look = mix(table_entry(entry), table_entry(entry + 1u), f);
-    look.a = at >= 0.0 && at <= last ? look.a : 0.0;
+    const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
+    const uint entry = uint(min(at, last - 1.0));
+    vec4 look = mix(table_entry(entry), table_entry(entry + 1u), at - float(entry));
+    look.a = density >= params.table_lower && density <= params.table_upper ? look.a : 0.0;
     return look;
 }
 
@@ -119,7 +117,7 @@ uint leap_entry(const RaycastParams params, vec3 position)
 // Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is held.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
-    return min(ray.origin + s * ray.direction, params.box_upper);
+    return min(ray.origin + s * ray.direction, params.position_limit);
 }
 
 // How many whole steps a ray may go from `position` without leaving the empty cube around its cell.

@@ -31,16 +31,14 @@ glm::dvec3 light_direction(const Light& light, const Camera& camera)
 }
 
 struct TableMap {
-    double scale, bias;
+    float lower, upper, scale;
 };
 
-/// Table coordinate = normalised code * scale + bias.
+/// Table coordinate = (code - lower) * scale.
 TableMap table_map(const TransferFunction& function, const IntensityWindow& window)
 {
-    const double lower = window.code_of(function.lower()) / 65535.0;
-    const double upper = window.code_of(function.upper()) / 65535.0;
-    const double scale = (TABLE_ENTRIES - 1) / std::max(upper - lower, 1e-12);
-    return {scale, -lower * scale};
+    const double lower = window.code_of(function.lower()), upper = window.code_of(function.upper());
+    return {float(lower), float(upper), float((TABLE_ENTRIES - 1) / std::max(upper - lower, 1e-6))};
 }
 
 std::array<uint32_t, 8> visible_groups(const Session& session)
@@ -70,8 +68,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     const VolumeInfo& info = volume.info();
     const RayPlanes planes = ray_planes(camera, session.render.size, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
-    const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit / 65535.0;
-    // A sample at the upper face belongs to the last voxel, so the drawn box ends an ulp before the volume does.
+    const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -83,15 +80,18 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.far_dy = planes.far_dy;
     params.pixels = session.render.size;
     params.box_lower = glm::max(glm::vec3(session.cut.lower), glm::vec3(0.0f));
-    params.box_upper = glm::min(glm::vec3(session.cut.upper), last);
-    if (planes.empty) params.box_upper = params.box_lower = glm::vec3(-1.0f);
+    params.box_upper = glm::min(glm::vec3(session.cut.upper), size);
+    params.position_limit = last;
+    const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
+    if (planes.empty || cut_away) params.box_upper = params.box_lower = glm::vec3(-1.0f);
     params.spacing = info.spacing / reference_length(info);
     params.cell_counts = binding.cell_counts;
     params.brick_counts = binding.brick_counts;
     params.step = float(session.render.step_voxels);
     params.opacity_limit = float(session.render.opacity_limit);
-    params.table_scale = float(map.scale);
-    params.table_bias = float(map.bias);
+    params.table_lower = map.lower;
+    params.table_upper = map.upper;
+    params.table_scale = map.scale;
     params.table_entries = TABLE_ENTRIES;
     params.background = session.render.background;
     params.light = light_direction(session.light, camera);
@@ -196,8 +196,9 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
     LeapGridInput leap;
     leap.params = {.cell_counts = volume.cell_counts,
                    .brick_counts = volume.brick_counts,
+                   .table_lower = input.params.table_lower,
+                   .table_upper = input.params.table_upper,
                    .table_scale = input.params.table_scale,
-                   .table_bias = input.params.table_bias,
                    .table_entries = input.params.table_entries,
                    .skipping = session.render.skip_empty_space,
                    .mask_slots = glm::uvec3(0)};
