@@ -1,0 +1,302 @@
+#include "tests/support/gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "tests/unit/volume_files.h"
+
+namespace shvr::test {
+
+namespace {
+
+constexpr double LARGEST_CODE = 65535.0;
+
+Renderer& renderer_of_the_process()
+{
+    static Renderer renderer({.device = {.device = "", .validation = true}});
+    return renderer;
+}
+
+template <class T>
+std::unique_ptr<VolumeSource> source_as(const TestVolume& volume)
+{
+    std::vector<std::byte> bytes(volume.voxels.size() * sizeof(T));
+    for (size_t i = 0; i < volume.voxels.size(); ++i) {
+        const T voxel = static_cast<T>(volume.voxels[i]);
+        std::memcpy(bytes.data() + i * sizeof(T), &voxel, sizeof(T));
+    }
+    return std::make_unique<MemorySource>(volume.info(), std::move(bytes));
+}
+
+/// Densities of the very codes that the device holds.
+std::vector<double> densities_of(const TestVolume& volume)
+{
+    const IntensityWindow window = volume.window();
+    std::vector<double> densities;
+    for (const double voxel : volume.voxels) {
+        const double code = std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, LARGEST_CODE);
+        densities.push_back(code / LARGEST_CODE);
+    }
+    return densities;
+}
+
+/// Lights move with the camera: right, up, back.
+glm::dvec3 light_of(const Light& light, const Camera& camera)
+{
+    const glm::dvec3 local = light.direction == glm::dvec3(0.0) ? glm::dvec3(0.3, 0.5, 1.0) : light.direction;
+    const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
+    const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back));
+    return local.x * right + local.y * glm::cross(back, right) + local.z * back;
+}
+
+}  // namespace
+
+VolumeInfo TestVolume::info() const
+{
+    VolumeInfo info{.name = "test", .format = "memory", .size = Size3(size), .type = type};
+    info.spacing = spacing;
+    return info;
+}
+
+TestVolume volume_of(const glm::ivec3& size, const std::function<double(const glm::dvec3& voxel)>& value)
+{
+    TestVolume volume{.size = size};
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) volume.voxels.push_back(std::round(value(glm::dvec3(x, y, z) + 0.5)));
+    return volume;
+}
+
+TestVolume constant_volume(const glm::ivec3& size, double value)
+{
+    return volume_of(size, [&](const glm::dvec3&) { return value; });
+}
+
+TestVolume noise_volume(const glm::ivec3& size, uint32_t seed)
+{
+    std::mt19937 random(seed);
+    return volume_of(size, [&](const glm::dvec3&) { return double(random() >> 16); });
+}
+
+std::unique_ptr<VolumeSource> source_of(const TestVolume& volume)
+{
+    switch (volume.type) {
+        case VoxelType::uint8: return source_as<uint8_t>(volume);
+        case VoxelType::int8: return source_as<int8_t>(volume);
+        case VoxelType::uint16: return source_as<uint16_t>(volume);
+        case VoxelType::int16: return source_as<int16_t>(volume);
+        case VoxelType::float32: return source_as<float>(volume);
+    }
+    return nullptr;
+}
+
+Session plain_session(std::vector<ControlPoint> points, const glm::uvec2& pixels)
+{
+    Session session;
+    session.transfer_function = TransferFunction(std::move(points));
+    session.light.shaded = false;
+    session.render.size = pixels;
+    session.render.opacity_limit = 1.0;
+    session.render.background = {0.0, 0.0, 0.0, 1.0};
+    session.render.sampling = Sampling::exact;
+    return session;
+}
+
+std::vector<ControlPoint> busy_points(double densest)
+{
+    return {{0.0, RED, 0.0},
+            {15000.0, GREEN, 0.5 * densest},
+            {30000.0, BLUE, 0.1 * densest},
+            {50000.0, WHITE, densest},
+            {65535.0, RED, 0.0}};
+}
+
+std::vector<ControlPoint> uniform_points(const glm::dvec3& color, double opacity)
+{
+    return {{0.0, color, opacity}, {LARGEST_CODE, color, opacity}};
+}
+
+Camera camera_along(const TestVolume& volume, const glm::dvec3& direction, double height)
+{
+    const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
+    const glm::dvec3 forward = glm::normalize(direction);
+    Camera camera;
+    camera.projection = Camera::Projection::orthographic;
+    camera.target = 0.5 * extent;
+    camera.eye = camera.target - forward * glm::length(extent);
+    camera.up = std::abs(forward.z) > 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+    camera.height = height;
+    return camera;
+}
+
+Camera perspective(const glm::dvec3& eye, const glm::dvec3& target, double fov_y_degrees)
+{
+    Camera camera{.eye = eye, .target = target, .fov_y_degrees = fov_y_degrees};
+    const glm::dvec3 forward = glm::normalize(target - eye);
+    if (std::abs(forward.z) > 0.9) camera.up = {0.0, 1.0, 0.0};
+    return camera;
+}
+
+std::vector<glm::dvec3> cube_directions()
+{
+    std::vector<glm::dvec3> directions;
+    for (int i = 0; i < 27; ++i)
+        if (i != 13) directions.emplace_back(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    return directions;
+}
+
+double opacity_of_depth(double depth)
+{
+    return -std::expm1(-depth);
+}
+
+double depth_of_opacity(double opacity)
+{
+    return -std::log1p(-opacity);
+}
+
+Pixels pixels_of(const ImageF& image)
+{
+    Pixels pixels;
+    for (size_t i = 0; i + 3 < image.rgba.size(); i += 4)
+        pixels.emplace_back(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], image.rgba[i + 3]);
+    return pixels;
+}
+
+double worst_difference(const Pixels& a, const Pixels& b)
+{
+    REQUIRE(a.size() == b.size());
+    double worst = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const glm::dvec4 difference = glm::abs(a[i] - b[i]);
+        worst = std::max({worst, difference.x, difference.y, difference.z, difference.w});
+    }
+    return worst;
+}
+
+double rms_difference(const Pixels& a, const Pixels& b)
+{
+    REQUIRE(a.size() == b.size());
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
+    return std::sqrt(sum / (4.0 * double(a.size())));
+}
+
+size_t different_bits(const ImageF& a, const ImageF& b)
+{
+    REQUIRE(a.rgba.size() == b.rgba.size());
+    size_t count = 0;
+    for (size_t i = 0; i < a.rgba.size(); ++i)
+        count += std::bit_cast<uint32_t>(a.rgba[i]) != std::bit_cast<uint32_t>(b.rgba[i]);
+    return count;
+}
+
+void check_below(const std::string& what, double error, double bound)
+{
+    INFO(what, ": ", error, ", at most ", bound);
+    CHECK(error <= bound);
+}
+
+OnDevice::OnDevice() : renderer_(renderer_of_the_process())
+{
+    static_cast<void>(renderer_.device().take_validation_messages());
+}
+
+OnDevice::~OnDevice()
+{
+    for (const std::string& message : renderer_.device().take_validation_messages()) FAIL_CHECK(message);
+}
+
+void OnDevice::load(TestVolume volume, Sampling sampling)
+{
+    volume_ = std::move(volume);
+    VolumeStatistics statistics;
+    statistics.minimum = volume_.minimum;
+    statistics.maximum = volume_.maximum;
+    renderer_.load(*source_of(volume_), statistics, sampling);
+}
+
+ImageF OnDevice::draw(const Session& session, const Camera& camera)
+{
+    Picture picture = renderer_.render(session, camera);
+    CHECK(picture.complete);
+    CHECK(count_not_finite(picture.image) == 0);
+    return std::move(picture.image);
+}
+
+std::vector<uint64_t> OnDevice::work(const Session& session, const Camera& camera)
+{
+    const Picture picture = renderer_.render(session, camera, {.count_work = true});
+    for (const gpu::PassReport& pass : picture.passes)
+        if (pass.name == "raycast") return pass.counters;
+    return {};
+}
+
+Pixels OnDevice::expected(const Session& session, const Camera& camera, const reference::Mode& mode) const
+{
+    const reference::Scene scene = scene_of(volume_, session, camera);
+    Pixels pixels = reference::render(scene, rays_of(volume_, session, camera), mode);
+    const glm::dvec4 background = session.render.background;
+    for (glm::dvec4& pixel : pixels) {
+        const double through = (1.0 - pixel.a) * background.a;
+        pixel += glm::dvec4(through * glm::dvec3(background), through);
+    }
+    return pixels;
+}
+
+Pixels OnDevice::discrete(const Session& session, const Camera& camera) const
+{
+    return expected(session, camera,
+                    reference::DiscreteOptions{.step = session.render.step_voxels, .table_entries = TABLE_ENTRIES});
+}
+
+double OnDevice::error(const Session& session, const Camera& camera)
+{
+    return worst_difference(pixels_of(draw(session, camera)), discrete(session, camera));
+}
+
+reference::Scene scene_of(const TestVolume& volume, const Session& session, const Camera& camera)
+{
+    const IntensityWindow window = volume.window();
+    reference::Scene scene;
+    scene.size = volume.size;
+    scene.density = densities_of(volume);
+    scene.spacing = volume.spacing;
+    for (const ControlPoint& point : session.transfer_function.points())
+        scene.points.push_back({window.code_of(point.intensity) / LARGEST_CODE, point.color, point.opacity});
+    scene.cut_min = session.cut.lower;
+    scene.cut_max = session.cut.upper;
+    if (session.light.shaded) {
+        const double range = (volume.maximum - volume.minimum) * window.codes_per_unit / LARGEST_CODE;
+        scene.shading = reference::Shading{.ambient = session.light.ambient,
+                                           .diffuse = session.light.diffuse,
+                                           .specular = session.light.specular,
+                                           .shininess = session.light.shininess,
+                                           .fade = session.light.gradient_fade * range,
+                                           .to_light = light_of(session.light, camera)};
+    }
+    return scene;
+}
+
+std::vector<reference::Ray> rays_of(const TestVolume& volume, const Session& session, const Camera& camera)
+{
+    const glm::uvec2 pixels = session.render.size;
+    const RayPlanes planes = ray_planes(camera, pixels, volume.info());
+    std::vector<reference::Ray> rays;
+    for (uint32_t y = 0; y < pixels.y; ++y) {
+        for (uint32_t x = 0; x < pixels.x; ++x) {
+            const double dx = x + 0.5, dy = y + 0.5;
+            const glm::dvec3 near = planes.near_corner + dx * planes.near_dx + dy * planes.near_dy;
+            const glm::dvec3 far = planes.far_corner + dx * planes.far_dx + dy * planes.far_dy;
+            const glm::dvec3 direction = planes.empty ? glm::dvec3(0.0) : far - near;
+            rays.push_back({.origin = near, .direction = direction, .t_min = 0.0, .t_max = 1.0});
+        }
+    }
+    return rays;
+}
+
+}  // namespace shvr::test
