@@ -1,0 +1,155 @@
+// Bricks and leaps are bookkeeping: they must not change one bit of a picture.
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "shaders/counters.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// Blobs in a field of nothing, with noise between them: empty cells, full ones and borders everywhere.
+TestVolume blobs(const glm::ivec3& size, uint32_t seed)
+{
+    const TestVolume noise = noise_volume(size, seed);
+    TestVolume volume = noise;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const size_t at = size_t(x + size.x * (y + size.y * z));
+                const double wave = std::sin(0.23 * x) * std::sin(0.31 * y + 1.0) * std::sin(0.27 * z + 2.0);
+                volume.voxels[at] = std::floor(std::max(0.0, wave) * 60000.0 + noise.voxels[at] / 65535.0 * 3000.0);
+            }
+    return volume;
+}
+
+/// Ramps, steps, spikes a few codes wide and gaps, anywhere in the codes.
+TransferFunction random_function(std::mt19937& random)
+{
+    std::uniform_real_distribution<double> code(0.0, 65535.0), unit(0.0, 1.0);
+    std::vector<ControlPoint> points;
+    const int groups = 1 + int(random() % 3);
+    for (int i = 0; i < groups; ++i) {
+        const double from = code(random), width = random() % 2 ? 4.0 + 200.0 * unit(random) : 20000.0 * unit(random);
+        const double opacity = random() % 4 == 0 ? 1.0 : 0.3 * unit(random);
+        points.push_back({std::floor(from), GREEN, random() % 3 == 0 ? opacity : 0.0});
+        points.push_back({std::min(65535.0, from + width / 2), RED, opacity});
+        points.push_back({std::min(65535.0, std::floor(from + width)), BLUE, 0.0});
+    }
+    return TransferFunction(points);
+}
+
+/// `inner` at `offset` in a volume of nothing.
+TestVolume placed(const TestVolume& inner, const glm::ivec3& size, const glm::ivec3& offset)
+{
+    TestVolume volume = constant_volume(size, 0.0);
+    for (int z = 0; z < inner.size.z; ++z)
+        for (int y = 0; y < inner.size.y; ++y)
+            for (int x = 0; x < inner.size.x; ++x) {
+                const glm::ivec3 to = glm::ivec3(x, y, z) + offset;
+                volume.voxels[size_t(to.x + size.x * (to.y + size.y * to.z))] =
+                    inner.voxels[size_t(x + inner.size.x * (y + inner.size.y * z))];
+            }
+    return volume;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000 random transfer functions")
+{
+    constexpr uint32_t SEED = 20261121;
+    std::mt19937 random(SEED);
+    load(blobs({70, 50, 45}, SEED));
+    uint64_t with_leaps = 0, without = 0;
+    for (int i = 0; i < 1000; ++i) {
+        CAPTURE(i);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        Session session = plain_session({}, {16, 8});
+        session.transfer_function = random_function(random);
+        session.light.shaded = i % 3 == 0;
+        session.render.step_voxels = std::array{0.25, 0.5, 0.77, 1.0, 2.0}[size_t(i % 5)];
+        if (i % 4 == 1) session.cut = {glm::dvec3(4.0 * unit(random)), glm::dvec3(12.0, 24.0, 40.0)};
+        const Camera camera =
+            camera_along(volume(), {unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5}, 60.0);
+        const ImageF leaping = draw(session, camera);
+        session.render.skip_empty_space = false;
+        CHECK(different_bits(leaping, draw(session, camera)) == 0);
+        if (i % 100 != 0) continue;
+        without += work(session, camera)[gpu::COUNTER_SAMPLES];
+        session.render.skip_empty_space = true;
+        with_leaps += work(session, camera)[gpu::COUNTER_SAMPLES];
+    }
+    CHECK(with_leaps < without);  // or nothing was leapt over
+}
+
+TEST_CASE_FIXTURE(OnDevice, "where brick borders fall changes no bit")
+{
+    // The same voxels in three places, so that brick borders run through them elsewhere. Camera, planes and steps are such
+    // that every position is exact in float, so that nothing but the bricks is different.
+    const TestVolume inner = noise_volume({40, 40, 40}, 11);
+    const glm::ivec3 whole(80);
+    Session session = plain_session(busy_points(), {40, 40});
+    session.render.step_voxels = 0.375;
+    const auto picture = [&](const glm::ivec3& offset, int axis, bool shaded) {
+        load(placed(inner, whole, offset));
+        session.light.shaded = shaded;
+        session.cut = {glm::dvec3(offset), glm::dvec3(offset + 40)};
+        glm::dvec3 back(0.0), up(0.0);
+        back[axis] = 1.0;
+        up[(axis + 1) % 3] = 1.0;
+        Camera camera;
+        camera.projection = Camera::Projection::orthographic;
+        camera.target = glm::dvec3(offset) + 20.0625;
+        camera.eye = camera.target + 64.0 * back;
+        camera.up = up;
+        camera.height = 40.0;
+        camera.near_distance = 32.0;
+        return draw(session, camera);
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (bool shaded : {false, true}) {
+            CAPTURE(axis);
+            CAPTURE(shaded);
+            const ImageF here = picture(glm::ivec3(4), axis, shaded);
+            CHECK(different_bits(here, picture(glm::ivec3(20), axis, shaded)) == 0);
+            CHECK(different_bits(here, picture(glm::ivec3(12, 24, 36), axis, shaded)) == 0);
+            CHECK(different_bits(here, draw(plain_session({}, {40, 40}), camera_along(volume(), {1, 0, 0}, 80.0))) > 0);
+        }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "the device's own filter gives the picture of exact sampling")
+{
+    const TestVolume noise = noise_volume({37, 41, 35}, 5);
+    Session session = plain_session(busy_points(), {24, 24});
+    session.light.shaded = true;
+    const Camera camera = camera_along(noise, {1.0, 2.0, 3.0}, 50.0);
+    load(noise, Sampling::exact);
+    const Pixels exact = pixels_of(draw(session, camera));
+    if (!renderer().device().traits().linear_r16) return;
+    load(noise, Sampling::hardware);
+    const Pixels filtered = pixels_of(draw(session, camera));
+    // lavapipe filters 16-bit texels in float; a GPU's weights have 8 bits.
+    check_below("filtered", worst_difference(exact, filtered), renderer().device().traits().is_cpu ? 1e-4 : 2e-2);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "work is counted exactly")
+{
+    // 64 rays straight through 64 voxels at half-voxel steps, everything visible, two bricks deep.
+    load(constant_volume({64, 64, 64}, 30000.0));
+    Session session = plain_session(uniform_points(RED, 0.001), {8, 8});
+    session.render.step_voxels = 0.5;
+    const std::vector<uint64_t> counted = work(session, camera_along(volume(), {0.0, 0.0, 1.0}, 64.0));
+    CHECK(counted[gpu::COUNTER_RAYS] == 64);
+    CHECK(counted[gpu::COUNTER_SAMPLES] == 64 * 128);
+    CHECK(counted[gpu::COUNTER_SHADED] == 0);
+    CHECK(counted[gpu::COUNTER_LEAPS] == 0);
+    CHECK(counted[gpu::COUNTER_BRICKS_VISITED] == 64 * 2);
+    CHECK(counted[gpu::COUNTER_BRICKS_SKIPPED] == 0);
+    CHECK(counted == work(session, camera_along(volume(), {0.0, 0.0, 1.0}, 64.0)));
+}
