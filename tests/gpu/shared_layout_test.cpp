@@ -1,0 +1,107 @@
+// One struct, two languages: the offsets that the kernels use are those of the C++ compiler.
+
+#include <cstddef>
+
+#include <doctest/doctest.h>
+
+#include "engine/gpu/embedded_kernels.h"
+#include "engine/gpu/kernel.h"
+#include "shaders/paint.h"
+#include "shaders/raycast.h"
+
+using namespace shvr;
+
+namespace {
+
+using Members = std::vector<std::pair<const char*, size_t>>;
+
+#define MEMBER(type, name)                                                                                             \
+    {                                                                                                                  \
+#name, offsetof(gpu::type, name)                                                                               \
+    }
+
+Members raycast_params()
+{
+    return {MEMBER(RaycastParams, near_corner),  MEMBER(RaycastParams, near_dx),
+            MEMBER(RaycastParams, near_dy),      MEMBER(RaycastParams, far_corner),
+            MEMBER(RaycastParams, far_dx),       MEMBER(RaycastParams, far_dy),
+            MEMBER(RaycastParams, pixels),       MEMBER(RaycastParams, box_lower),
+            MEMBER(RaycastParams, box_upper),    MEMBER(RaycastParams, position_limit),
+            MEMBER(RaycastParams, spacing),      MEMBER(RaycastParams, cell_counts),
+            MEMBER(RaycastParams, brick_counts), MEMBER(RaycastParams, mask_slots),
+            MEMBER(RaycastParams, step),         MEMBER(RaycastParams, opacity_limit),
+            MEMBER(RaycastParams, table_lower),  MEMBER(RaycastParams, table_upper),
+            MEMBER(RaycastParams, table_scale),  MEMBER(RaycastParams, table_entries),
+            MEMBER(RaycastParams, background),   MEMBER(RaycastParams, light),
+            MEMBER(RaycastParams, ambient),      MEMBER(RaycastParams, diffuse),
+            MEMBER(RaycastParams, specular),     MEMBER(RaycastParams, shininess),
+            MEMBER(RaycastParams, gradient_fade)};
+}
+
+Members occupancy_params()
+{
+    return {MEMBER(OccupancyParams, cell_counts), MEMBER(OccupancyParams, brick_counts),
+            MEMBER(OccupancyParams, table_lower), MEMBER(OccupancyParams, table_upper),
+            MEMBER(OccupancyParams, table_scale), MEMBER(OccupancyParams, table_entries),
+            MEMBER(OccupancyParams, skipping),    MEMBER(OccupancyParams, mask_slots)};
+}
+
+Members region_params()
+{
+    return {MEMBER(RegionParams, origin),        MEMBER(RegionParams, size),
+            MEMBER(RegionParams, words_per_row), MEMBER(RegionParams, threshold_code),
+            MEMBER(RegionParams, connectivity),  MEMBER(RegionParams, seed),
+            MEMBER(RegionParams, brick_counts)};
+}
+
+gpu::KernelInterface interface_of(const std::string& name)
+{
+    for (const gpu::EmbeddedKernel& kernel : gpu::embedded_kernels())
+        if (name == kernel.name) return gpu::reflect(name, {kernel.words, kernel.word_count});
+    FAIL("no kernel " << name);
+    return {};
+}
+
+void check_members(const std::string& kernel, const std::string& block, const Members& expected)
+{
+    CAPTURE(kernel);
+    CAPTURE(block);
+    const gpu::KernelInterface interface = interface_of(kernel);
+    REQUIRE(interface.members.contains(block));
+    const std::vector<gpu::KernelInterface::Member>& members = interface.members.at(block);
+    REQUIRE(members.size() == expected.size());
+    for (size_t i = 0; i < members.size(); ++i) {
+        CHECK(members[i].name == expected[i].first);
+        CHECK(members[i].offset == expected[i].second);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("members of shared structs lie where C++ puts them")
+{
+    for (const char* kernel : {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked"})
+        check_members(kernel, "params_block", raycast_params());
+    for (const char* kernel : {"raycast_masked", "raycast_filtered_masked"})
+        check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
+    for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
+        check_members(kernel, "push", occupancy_params());
+    check_members("leap_distance", "push", {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, axis)});
+    for (const char* kernel : {"region_bits", "region_bits_filtered", "region_merge", "region_mark", "region_select"})
+        check_members(kernel, "push", region_params());
+    for (const char* kernel : {"region_bits", "region_bits_filtered", "region_mark"})
+        check_members(kernel, "rows", {MEMBER(RowSpan, begin), MEMBER(RowSpan, end)});
+}
+
+TEST_CASE("push constants are as long as their structs, and fit where the smallest device has room")
+{
+    CHECK(interface_of("leap_occupancy").push_bytes == sizeof(gpu::OccupancyParams));
+    CHECK(interface_of("leap_distance").push_bytes == sizeof(gpu::LeapDistanceParams));
+    CHECK(interface_of("region_merge").push_bytes == sizeof(gpu::RegionParams));
+    for (const gpu::EmbeddedKernel& kernel : gpu::embedded_kernels()) {
+        CAPTURE(kernel.name);
+        const gpu::KernelInterface interface = interface_of(kernel.name);
+        CHECK(interface.push_bytes <= 128);
+        CHECK(interface.local_size[0] * interface.local_size[1] * interface.local_size[2] <= 128);
+    }
+}
