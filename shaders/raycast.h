@@ -9,6 +9,9 @@ SHARED_BEGIN
 SHARED_CONST uint TABLE_WIDTH = 256u;
 SHARED_CONST uint TABLE_HEIGHT = 16u;
 
+/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess where that is a whole number below this.
+SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
+
 struct RaycastParams {
     // The ray of a pixel joins two points on planes close to the volume, made in double on the CPU; voxel space.
     vec3 near_corner;
@@ -17,11 +20,14 @@ struct RaycastParams {
     vec3 far_corner;
     vec3 far_dx;
     vec3 far_dy;
-    uvec2 pixels;
+    uvec2 pixel_begin;  ///< the part of the picture that is drawn
+    uvec2 pixel_end;
+    uvec2 target;    ///< texel of pixel_begin
     vec3 box_lower;  ///< what is drawn of the volume, voxel space
     vec3 box_upper;
     vec3 position_limit;  ///< an ulp before the end of the volume: samples in its upper faces belong to the last voxel
     vec3 spacing;         ///< reference lengths per voxel
+    vec3 inverse_spacing;
     uvec3 cell_counts;
     uvec3 brick_counts;
     uvec3 mask_slots;     ///< atlas of mask bricks
@@ -38,6 +44,9 @@ struct RaycastParams {
     float specular;
     float shininess;
     float gradient_fade;  ///< codes per reference length
+    vec3 probe_center;    ///< voxel space; the probe is a ball that rays stop at
+    float probe_radius;   ///< reference lengths
+    vec3 probe_color;     ///< linear light
 };
 
 /// What a voxel of a colour group looks like, for one step.

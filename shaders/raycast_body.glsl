@@ -13,6 +13,10 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 // A group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels; rows of bricks lie along x in memory, so a wider
 // group uses more of each cache line on devices whose images are linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
+layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
+layout(constant_id = 4) const uint PROBE = 0u;
+// Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
+layout(constant_id = 5) const uint PICK = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, r32ui) uniform readonly uimage3D leap;
@@ -45,7 +49,7 @@ struct Ray {
     vec3 direction;   // voxels per reference length
     vec3 inverse;     // 1 / direction; a large number where the ray stands still
     vec3 ahead;       // 1 where the direction is positive, else 0
-    vec3 to_eye;      // unit, volume space
+    vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
 };
 
 struct Work {
@@ -104,7 +108,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, uint 
     }
     if (SHADED != 0u) {
         if (COUNT_WORK != 0u) ++work.shaded;
-        look.rgb = shade(params, look.rgb, gradient_of(density) / params.spacing, ray.to_eye);
+        look.rgb = shade(params, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
     return look;
 }
@@ -139,6 +143,25 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
+// Length along the ray to the probe's ball; far beyond any volume where the ray misses it.
+float length_to_probe(const RaycastParams params, const Ray ray)
+{
+    const vec3 direction = ray.direction * params.spacing;  // of length 1
+    const vec3 from_center = (ray.origin - params.probe_center) * params.spacing;
+    const float middle = -dot(from_center, direction);
+    // From the ray's nearest point, not from the origin: b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
+    const vec3 nearest = from_center + middle * direction;
+    const float half_chord_squared = params.probe_radius * params.probe_radius - dot(nearest, nearest);
+    const float half_chord = sqrt(max(half_chord_squared, 0.0));
+    return half_chord_squared < 0.0 || middle + half_chord < 0.0 ? 1e30 : max(middle - half_chord, 0.0);
+}
+
+vec4 probe_look(const RaycastParams params, const Ray ray, float s)
+{
+    const vec3 at = (ray.origin + s * ray.direction - params.probe_center) * params.spacing;
+    return vec4(lit(params, params.probe_color, at / params.probe_radius, 1.0, ray.half_way), 1.0);
+}
+
 uint bricks_between(vec3 a, vec3 b)
 {
     const ivec3 d = abs(ivec3(a) / int(BRICK_SIZE) - ivec3(b) / int(BRICK_SIZE));
@@ -150,8 +173,9 @@ void main()
     const RaycastParams params = params_block.data;
     const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);
     const uvec2 in_group = uvec2(gl_LocalInvocationIndex % GROUP_WIDTH, gl_LocalInvocationIndex / GROUP_WIDTH);
-    const uvec2 pixel = gl_WorkGroupID.xy * group_size + in_group;
-    if (any(greaterThanEqual(pixel, params.pixels))) return;
+    const uvec2 in_part = gl_WorkGroupID.xy * group_size + in_group;
+    const uvec2 pixel = params.pixel_begin + in_part;
+    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
 
     const vec2 centre = vec2(pixel) + 0.5;
     const vec3 near = params.near_corner + centre.x * params.near_dx + centre.y * params.near_dy;
@@ -161,7 +185,7 @@ void main()
     Ray ray;
     ray.origin = near;
     ray.direction = (far - near) / length_to_far;
-    ray.to_eye = -physical / length_to_far;
+    ray.half_way = half_way(params.light, -physical / length_to_far);
     const bvec3 still = equal(ray.direction, vec3(0.0));
     ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
     ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
@@ -175,7 +199,9 @@ void main()
                                   still.y && (near.y < params.box_lower.y || near.y > params.box_upper.y),
                                   still.z && (near.z < params.box_lower.z || near.z > params.box_upper.z)));
     const float begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
-    const float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
+    float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
+    const float probe = PROBE != 0u ? length_to_probe(params, ray) : 1e30;
+    if (PROBE != 0u) end = min(end, max(probe, begin));
 
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(extent / params.step);
@@ -215,8 +241,15 @@ void main()
         }
     }
 
+    if (PROBE != 0u && probe < length_to_far && sum.a < params.opacity_limit) accumulate(sum, probe_look(params, ray, probe));
+
+    if (PICK != 0u) {
+        const vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
+        imageStore(color, ivec3(params.target + in_part, 0), sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
+        return;
+    }
     const float through = (1.0 - sum.a) * params.background.a;
-    imageStore(color, ivec3(pixel, 0), vec4(sum.rgb + through * params.background.rgb, sum.a + through));
+    imageStore(color, ivec3(params.target + in_part, 0), vec4(sum.rgb + through * params.background.rgb, sum.a + through));
 
     if (COUNT_WORK != 0u && extent > 0.0) {
         const uint crossed = bricks_between(position_at(params, ray, begin), position_at(params, ray, end));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
 namespace shvr::gpu {
 
@@ -62,12 +63,12 @@ glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
 
 }  // namespace
 
-/// One run of one graph: everything that lives until the device is done with it.
-struct Executor::Frame {
+/// One graph on its way: everything that lives until the device is done with it.
+struct Submission::Frame {
     Executor& executor;
-    const FrameGraph& graph;
-    const Options& options;
-    CompiledGraph compiled;
+    const FrameGraph graph;
+    const Executor::Options options;
+    const CompiledGraph compiled;
     std::vector<Storage*> storages;  // per resource, transients only
     std::vector<Storage*> taken;     // transients to give back
     std::vector<Storage*> read_backs;
@@ -77,6 +78,7 @@ struct Executor::Frame {
     VkQueryPool queries = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
     std::vector<VkCommandBuffer> chunks;  // one submission each
+    std::chrono::steady_clock::time_point started;
     struct Prepared {
         const Kernel* kernel = nullptr;
         VkDescriptorSet set = VK_NULL_HANDLE;
@@ -85,8 +87,8 @@ struct Executor::Frame {
     };
     std::vector<Prepared> prepared;  // per step
 
-    Frame(Executor& owner, const FrameGraph& frame_graph, const Options& frame_options)
-        : executor(owner), graph(frame_graph), options(frame_options), compiled(frame_graph.compile())
+    Frame(Executor& owner, FrameGraph frame_graph, const Executor::Options& frame_options)
+        : executor(owner), graph(std::move(frame_graph)), options(frame_options), compiled(graph.compile())
     {}
     Frame(const Frame&) = delete;
     Frame& operator=(const Frame&) = delete;
@@ -108,6 +110,13 @@ struct Executor::Frame {
         taken.push_back(&executor.take_transient(name, desc, placement));
         return *taken.back();
     }
+    Storage& take_resource(const FrameGraph::ResourceData& resource)
+    {
+        if (resource.contents.empty()) return take(resource.name, resource.desc, Placement::device);
+        Storage& storage = take(resource.name, resource.desc, Placement::upload);
+        std::ranges::copy(resource.contents, storage.mapped().begin());
+        return storage;
+    }
     uint32_t object_id(uint32_t resource) const
     {
         const FrameGraph::ResourceData& data = graph.resources()[resource];
@@ -123,18 +132,18 @@ struct Executor::Frame {
     void record_pass(const Step& step, Prepared& state);
     void record_dispatches(const PassData& pass, Prepared& state);
     void transition_new_images() const;
-    double submit();
-    FrameResult collect(double wall_ms) const;
+    void submit();
+    bool done() const;
+    FrameResult collect();
 };
 
-void Executor::Frame::prepare()
+void Submission::Frame::prepare()
 {
     const auto& resources = graph.resources();
     const uint64_t alignment = executor.device_.traits().limits.minStorageBufferOffsetAlignment;
     storages.resize(resources.size());
     for (uint32_t i = 0; i < resources.size(); ++i)
-        if (compiled.used[i] && !resources[i].imported)
-            storages[i] = &take(resources[i].name, resources[i].desc, Placement::device);
+        if (compiled.used[i] && !resources[i].imported) storages[i] = &take_resource(resources[i]);
     read_backs.resize(graph.read_back_count());
 
     uint64_t block_bytes = 0, counter_bytes = 0;
@@ -186,7 +195,7 @@ void Executor::Frame::prepare()
     }
 }
 
-void Executor::Frame::write_descriptors(const PassData& data, const Prepared& step, uint64_t& block_offset) const
+void Submission::Frame::write_descriptors(const PassData& data, const Prepared& step, uint64_t& block_offset) const
 {
     const std::vector<KernelInterface::Slot>& slots = step.kernel->interface().slots;
     std::vector<VkWriteDescriptorSet> writes;
@@ -222,7 +231,7 @@ void Executor::Frame::write_descriptors(const PassData& data, const Prepared& st
     vkUpdateDescriptorSets(executor.device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
 }
 
-void Executor::Frame::begin_chunk()
+void Submission::Frame::begin_chunk()
 {
     const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                            .commandPool = executor.pool_,
@@ -236,13 +245,13 @@ void Executor::Frame::begin_chunk()
     SHVR_VK(vkBeginCommandBuffer(commands, &begin));
 }
 
-void Executor::Frame::end_chunk() const
+void Submission::Frame::end_chunk() const
 {
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
 /// Images are made in an undefined layout and live in GENERAL from their first frame on.
-void Executor::Frame::transition_new_images() const
+void Submission::Frame::transition_new_images() const
 {
     std::vector<VkImageMemoryBarrier2> barriers;
     for (uint32_t i = 0; i < storages.size(); ++i) {
@@ -267,7 +276,7 @@ void Executor::Frame::transition_new_images() const
     vkCmdPipelineBarrier2(chunks.back(), &info);
 }
 
-void Executor::Frame::record()
+void Submission::Frame::record()
 {
     const VkDevice device = executor.device_.handle();
     if (options.timestamps && executor.device_.traits().timestamp_bits > 0 && !compiled.steps.empty()) {
@@ -294,7 +303,7 @@ void Executor::Frame::record()
     end_chunk();
 }
 
-void Executor::Frame::record_pass(const Step& step, Prepared& state)
+void Submission::Frame::record_pass(const Step& step, Prepared& state)
 {
     const PassData& data = pass(step);
     if (data.kind == PassData::Kind::compute) return record_dispatches(data, state);
@@ -341,7 +350,7 @@ void Executor::Frame::record_pass(const Step& step, Prepared& state)
     executor.device_.end_label(commands);
 }
 
-void Executor::Frame::record_dispatches(const PassData& data, Prepared& state)
+void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
 {
     const Kernel& kernel = *state.kernel;
     const auto& size = kernel.interface().local_size;
@@ -373,13 +382,13 @@ void Executor::Frame::record_dispatches(const PassData& data, Prepared& state)
             }
 }
 
-double Executor::Frame::submit()
+void Submission::Frame::submit()
 {
     const VkDevice device = executor.device_.handle();
     const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     VkFence created = VK_NULL_HANDLE;
     SHVR_VK(vkCreateFence(device, &fence_info, nullptr, &created));
-    const auto started = std::chrono::steady_clock::now();
+    started = std::chrono::steady_clock::now();
     for (size_t i = 0; i < chunks.size(); ++i) {
         const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                                  .commandBuffer = chunks[i]};
@@ -394,17 +403,25 @@ double Executor::Frame::submit()
         }
     }
     fence = created;
-    SHVR_VK(vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX));
-    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
     // Barriers are global, so they settle imports that no living pass touches, too.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
-    return wall.count();
 }
 
-FrameResult Executor::Frame::collect(double wall_ms) const
+bool Submission::Frame::done() const
 {
-    FrameResult result{.wall_ms = wall_ms};
+    if (!fence) return true;
+    const VkResult result = vkGetFenceStatus(executor.device_.handle(), fence);
+    check(result, "vkGetFenceStatus");
+    return result == VK_SUCCESS;
+}
+
+FrameResult Submission::Frame::collect()
+{
+    if (!fence) return {};  // no step, nothing submitted
+    SHVR_VK(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
+    FrameResult result{.wall_ms = wall.count()};
     for (Storage* storage : read_backs) {
         const std::span<const std::byte> bytes = storage->mapped();
         result.read_backs.emplace_back(bytes.begin(), bytes.end());
@@ -481,19 +498,51 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& d
 
 void Executor::trim(uint64_t runs)
 {
-    std::erase_if(transients_, [&](const auto& t) { return !t->taken && t->last_run + runs <= runs_; });
+    std::erase_if(transients_, [&](const auto& t) {
+        if (t->taken || t->last_run + runs > runs_) return false;
+        t->storage.reset_idle();  // the frame that used it last is done
+        return true;
+    });
 }
 
-FrameResult Executor::run(const FrameGraph& graph, const Options& options)
+Submission Executor::submit(FrameGraph graph, const Options& options)
 {
-    constexpr uint64_t RUNS_KEPT = 16;  // sizes change with brushes and windows: what is not asked for again goes
+    constexpr uint64_t RUNS_KEPT = 64;  // sizes change with brushes and windows: what is not asked for again goes
     ++runs_;
     trim(RUNS_KEPT);
-    Frame frame(*this, graph, options);
-    if (frame.compiled.steps.empty()) return {};
-    frame.prepare();
-    frame.record();
-    return frame.collect(frame.submit());
+    auto frame = std::make_unique<Submission::Frame>(*this, std::move(graph), options);
+    if (!frame->compiled.steps.empty()) {
+        frame->prepare();
+        frame->record();
+        frame->submit();
+    }
+    return Submission(std::move(frame));
+}
+
+Submission::Submission() = default;
+Submission::~Submission() = default;
+Submission::Submission(Submission&&) noexcept = default;
+Submission& Submission::operator=(Submission&&) noexcept = default;
+Submission::Submission(std::unique_ptr<Frame> frame) : frame_(std::move(frame)) {}
+
+bool Submission::done() const
+{
+    SHVR_CHECK(frame_ != nullptr);
+    return frame_->done();
+}
+
+FrameResult Submission::finish()
+{
+    SHVR_CHECK(frame_ != nullptr);
+    FrameResult result = frame_->collect();
+    frame_.reset();
+    return result;
+}
+
+const FrameGraph& Submission::graph() const
+{
+    SHVR_CHECK(frame_ != nullptr);
+    return frame_->graph;
 }
 
 }  // namespace shvr::gpu

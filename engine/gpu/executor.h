@@ -2,8 +2,12 @@
 // Runs frame graphs: finds kernels and objects by name, records barriers, dispatches and copies, and brings back
 // read-backs, times and work counters.
 //
-// Long passes are split by their tile into several submissions, so that no submission holds the device for long and
-// other work gets in between. One thread at a time; `run` waits for the frame.
+//     gpu::Submission frame = executor.submit(std::move(graph));      // returns at once
+//     if (frame.done()) use(frame.finish());                          // or finish(), which waits
+//
+// Frames reach the device in the order they were submitted, and each knows what those before it left in flight. Long
+// passes are split by their tile into several submissions to the queue, so that none of them takes long. Who needs other
+// work to get in between makes several small frames and keeps few of them in flight. One thread at a time.
 
 #include <memory>
 #include <string>
@@ -35,6 +39,30 @@ struct FrameResult {
     double wall_ms = 0.0;                            ///< from first submission to completion, on the host's clock
 };
 
+class Executor;
+
+/// A frame on its way. Move-only; destroying it waits for the device. Must not outlive the executor.
+class Submission {
+public:
+    Submission();
+    ~Submission();
+    Submission(Submission&&) noexcept;
+    Submission& operator=(Submission&&) noexcept;
+
+    explicit operator bool() const { return frame_ != nullptr; }
+    /// Whether the device is done with it; never waits.
+    bool done() const;
+    /// Waits where it must. Afterwards this is empty.
+    FrameResult finish();
+    const FrameGraph& graph() const;
+
+private:
+    friend class Executor;
+    struct Frame;
+    explicit Submission(std::unique_ptr<Frame> frame);
+    std::unique_ptr<Frame> frame_;
+};
+
 class Executor {
 public:
     struct Options {
@@ -47,16 +75,19 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records, submits and waits. Afterwards imported objects carry their final states.
-    FrameResult run(const FrameGraph& graph, const Options& options);
-    FrameResult run(const FrameGraph& graph) { return run(graph, Options{}); }
+    /// Compiles, records and submits. Afterwards imported objects carry the states the frame will leave them in.
+    Submission submit(FrameGraph graph, const Options& options);
+    Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
+    /// The same, and waits.
+    FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
+    FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
     Kernels& kernels() { return kernels_; }
     /// Gives back the memory of transient resources that the last `runs` runs did not use.
     void trim(uint64_t runs = 0);
 
 private:
-    struct Frame;
+    friend struct Submission::Frame;
     struct Transient {
         ResourceDesc desc;
         Placement placement;

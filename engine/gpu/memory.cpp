@@ -45,6 +45,7 @@ VkFormat vulkan_format(Format format)
         case Format::r16_unorm: return VK_FORMAT_R16_UNORM;
         case Format::r32_uint: return VK_FORMAT_R32_UINT;
         case Format::rgba32_float: return VK_FORMAT_R32G32B32A32_SFLOAT;
+        case Format::rgba8_unorm: return VK_FORMAT_R8G8B8A8_UNORM;
     }
     return VK_FORMAT_UNDEFINED;
 }
@@ -59,6 +60,12 @@ Storage& Storage::operator=(Storage&& other) noexcept
 }
 
 void Storage::reset()
+{
+    if (memory_) memory_->wait_idle();  // a frame in flight may still use it
+    reset_idle();
+}
+
+void Storage::reset_idle()
 {
     if (memory_) memory_->release(id_);
     memory_ = nullptr;
@@ -199,9 +206,13 @@ void Memory::destroy(Object& object) noexcept
     }
 }
 
+void Memory::wait_idle() const noexcept
+{
+    vkDeviceWaitIdle(device_.handle());
+}
+
 void Memory::release(uint32_t id) noexcept
 {
-    vkDeviceWaitIdle(device_.handle());  // a frame in flight may still use it; releases are rare
     const auto found = objects_.find(id);
     if (found == objects_.end()) return;
     destroy(found->second);

@@ -42,6 +42,8 @@ public:
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
+    /// The same without waiting, for who knows that the device is done with it.
+    void reset_idle();
 
 private:
     friend class Memory;
@@ -87,6 +89,7 @@ public:
 
 private:
     friend class Storage;
+    void wait_idle() const noexcept;
     void release(uint32_t id) noexcept;
     void allocate(Object& object, const VkMemoryRequirements& needs);
     void destroy(Object& object) noexcept;

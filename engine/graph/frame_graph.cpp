@@ -42,6 +42,7 @@ uint64_t bytes_per_texel(Format format)
         case Format::r16_unorm: return 2;
         case Format::r32_uint: return 4;
         case Format::rgba32_float: return 16;
+        case Format::rgba8_unorm: return 4;
     }
     return 0;
 }
@@ -53,6 +54,7 @@ const char* name_of(Format format)
         case Format::r16_unorm: return "r16_unorm";
         case Format::r32_uint: return "r32_uint";
         case Format::rgba32_float: return "rgba32_float";
+        case Format::rgba8_unorm: return "rgba8_unorm";
     }
     return "?";
 }
@@ -136,6 +138,15 @@ Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
     return {uint32_t(resources_.size() - 1), 0};
 }
 
+Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::byte> bytes)
+{
+    const Resource resource = create(name, buffer_desc(bytes.size()));
+    resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
+    // Nothing is in flight: what the host wrote before the submission is visible to all of it (Vulkan 1.3, 7.9).
+    resources_[resource.index].state = {};
+    return resource;
+}
+
 PassData& FrameGraph::add(PassData::Kind kind, const std::string& name, Location at)
 {
     passes_.push_back({.name = name, .kind = kind, .declared_at = at});
@@ -147,7 +158,7 @@ Resource FrameGraph::use(uint32_t index, const std::string& name, Resource resou
     PassData& pass = passes_[index];
     if (const auto fault = fault_of(resource, *this)) fail(place(pass), " binds '", name, "' to ", *fault);
     ResourceData& data = resources_[resource.index];
-    if (reads && !data.imported && data.version == 0)
+    if (reads && !data.imported && data.contents.empty() && data.version == 0)
         fail(place(pass), " reads '", data.name, "', which no pass has written");
     for (const Binding& other : pass.bindings) {
         if (other.name == name) fail(place(pass), " binds '", name, "' twice");

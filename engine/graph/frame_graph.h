@@ -28,7 +28,7 @@
 
 namespace shvr {
 
-enum class Format : uint8_t { r8_uint, r16_unorm, r32_uint, rgba32_float };
+enum class Format : uint8_t { r8_uint, r16_unorm, r32_uint, rgba32_float, rgba8_unorm };
 uint64_t bytes_per_texel(Format format);
 const char* name_of(Format format);
 
@@ -177,6 +177,14 @@ public:
     /// An object of this frame alone. It must be written before it is read.
     Resource create(const std::string& name, const ResourceDesc& desc);
 
+    /// A buffer of this frame alone that holds `values` from the start; the executor brings them to the device.
+    template <class T>
+    Resource upload(const std::string& name, std::span<const T> values)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        return upload_bytes(name, std::as_bytes(values));
+    }
+
     /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
     [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",
@@ -200,7 +208,8 @@ public:
         uint32_t import_id = 0;
         ResourceState state = UNKNOWN_STATE;
         uint32_t version = 0;
-        std::vector<uint32_t> writers;  ///< pass that made version i + 1
+        std::vector<uint32_t> writers;    ///< pass that made version i + 1
+        std::vector<std::byte> contents;  ///< of an upload
         bool kept = false;
     };
     const std::vector<PassData>& passes() const { return passes_; }
@@ -209,6 +218,7 @@ public:
 
 private:
     friend class Pass;
+    Resource upload_bytes(const std::string& name, std::span<const std::byte> bytes);
     PassData& add(PassData::Kind kind, const std::string& name, Location at);
     Resource use(uint32_t pass, const std::string& name, Resource resource, bool reads, bool writes);
 

@@ -1,10 +1,23 @@
 #include "engine/passes/raycast.h"
 
+#include <cmath>
+
 namespace shvr {
 
-Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input)
+namespace {
+
+uint32_t squarings(float shininess)
 {
-    const glm::uvec3 pixels(input.params.pixels, 1);
+    for (uint32_t k = 0; k < gpu::NOT_A_POWER_OF_TWO; ++k)
+        if (shininess == std::ldexp(1.0f, int(k))) return k;
+    return gpu::NOT_A_POWER_OF_TWO;
+}
+
+}  // namespace
+
+Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input, Resource target)
+{
+    const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     Pass pass = graph.compute(
         std::string("raycast") + (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""), "raycast");
     pass.block("params_block", std::span(&input.params, 1));
@@ -17,13 +30,16 @@ Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastIn
         pass.block("groups", std::span<const gpu::GroupLook>(input.groups));
     }
     pass.constant("SHADED", input.shaded);
+    if (input.shaded) pass.constant("SHININESS_SQUARINGS", squarings(input.params.shininess));
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
+    pass.constant("PROBE", input.probe);
+    pass.constant("PICK", input.pick);
     // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.
     const glm::uvec2 group(input.group_width, 64 / input.group_width);
-    pass.dispatch(glm::uvec3((input.params.pixels + group - 1u) / group * 8u, 1),
+    pass.dispatch(glm::uvec3((pixels + group - 1u) / group * 8u, 1),
                   glm::uvec3(input.tile / group * 8u, input.tile.x > 0));
-    return pass.write("color", graph.create("color", image_desc(Format::rgba32_float, pixels)));
+    return pass.write("color", target);
 }
 
 }  // namespace shvr

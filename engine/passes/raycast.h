@@ -19,9 +19,12 @@ struct RaycastInput {
     bool count_work = false;
     uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
     glm::uvec2 tile{0};        ///< pixels of one dispatch, multiples of 64; 0 = all at once
+    bool probe = false;        ///< params.probe_* are set
+    bool pick = false;         ///< positions instead of colours, see the kernel
 };
 
-/// An rgba32_float image of params.pixels: linear light, premultiplied, over the background.
-Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input);
+/// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied, over
+/// the background. Returns its new version.
+Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #include "engine/scene/device_mask.h"
 
 #include <algorithm>
-#include <cstring>
+#include <utility>
 
 #include "engine/scene/device_volume.h"
 
@@ -33,6 +33,7 @@ void DeviceMask::grow(uint64_t slots)
 
 void DeviceMask::clear()
 {
+    in_flight_.clear();
     atlas_.reset();
     table_.reset();
     slots_.clear();
@@ -67,33 +68,38 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
 
     for (size_t first = 0; first < changed.size(); first += BATCH) {
         const size_t count = std::min<size_t>(BATCH, changed.size() - first);
-        gpu::Storage staging =
-            memory_.create("staging", buffer_desc(count * MASK_BRICK_VOXELS), gpu::Placement::upload);
+        std::vector<uint8_t> voxels;
+        voxels.reserve(count * MASK_BRICK_VOXELS);
         std::vector<ImageRegion> regions;
         for (size_t i = 0; i < count; ++i) {
-            const int64_t brick = changed[first + i];
-            std::memcpy(staging.mapped().data() + i * MASK_BRICK_VOXELS, mask.brick(brick)->data(), MASK_BRICK_VOXELS);
-            regions.push_back(
-                {i * MASK_BRICK_VOXELS, slot_voxel(slots_.at(brick), atlas_slots_), glm::uvec3(gpu::BRICK_SIZE)});
+            const MaskBrick& brick = *mask.brick(changed[first + i]);
+            voxels.insert(voxels.end(), brick.begin(), brick.end());
+            regions.push_back({i * MASK_BRICK_VOXELS, slot_voxel(slots_.at(changed[first + i]), atlas_slots_),
+                               glm::uvec3(gpu::BRICK_SIZE)});
         }
         FrameGraph graph;
-        static_cast<void>(graph.copy_to_image(graph.import("staging", staging.import()),
+        static_cast<void>(graph.copy_to_image(graph.upload<uint8_t>("mask bricks", voxels),
                                               graph.import("mask", atlas_.import()), std::move(regions),
                                               "upload mask bricks"));
-        executor_.run(graph, {.timestamps = false});
+        submit(std::move(graph));
     }
 
     const glm::i64vec3 counts = mask.brick_counts();
-    const ResourceDesc table = buffer_desc(uint64_t(counts.x * counts.y * counts.z) * sizeof(uint32_t));
+    std::vector<uint32_t> entries(size_t(counts.x * counts.y * counts.z));
+    for (const auto& [brick, slot] : slots_) entries[size_t(brick)] = slot;
+    const ResourceDesc table = buffer_desc(entries.size() * sizeof(uint32_t));
     if (!table_) table_ = memory_.create("mask table", table);
-    gpu::Storage staging = memory_.create("staging", table, gpu::Placement::upload);
-    std::memset(staging.mapped().data(), 0, staging.mapped().size());
-    auto* entries = reinterpret_cast<uint32_t*>(staging.mapped().data());
-    for (const auto& [brick, slot] : slots_) entries[brick] = slot;
     FrameGraph graph;
-    static_cast<void>(graph.copy(graph.import("staging", staging.import()), graph.import("mask table", table_.import()),
-                                 {{0, 0, table.bytes}}, "upload mask table"));
-    executor_.run(graph, {.timestamps = false});
+    static_cast<void>(graph.copy(graph.upload<uint32_t>("mask table entries", entries),
+                                 graph.import("mask table", table_.import()), {{0, 0, table.bytes}},
+                                 "upload mask table"));
+    submit(std::move(graph));
+}
+
+void DeviceMask::submit(FrameGraph graph)
+{
+    std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
+    in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
 }
 
 MaskBinding DeviceMask::import(FrameGraph& graph) const

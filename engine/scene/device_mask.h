@@ -15,7 +15,8 @@ class DeviceMask {
 public:
     DeviceMask(gpu::Executor& executor, gpu::Memory& memory) : executor_(executor), memory_(memory) {}
 
-    /// Copies `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit.
+    /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not wait:
+    /// frames submitted later see them.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// Unpainted again: nothing is left on the device.
@@ -25,12 +26,14 @@ public:
 
 private:
     void grow(uint64_t slots);
+    void submit(FrameGraph graph);
     gpu::Executor& executor_;
     gpu::Memory& memory_;
     glm::uvec3 atlas_slots_{0};
     std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot, from 1
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;
+    std::vector<gpu::Submission> in_flight_;
 };
 
 }  // namespace shvr

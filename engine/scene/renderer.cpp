@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <thread>
-
-#include "engine/passes/raycast.h"
+#include <tuple>
+#include <utility>
 
 namespace shvr {
 
@@ -63,10 +63,11 @@ std::vector<gpu::GroupLook> group_looks(const Session& session)
 }
 
 gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
-                                  const VolumeBinding& binding, const VolumeStatistics& statistics)
+                                  const VolumeBinding& binding, const VolumeStatistics& statistics,
+                                  const PicturePart& part)
 {
     const VolumeInfo& info = volume.info();
-    const RayPlanes planes = ray_planes(camera, session.render.size, info);
+    const RayPlanes planes = ray_planes(camera, part.pixels, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
     const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
@@ -78,13 +79,16 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.far_corner = planes.far_corner;
     params.far_dx = planes.far_dx;
     params.far_dy = planes.far_dy;
-    params.pixels = session.render.size;
+    params.pixel_begin = part.begin;
+    params.pixel_end = part.end;
+    params.target = part.target;
     params.box_lower = glm::max(glm::vec3(session.cut.lower), glm::vec3(0.0f));
     params.box_upper = glm::min(glm::vec3(session.cut.upper), size);
     params.position_limit = last;
     const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
     if (planes.empty || cut_away) params.box_upper = params.box_lower = glm::vec3(-1.0f);
     params.spacing = info.spacing / reference_length(info);
+    params.inverse_spacing = reference_length(info) / info.spacing;
     params.cell_counts = binding.cell_counts;
     params.brick_counts = binding.brick_counts;
     params.step = float(session.render.step_voxels);
@@ -100,12 +104,12 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.specular = float(session.light.specular);
     params.shininess = float(session.light.shininess);
     params.gradient_fade = float(session.light.gradient_fade * codes_range);
+    if (part.probe) {
+        params.probe_center = part.probe->center / info.spacing;
+        params.probe_radius = float(part.probe->radius / reference_length(info));
+        params.probe_color = part.probe->color;
+    }
     return params;
-}
-
-bool same(const gpu::OccupancyParams& a, const gpu::OccupancyParams& b)
-{
-    return std::memcmp(&a, &b, sizeof a) == 0;  // scalar layout: no padding
 }
 
 int worker_count(int wanted)
@@ -114,6 +118,16 @@ int worker_count(int wanted)
 }
 
 }  // namespace
+
+bool Renderer::LeapState::operator==(const LeapState& other) const
+{
+    const auto members = [](const LeapState& state) {
+        const gpu::OccupancyParams& p = state.params;
+        return std::tie(p.cell_counts, p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries,
+                        p.skipping, p.mask_slots, state.visible_intervals, state.visible_groups);
+    };
+    return members(*this) == members(other);
+}
 
 Renderer::Renderer(const Options& options)
     : device_(options.device),
@@ -155,43 +169,49 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
     leap_state_.reset();
 }
 
-bool Renderer::leap_is_stale(const LeapGridInput& input) const
+const Renderer::Table& Renderer::table_of(const Session& session)
 {
-    return !leap_state_ || !same(leap_state_->params, input.params) ||
-           leap_state_->visible_intervals != input.visible_intervals ||
-           leap_state_->visible_groups != input.visible_groups;
+    const std::span<const ControlPoint> points = session.transfer_function.points();
+    if (baked_ && baked_->step_voxels == session.render.step_voxels && std::ranges::equal(baked_->points, points))
+        return *baked_;
+    baked_ = {.points = {points.begin(), points.end()},
+              .step_voxels = session.render.step_voxels,
+              .entries = bake_table(session.transfer_function, session.render.step_voxels, TABLE_ENTRIES),
+              .visible_intervals = {}};
+    baked_->visible_intervals = visible_intervals(baked_->entries);
+    table_is_on_device_ = false;
+    return *baked_;
 }
 
-Resource Renderer::upload_table(FrameGraph& graph, std::span<const glm::vec4> table)
+Resource Renderer::upload_table(FrameGraph& graph, const Table& table)
 {
     const ResourceDesc desc = image_desc(Format::rgba32_float, {gpu::TABLE_WIDTH, gpu::TABLE_HEIGHT, 1});
-    if (!table_) {
-        table_ = memory_.create("transfer function", desc);
-        table_staging_ = memory_.create("transfer function staging", buffer_desc(desc.bytes), gpu::Placement::upload);
-    }
+    if (!table_) table_ = memory_.create("transfer function", desc);
     const Resource on_device = graph.import("transfer function", table_.import());
-    if (std::equal(table.begin(), table.end(), table_on_device_.begin(), table_on_device_.end())) return on_device;
-    std::memcpy(table_staging_.mapped().data(), table.data(), table.size_bytes());
-    table_on_device_.assign(table.begin(), table.end());
-    return graph.copy_to_image(graph.import("transfer function staging", table_staging_.import()), on_device,
+    if (std::exchange(table_is_on_device_, true)) return on_device;
+    return graph.copy_to_image(graph.upload<glm::vec4>("transfer function entries", table.entries), on_device,
                                {{0, glm::uvec3(0), desc.texels}}, "upload transfer function");
 }
 
-Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
+void Renderer::update_leap_grid(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    Picture picture;
-    FrameGraph& graph = picture.graph;
-    VolumeBinding volume = volume_.value().import(graph);
+    LeapState state{input.params, input.visible_intervals, input.visible_groups};
+    if (leap_state_ && *leap_state_ == state) return;
+    volume.leap = leap_grid(graph, volume, input);
+    leap_state_ = std::move(state);
+}
 
+RaycastInput Renderer::prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
+                               const PicturePart& part)
+{
     RaycastInput input;
-    input.params = raycast_params(session, camera, *volume_, volume, statistics_);
-    const std::vector<glm::vec4> table =
-        bake_table(session.transfer_function, session.render.step_voxels, TABLE_ENTRIES);
+    input.params = raycast_params(session, camera, *volume_, volume, statistics_, part);
+    const Table& table = table_of(session);
     input.table = upload_table(graph, table);
     input.shaded = session.light.shaded;
-    input.count_work = options.count_work;
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
+    input.probe = part.probe.has_value();
 
     LeapGridInput leap;
     leap.params = {.cell_counts = volume.cell_counts,
@@ -202,25 +222,60 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
                    .table_entries = input.params.table_entries,
                    .skipping = session.render.skip_empty_space,
                    .mask_slots = glm::uvec3(0)};
-    leap.visible_intervals = visible_intervals(table);
+    leap.visible_intervals = table.visible_intervals;
     if (!mask_.empty()) {
         input.mask = leap.mask = mask_.import(graph);
         input.params.mask_slots = leap.params.mask_slots = leap.mask->slots;
         input.groups = group_looks(session);
         leap.visible_groups = visible_groups(session);
     }
-    const bool stale = leap_is_stale(leap);
-    if (stale) volume.leap = leap_grid(graph, volume, leap);
+    update_leap_grid(graph, volume, leap);
+    return input;
+}
 
-    const uint32_t pixels = graph.read_back(raycast(graph, volume, input));
-    gpu::FrameResult result = executor_.run(graph, {.timestamps = options.timestamps, .serialize = options.serialize});
-    if (stale) leap_state_ = {leap.params, leap.visible_intervals, leap.visible_groups};
-    picture.image = {int(session.render.size.x), int(session.render.size.y), {}};
+Resource Renderer::draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+                        Resource target, bool count_work)
+{
+    VolumeBinding volume = volume_.value().import(graph);
+    RaycastInput input = prepare(graph, volume, session, camera, part);
+    input.count_work = count_work;
+    return raycast(graph, volume, input, target);
+}
+
+Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
+{
+    Picture picture;
+    const glm::uvec2 size = session.render.size;
+    const Resource color = picture.graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
+    const PicturePart whole{.pixels = size, .end = size, .probe = options.probe};
+    const uint32_t pixels =
+        picture.graph.read_back(draw(picture.graph, session, camera, whole, color, options.count_work));
+    gpu::FrameResult result =
+        executor_.run(picture.graph, {.timestamps = options.timestamps, .serialize = options.serialize});
+    picture.image = {int(size.x), int(size.y), {}};
     picture.image.rgba.resize(result.read_backs[pixels].size() / sizeof(float));
     std::memcpy(picture.image.rgba.data(), result.read_backs[pixels].data(), result.read_backs[pixels].size());
     picture.passes = std::move(result.passes);
     picture.wall_ms = result.wall_ms;
     return picture;
+}
+
+std::optional<glm::dvec3> Renderer::pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
+                                         const glm::uvec2& pixel)
+{
+    FrameGraph graph;
+    VolumeBinding volume = volume_.value().import(graph);
+    RaycastInput input = prepare(graph, volume, session, camera, {.pixels = pixels, .begin = pixel, .end = pixel + 1u});
+    input.pick = true;
+    input.shaded = false;
+    input.params.opacity_limit = std::min(input.params.opacity_limit, 0.5f);
+    const Resource reached = graph.create("reached", image_desc(Format::rgba32_float, glm::uvec3(1)));
+    const uint32_t index = graph.read_back(raycast(graph, volume, input, reached));
+    const gpu::FrameResult result = executor_.run(std::move(graph), {.timestamps = false});
+    glm::vec4 voxel_and_hit;
+    std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);
+    if (voxel_and_hit.w == 0.0f) return std::nullopt;
+    return glm::dvec3(voxel_and_hit) * volume_->info().spacing;
 }
 
 }  // namespace shvr

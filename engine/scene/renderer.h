@@ -1,16 +1,18 @@
 #pragma once
 // Makes pictures: owns the volume, the mask and the leap grid on the device, and lists the passes of a frame in order.
 //
-//   [mask changed]            upload mask bricks
+//   [look changed]            upload transfer function
 //   [look or mask changed]    leap_occupancy -> leap_distance x, y, z      (one thread a cell)
-//   every picture             raycast -> read back                         (one thread a pixel)
+//   every part of a picture   raycast                                      (one thread a pixel)
 //
-// One thread, the one that owns the device. `render` waits for the picture; nothing is kept running in between.
+// `render` makes a whole picture and waits for it; `draw` adds the passes of a part to a graph that somebody else submits
+// (engine/scene/view.h does while a person looks). One thread, the one that owns the device.
 
 #include <memory>
 #include <optional>
 
 #include "engine/base/image.h"
+#include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
 #include "engine/scene/device_volume.h"
 #include "engine/scene/session.h"
@@ -18,7 +20,24 @@
 
 namespace shvr {
 
+/// The probe as it is seen: a ball that rays stop at.
+struct ProbeLook {
+    glm::dvec3 center{0.0};  ///< volume space
+    double radius = 1.0;     ///< physical units
+    glm::dvec3 color{1.0};   ///< linear light
+    bool operator==(const ProbeLook&) const = default;
+};
+
+/// A rectangle of a picture, and where it goes.
+struct PicturePart {
+    glm::uvec2 pixels{0};         ///< of the whole picture
+    glm::uvec2 begin{0}, end{0};  ///< the pixels that are drawn
+    glm::uvec2 target{0};         ///< texel that `begin` goes to
+    std::optional<ProbeLook> probe;
+};
+
 struct RenderOptions {
+    std::optional<ProbeLook> probe;
     bool count_work = false;  ///< keep the exact work counters (a little slower)
     bool serialize = false;   ///< a full barrier between passes
     bool timestamps = true;
@@ -57,10 +76,29 @@ public:
     /// The picture of `session` (its light, transfer function, groups, cut) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
 
+    /// Adds the passes that draw a part of `session` from `camera` into `target`, an rgba32_float image, and returns its
+    /// new version. The graph must be submitted, and before any other that was made later.
+    Resource draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+                  Resource target, bool count_work = false);
+
+    /// What is seen at a pixel: where its ray becomes half opaque, in volume space. Waits for the device.
+    std::optional<glm::dvec3> pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
+                                   const glm::uvec2& pixel);
+
 private:
+    /// A transfer function as the device reads it.
+    struct Table {
+        std::vector<ControlPoint> points;
+        double step_voxels = 0.0;
+        std::vector<glm::vec4> entries;
+        std::vector<uint32_t> visible_intervals;
+    };
     bool filters(Sampling sampling) const;
-    bool leap_is_stale(const LeapGridInput& input) const;
-    Resource upload_table(FrameGraph& graph, std::span<const glm::vec4> table);
+    const Table& table_of(const Session& session);
+    Resource upload_table(FrameGraph& graph, const Table& table);
+    void update_leap_grid(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input);
+    RaycastInput prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
+                         const PicturePart& part);
 
     gpu::Device device_;
     gpu::Memory memory_;
@@ -69,13 +107,15 @@ private:
     VolumeStatistics statistics_;
     std::optional<DeviceVolume> volume_;
     DeviceMask mask_;
-    gpu::Storage table_, table_staging_;
-    std::vector<glm::vec4> table_on_device_;
+    std::optional<Table> baked_;
+    gpu::Storage table_;
+    bool table_is_on_device_ = false;
     /// What the leap grid on the device was built from.
     struct LeapState {
         gpu::OccupancyParams params;
         std::vector<uint32_t> visible_intervals;
         std::array<uint32_t, 8> visible_groups;
+        bool operator==(const LeapState& other) const;
     };
     std::optional<LeapState> leap_state_;
 };

@@ -113,8 +113,41 @@ TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same
     const uint64_t after_one = memory.device_bytes();
     for (int i = 0; i < 5; ++i) run(1 << 20);
     CHECK(memory.device_bytes() == after_one);
-    for (int i = 0; i < 40; ++i) run(1024);
+    for (int i = 0; i < 80; ++i) run(1024);
     CHECK(memory.device_bytes() < after_one);
+}
+
+TEST_CASE_FIXTURE(Fixture, "frames in flight see what those before them wrote, whoever waits first")
+{
+    gpu::Storage sum = memory.create("sum", buffer_desc(4096));
+    std::vector<gpu::Submission> frames;
+    for (uint32_t i = 0; i < 20; ++i) {
+        const std::vector<uint32_t> values(1024, i);
+        FrameGraph graph;
+        const Resource written =
+            graph.copy(graph.upload<uint32_t>("values", values), graph.import("sum", sum.import()), {{0, 0, 4096}});
+        graph.read_back(written);
+        frames.push_back(executor.submit(std::move(graph)));
+    }
+    for (uint32_t i = 20; i-- > 0;)
+        CHECK(values_of<uint32_t>(frames[i].finish().read_backs[0]) == std::vector<uint32_t>(1024, i));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a frame is done without being waited for, and one nobody waits for leaves nothing behind")
+{
+    const auto submit = [&] {
+        FrameGraph graph;
+        graph.read_back(graph.fill(graph.create("transient", buffer_desc(1 << 20)), 7));
+        return executor.submit(std::move(graph));
+    };
+    gpu::Submission frame = submit();
+    while (!frame.done()) {
+    }
+    CHECK(frame.finish().read_backs[0].size() == 1 << 20);
+    CHECK(!frame);
+    const uint64_t bytes = memory.device_bytes();
+    for (int i = 0; i < 10; ++i) static_cast<void>(submit());
+    CHECK(memory.device_bytes() == bytes);
 }
 
 TEST_CASE_FIXTURE(Fixture, "a pass that disagrees with its kernel is refused by name")

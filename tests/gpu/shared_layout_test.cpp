@@ -22,20 +22,23 @@ using Members = std::vector<std::pair<const char*, size_t>>;
 
 Members raycast_params()
 {
-    return {MEMBER(RaycastParams, near_corner),  MEMBER(RaycastParams, near_dx),
-            MEMBER(RaycastParams, near_dy),      MEMBER(RaycastParams, far_corner),
-            MEMBER(RaycastParams, far_dx),       MEMBER(RaycastParams, far_dy),
-            MEMBER(RaycastParams, pixels),       MEMBER(RaycastParams, box_lower),
-            MEMBER(RaycastParams, box_upper),    MEMBER(RaycastParams, position_limit),
-            MEMBER(RaycastParams, spacing),      MEMBER(RaycastParams, cell_counts),
-            MEMBER(RaycastParams, brick_counts), MEMBER(RaycastParams, mask_slots),
-            MEMBER(RaycastParams, step),         MEMBER(RaycastParams, opacity_limit),
-            MEMBER(RaycastParams, table_lower),  MEMBER(RaycastParams, table_upper),
-            MEMBER(RaycastParams, table_scale),  MEMBER(RaycastParams, table_entries),
-            MEMBER(RaycastParams, background),   MEMBER(RaycastParams, light),
-            MEMBER(RaycastParams, ambient),      MEMBER(RaycastParams, diffuse),
-            MEMBER(RaycastParams, specular),     MEMBER(RaycastParams, shininess),
-            MEMBER(RaycastParams, gradient_fade)};
+    return {MEMBER(RaycastParams, near_corner),   MEMBER(RaycastParams, near_dx),
+            MEMBER(RaycastParams, near_dy),       MEMBER(RaycastParams, far_corner),
+            MEMBER(RaycastParams, far_dx),        MEMBER(RaycastParams, far_dy),
+            MEMBER(RaycastParams, pixel_begin),   MEMBER(RaycastParams, pixel_end),
+            MEMBER(RaycastParams, target),        MEMBER(RaycastParams, box_lower),
+            MEMBER(RaycastParams, box_upper),     MEMBER(RaycastParams, position_limit),
+            MEMBER(RaycastParams, spacing),       MEMBER(RaycastParams, inverse_spacing),
+            MEMBER(RaycastParams, cell_counts),   MEMBER(RaycastParams, brick_counts),
+            MEMBER(RaycastParams, mask_slots),    MEMBER(RaycastParams, step),
+            MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
+            MEMBER(RaycastParams, table_upper),   MEMBER(RaycastParams, table_scale),
+            MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, background),
+            MEMBER(RaycastParams, light),         MEMBER(RaycastParams, ambient),
+            MEMBER(RaycastParams, diffuse),       MEMBER(RaycastParams, specular),
+            MEMBER(RaycastParams, shininess),     MEMBER(RaycastParams, gradient_fade),
+            MEMBER(RaycastParams, probe_center),  MEMBER(RaycastParams, probe_radius),
+            MEMBER(RaycastParams, probe_color)};
 }
 
 Members occupancy_params()

@@ -1,0 +1,12 @@
+#pragma once
+// Turns light into what a screen shows (shaders/encode.comp).
+
+#include "engine/graph/frame_graph.h"
+#include "shaders/encode.h"
+
+namespace shvr {
+
+/// Writes a part of `display` (rgba8_unorm) from a part of `color` (rgba32_float); returns the new version of it.
+Resource encode(FrameGraph& graph, Resource color, Resource display, const gpu::EncodeParams& params);
+
+}  // namespace shvr

@@ -1,0 +1,211 @@
+// The leap grid, read back from the device, against its definition: which cells a transfer function may show something
+// in, and how far away the nearest of them is, counted by brute force.
+
+#include "engine/passes/leap_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+struct Grid {
+    glm::ivec3 counts{0};
+    std::vector<uint32_t> entries;
+    uint32_t distance(const glm::ivec3& cell) const
+    {
+        return entries[size_t(cell.x + counts.x * (cell.y + counts.y * cell.z))] >> gpu::LEAP_DISTANCE_SHIFT;
+    }
+};
+
+/// Draws, so that the renderer builds the grid, and fetches what it built.
+Grid grid_of(OnDevice& device, const Session& session)
+{
+    device.draw(session, camera_looking("front", device.volume().info()));
+    FrameGraph graph;
+    const VolumeBinding volume = device.renderer().volume().import(graph);
+    const uint32_t back = graph.read_back(volume.leap);
+    const gpu::FrameResult result = device.renderer().executor().run(graph);
+    Grid grid{.counts = glm::ivec3(volume.cell_counts)};
+    grid.entries.resize(result.read_backs[back].size() / sizeof(uint32_t));
+    std::memcpy(grid.entries.data(), result.read_backs[back].data(), result.read_backs[back].size());
+    return grid;
+}
+
+template <class Visit>
+void for_each_cell(const glm::ivec3& counts, const Visit& visit)
+{
+    for (int z = 0; z < counts.z; ++z)
+        for (int y = 0; y < counts.y; ++y)
+            for (int x = 0; x < counts.x; ++x) visit(glm::ivec3(x, y, z));
+}
+
+/// Chebyshev distance to the nearest cell at distance 0, at most LEAP_LIMIT: the definition, cell by cell.
+uint32_t nearest_occupied(const Grid& grid, const glm::ivec3& cell)
+{
+    uint32_t best = gpu::LEAP_LIMIT;
+    const glm::ivec3 reach(gpu::LEAP_LIMIT - 1);
+    const glm::ivec3 lower = glm::max(cell - reach, 0), upper = glm::min(cell + reach, grid.counts - 1);
+    for_each_cell(upper - lower + 1, [&](const glm::ivec3& offset) {
+        const glm::ivec3 other = lower + offset, apart = glm::abs(other - cell);
+        if (grid.distance(other) == 0) best = std::min(best, uint32_t(std::max({apart.x, apart.y, apart.z})));
+    });
+    return best;
+}
+
+void check_distances(const Grid& grid)
+{
+    size_t wrong = 0, occupied = 0;
+    for_each_cell(grid.counts, [&](const glm::ivec3& cell) {
+        occupied += grid.distance(cell) == 0;
+        wrong += grid.distance(cell) != nearest_occupied(grid, cell);
+    });
+    CAPTURE(occupied);
+    CHECK(wrong == 0);
+}
+
+/// Smallest and largest code that a sample in the cell can meet; edge voxels go on outside the volume.
+glm::dvec2 range_of(const TestVolume& volume, const glm::ivec3& cell)
+{
+    glm::dvec2 range(65535.0, 0.0);
+    for_each_cell(glm::ivec3(int(gpu::CELL_SIZE) + 2), [&](const glm::ivec3& offset) {
+        const glm::ivec3 voxel = glm::clamp(int(gpu::CELL_SIZE) * cell + offset - 1, glm::ivec3(0), volume.size - 1);
+        const double code = volume.voxels[size_t(voxel.x + volume.size.x * (voxel.y + volume.size.y * voxel.z))];
+        range = {std::min(range.x, code), std::max(range.y, code)};
+    });
+    return range;
+}
+
+/// A cell must be occupied where the function shows something well within its range, and empty where it shows nothing
+/// even a little around it.
+void check_occupancy(const TestVolume& volume, const Session& session, const Grid& grid)
+{
+    const TransferFunction& function = session.transfer_function;
+    const double entry = (function.upper() - function.lower()) / (TABLE_ENTRIES - 1);
+    const double margin = 1.01 * entry + 0.2;  // a table's entry, and a guard against rounding
+    const auto shows = [&](double from, double to) {
+        for (const ControlPoint& point : function.points())
+            if (point.opacity > 0.0 && point.intensity >= from && point.intensity <= to) return true;
+        return function.at(from).a > 0.0 || function.at(to).a > 0.0;
+    };
+    size_t lost = 0, idle = 0;
+    for_each_cell(grid.counts, [&](const glm::ivec3& cell) {
+        const glm::dvec2 range = range_of(volume, cell);
+        const bool is_occupied = grid.distance(cell) == 0;
+        lost += shows(range.x, range.y) && !is_occupied;
+        idle += !shows(range.x - margin, range.y + margin) && is_occupied;
+    });
+    CHECK(lost == 0);
+    CHECK(idle == 0);
+}
+
+/// Voxels of 50000 at the given places, 1000 elsewhere.
+TestVolume dots(const glm::ivec3& size, const std::vector<glm::ivec3>& places)
+{
+    TestVolume volume = constant_volume(size, 1000.0);
+    for (const glm::ivec3& place : places)
+        volume.voxels[size_t(place.x + size.x * (place.y + size.y * place.z))] = 50000.0;
+    return volume;
+}
+
+Session bright_session()
+{
+    return plain_session({{20000.0, RED, 0.1}, {65535.0, RED, 0.2}}, {4, 4});
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "distances to occupied cells are exact, far, near, and across bricks")
+{
+    const glm::ivec3 size(130, 60, 75);
+    const std::vector<std::vector<glm::ivec3>> places = {{},
+                                                         {{0, 0, 0}},
+                                                         {{129, 59, 74}},
+                                                         {{64, 30, 37}},
+                                                         {{31, 31, 31}},
+                                                         {{32, 32, 32}},
+                                                         {{2, 2, 2}, {126, 50, 70}},
+                                                         {{0, 59, 0}, {129, 0, 74}, {65, 0, 0}}};
+    for (const std::vector<glm::ivec3>& set : places) {
+        CAPTURE(set.size());
+        load(dots(size, set));
+        const Grid grid = grid_of(*this, bright_session());
+        CHECK(grid.counts == glm::ivec3(40, 16, 24));
+        check_distances(grid);
+        if (set.empty())
+            CHECK(std::ranges::all_of(
+                grid.entries, [](uint32_t entry) { return entry >> gpu::LEAP_DISTANCE_SHIFT == gpu::LEAP_LIMIT; }));
+        for (const glm::ivec3& place : set) CHECK(grid.distance(place / int(gpu::CELL_SIZE)) == 0);
+        check_occupancy(volume(), bright_session(), grid);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a voxel occupies the cells whose samples it reaches, and no others")
+{
+    load(dots({40, 40, 40}, {{16, 17, 19}}));
+    const Grid grid = grid_of(*this, bright_session());
+    for_each_cell(grid.counts, [&](const glm::ivec3& cell) {
+        // Half a voxel around it: x = 16 reaches the cell below, y = 17 none, z = 19 the cell above.
+        const bool is_reached = (cell.x == 3 || cell.x == 4) && cell.y == 4 && (cell.z == 4 || cell.z == 5);
+        CHECK((grid.distance(cell) == 0) == is_reached);
+    });
+}
+
+TEST_CASE_FIXTURE(OnDevice, "without skipping every cell is occupied")
+{
+    load(dots({40, 33, 20}, {{5, 5, 5}}));
+    Session session = bright_session();
+    session.render.skip_empty_space = false;
+    const Grid grid = grid_of(*this, session);
+    CHECK(std::ranges::all_of(grid.entries, [](uint32_t entry) { return entry >> gpu::LEAP_DISTANCE_SHIFT == 0; }));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "every cell names the brick it lies in, and no two bricks share a slot")
+{
+    load(noise_volume({70, 40, 100}, 61));
+    const Grid grid = grid_of(*this, bright_session());
+    std::vector<uint32_t> slots;
+    for_each_cell(grid.counts, [&](const glm::ivec3& cell) {
+        const size_t index = size_t(cell.x + grid.counts.x * (cell.y + grid.counts.y * cell.z));
+        const glm::ivec3 first = cell / int(gpu::BRICK_CELLS) * int(gpu::BRICK_CELLS);
+        const size_t corner = size_t(first.x + grid.counts.x * (first.y + grid.counts.y * first.z));
+        CHECK((grid.entries[index] & gpu::LEAP_SLOT_MASK) == (grid.entries[corner] & gpu::LEAP_SLOT_MASK));
+        if (index == corner) slots.push_back(grid.entries[index] & gpu::LEAP_SLOT_MASK);
+    });
+    std::ranges::sort(slots);
+    CHECK(slots.size() == 3 * 2 * 4);
+    CHECK(std::ranges::adjacent_find(slots) == slots.end());
+    CHECK(slots.front() != gpu::NO_SLOT);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "random looks of a random field occupy what they show")
+{
+    std::mt19937 random(62);  // seed 62
+    const auto uniform = [&] { return double(random()) / 4294967296.0; };
+    load(volume_of({70, 50, 45}, [&](const glm::dvec3& p) {
+        return 30000.0 + 14000.0 * std::sin(0.11 * p.x) + 12000.0 * std::cos(0.13 * p.y + 0.05 * p.z) +
+               900.0 * uniform();
+    }));
+    for (int trial = 0; trial < 40; ++trial) {
+        CAPTURE(trial);
+        const double lower = std::round(60000.0 * uniform());
+        const double width = trial % 3 == 0 ? std::ceil(30.0 * uniform()) : (65535.0 - lower) * uniform() + 1.0;
+        Session session = plain_session({{lower, RED, trial % 2 == 0 ? 0.0 : 0.1},
+                                         {lower + 0.3 * width, RED, 0.2},
+                                         {lower + 0.6 * width, RED, 0.0},
+                                         {lower + 0.8 * width, RED, 0.0},
+                                         {lower + width, RED, 0.3}},
+                                        {4, 4});
+        const Grid grid = grid_of(*this, session);
+        check_distances(grid);
+        check_occupancy(volume(), session, grid);
+    }
+}
