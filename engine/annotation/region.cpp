@@ -54,6 +54,14 @@ bool is_inside(const Size3& voxel, const Size3& size)
     return glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size));
 }
 
+void refuse_size(double radius_voxels, const Size3& size)
+{
+    if ((size.x + 31) / 32 * 32 * size.y * size.z > MOST_REGION_VOXELS)
+        fail("brush radius is ", radius_voxels, " voxels: its region is ", size.x, " x ", size.y, " x ", size.z,
+             " voxels; expected at most ", MOST_REGION_VOXELS,
+             " (256 x 256 x 256), each row filled up to a multiple of 32");
+}
+
 }  // namespace
 
 bool BrushRegion::contains(const Size3& voxel) const
@@ -62,6 +70,14 @@ bool BrushRegion::contains(const Size3& voxel) const
     const Size3 at = voxel - box.lower;
     const gpu::RowSpan& span = rows[size_t(at.y + box.size().y * at.z)];
     return at.x >= span.begin && at.x < span.end;
+}
+
+void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size)
+{
+    // Centred on a voxel, or between two: an odd or an even number of voxels along each axis.
+    const glm::dvec3 reach = glm::min(radius_voxels * spacing.x / spacing, glm::dvec3(volume_size));
+    const Size3 widest = glm::max(2l * Size3(glm::floor(reach)) + 1l, 2l * Size3(glm::floor(reach + 0.5)));
+    refuse_size(radius_voxels, glm::min(widest, volume_size));
 }
 
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
@@ -86,10 +102,7 @@ BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, doubl
         region.box.upper[axis] = range.end;
     }
     const Size3 size = region.box.size();
-    if (32 * region.words_per_row() * size.y * size.z > MOST_REGION_VOXELS)
-        fail("brush radius is ", radius_voxels, " voxels: its region is ", size.x, " x ", size.y, " x ", size.z,
-             " voxels; expected at most ", MOST_REGION_VOXELS,
-             " (256 x 256 x 256), each row filled up to a multiple of 32");
+    refuse_size(radius_voxels, size);
     region.rows.reserve(size_t(size.y * size.z));
     for (int64_t z = region.box.lower.z; z < region.box.upper.z; ++z)
         for (int64_t y = region.box.lower.y; y < region.box.upper.y; ++y) {

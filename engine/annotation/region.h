@@ -32,6 +32,9 @@ struct BrushRegion {
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
+/// Fails where a brush of that radius could come to hold more, somewhere in a volume of that size.
+void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
+
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
 /// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
 /// Fails where there are more than MOST_STROKE_POSITIONS.

@@ -127,8 +127,8 @@ PaintOp read_paint(const Fields& fields)
     op.group = uint8_t(fields.whole("group", fields.need("group"), 0, 255));
     op.threshold = fields.number("threshold", fields.need("threshold"));
     op.radius_voxels = fields.number("radius", fields.need("radius"));
-    if (op.radius_voxels <= 0.0 || op.radius_voxels > 128.0)
-        fields.refuse("key radius is ", shown(fields.need("radius")), "; expected a number above 0, at most 128");
+    if (op.radius_voxels <= 0.0 || op.radius_voxels >= 128.0)
+        fields.refuse("key radius is ", shown(fields.need("radius")), "; expected a number above 0, below 128");
     if (const Json* connectivity = fields.find("connectivity")) {
         op.connectivity = int(fields.whole("connectivity", *connectivity, 6, 26));
         if (op.connectivity != 6 && op.connectivity != 26)

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/scene/annotator.h"
 #include "shaders/counters.h"
 #include "tests/support/gpu.h"
 
@@ -152,4 +153,18 @@ TEST_CASE_FIXTURE(OnDevice, "work is counted exactly")
     CHECK(counted[gpu::COUNTER_BRICKS_VISITED] == 64 * 2);
     CHECK(counted[gpu::COUNTER_BRICKS_SKIPPED] == 0);
     CHECK(counted == work(session, camera_along(volume(), {0.0, 0.0, 1.0}, 64.0)));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a volume that is loaded anew has none of the paint of the last one")
+{
+    const TestVolume noise = noise_volume({40, 40, 40}, 17);
+    load(noise);
+    const Session session = plain_session(busy_points(), {32, 32});
+    const Camera camera = camera_along(volume(), {1, 2, 3}, 60.0);
+    const ImageF unpainted = draw(session, camera);
+    Annotator annotator(renderer());
+    annotator.paint({.brush = Brush::fill, .group = 3, .radius_voxels = 12.0, .path = {{20, 20, 20}}});
+    CHECK(different_bits(draw(session, camera), unpainted) > 0);
+    load(noise);
+    CHECK(different_bits(draw(session, camera), unpainted) == 0);
 }

@@ -176,6 +176,23 @@ TEST_CASE("a radius or position that makes no region is refused by its value")
           "(256 x 256 x 256), each row filled up to a multiple of 32");
 }
 
+TEST_CASE("a radius that may come to be too large is refused wherever the brush is")
+{
+    const auto refused = [](double radius, const glm::dvec3& spacing, const Size3& size) {
+        try {
+            check_radius(radius, spacing, size);
+        } catch (const Error&) {
+            return true;
+        }
+        return false;
+    };
+    CHECK(!refused(127.99, {1, 1, 1}, {600, 600, 600}));
+    CHECK(refused(128.0, {1, 1, 1}, {600, 600, 600}));  // 257 voxels, centred on one
+    CHECK(refused(100.0, {2, 1, 1}, {600, 600, 600}));
+    CHECK(!refused(100.0, {2, 1, 1}, {600, 100, 100}));
+    CHECK(!refused(1e9, {1, 1, 1}, {256, 256, 256}));
+}
+
 TEST_CASE("what limits a region is its size in the volume, not the radius")
 {
     CHECK(make_region(RegionShape::box, {64, 64, 64}, 500.0, {1, 1, 1}, {128, 128, 128}).box.size() == Size3(128));

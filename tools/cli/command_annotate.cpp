@@ -59,6 +59,13 @@ void run(const Options& options)
 {
     const std::vector<ScriptLine> script = read_script(options.script);
     Opened opened = open(options.project, options.common, !options.fresh);
+    const VolumeInfo& volume = opened.source->info();
+    for (const ScriptLine& line : script)  // before anything is painted
+        if (const auto* paint = std::get_if<PaintOp>(&line.op)) try {
+                check_radius(paint->radius_voxels, volume.spacing, volume.size);
+            } catch (const Error& error) {
+                fail(options.script, ":", line.number, ": ", error.what());
+            }
     Replay replay{.opened = opened, .options = options};
     for (const ScriptLine& line : script) {
         replay.at = sentence(options.script, ":", line.number);
