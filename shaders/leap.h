@@ -15,7 +15,8 @@ SHARED_CONST uint LEAP_LIMIT = 15u;
 
 /// What decides whether a cell is empty under the transfer function of the moment.
 struct OccupancyParams {
-    uvec3 cell_counts;
+    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_end;
     uvec3 brick_counts;
     float table_lower;  ///< as in RaycastParams
     float table_upper;
@@ -27,6 +28,8 @@ struct OccupancyParams {
 
 struct LeapDistanceParams {
     uvec3 cell_counts;
+    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_end;
     uint axis;
 };
 

@@ -11,9 +11,9 @@ layout(binding = 1, r32ui) uniform writeonly uimage3D leap;
 
 void main()
 {
-    const ivec3 cell = ivec3(gl_GlobalInvocationID);
+    const ivec3 cell = ivec3(params.cell_begin + gl_GlobalInvocationID);
     const ivec3 counts = ivec3(params.cell_counts);
-    if (any(greaterThanEqual(cell, counts))) return;
+    if (any(greaterThanEqual(cell, ivec3(params.cell_end)))) return;
     const ivec3 along = ivec3(params.axis == 0u, params.axis == 1u, params.axis == 2u);
     const int position = params.axis == 0u ? cell.x : params.axis == 1u ? cell.y : cell.z;
     const int count = params.axis == 0u ? counts.x : params.axis == 1u ? counts.y : counts.z;

@@ -15,8 +15,8 @@ layout(binding = 3, r32ui) uniform writeonly uimage3D leap;
 
 void main()
 {
-    const uvec3 cell = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(cell, params.cell_counts))) return;
+    const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, params.cell_end))) return;
     const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
     const bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
     imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : LEAP_LIMIT << LEAP_DISTANCE_SHIFT) | page_table.slots[brick]));

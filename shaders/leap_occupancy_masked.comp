@@ -31,8 +31,8 @@ bool paint_shows(uvec3 cell, uint mask_slot)
 
 void main()
 {
-    const uvec3 cell = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(cell, params.cell_counts))) return;
+    const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, params.cell_end))) return;
     const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
     bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
     const uint mask_slot = mask_table.slots[brick];

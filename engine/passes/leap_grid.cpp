@@ -2,36 +2,59 @@
 
 namespace shvr {
 
-Resource leap_grid(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input)
+namespace {
+
+/// The cells that a stage must compute: what the changed cells can reach, and what later stages read around that.
+CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
-    Resource scratch = graph.create("leap scratch", image_desc(Format::r32_uint, volume.cell_counts));
+    // A distance is at most LEAP_LIMIT, so the last stage covers one reach around the change. Stage s is read along the
+    // axes of the stages after it: x by stage 1, y by stage 2, z by stage 3.
+    const glm::uvec3 reach = gpu::LEAP_LIMIT * (1u + glm::uvec3(stage < 1, stage < 2, stage < 3));
+    return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
+}
 
-    Pass occupancy = graph.compute(input.mask ? "leap_occupancy_masked" : "leap_occupancy");
-    occupancy.read("cell_ranges", volume.cell_ranges);
-    occupancy.read("page_table", volume.page_table);
-    occupancy.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
+void occupancy(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells)
+{
+    Pass pass = graph.compute(input.mask ? "leap_occupancy_masked" : "leap_occupancy");
+    pass.read("cell_ranges", volume.cell_ranges);
+    pass.read("page_table", volume.page_table);
+    pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
     if (input.mask) {
-        occupancy.read("mask", input.mask->mask);
-        occupancy.read("mask_table", input.mask->mask_table);
-        occupancy.block("visible_groups", std::span<const uint32_t>(input.visible_groups));
+        pass.read("mask", input.mask->mask);
+        pass.read("mask_table", input.mask->mask_table);
+        pass.block("visible_groups", std::span<const uint32_t>(input.visible_groups));
     }
-    occupancy.push(input.params);
-    occupancy.dispatch(volume.cell_counts);
-    scratch = occupancy.write("leap", scratch);
+    gpu::OccupancyParams params = input.params;
+    params.cell_begin = cells.begin;
+    params.cell_end = cells.end;
+    pass.push(params);
+    pass.dispatch(cells.end - cells.begin);
+    volume.leap_scratch[0] = pass.write("leap", volume.leap_scratch[0]);
+}
 
-    Resource from = scratch;
-    Resource to = volume.leap;
-    for (uint32_t axis = 0; axis < 3; ++axis) {
-        const char* const names[] = {"leap_distance x", "leap_distance y", "leap_distance z"};
-        Pass distance = graph.compute("leap_distance", names[axis]);
-        distance.read("source", from);
-        const Resource written = distance.write("leap", to);
-        distance.push(gpu::LeapDistanceParams{volume.cell_counts, axis});
-        distance.dispatch(volume.cell_counts);
-        to = from;
-        from = written;
+void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, const CellBox& cells, Resource from,
+              Resource& to)
+{
+    const char* const names[] = {"leap_distance x", "leap_distance y", "leap_distance z"};
+    Pass pass = graph.compute("leap_distance", names[axis]);
+    pass.read("source", from);
+    pass.push(gpu::LeapDistanceParams{volume.cell_counts, cells.begin, cells.end, axis});
+    pass.dispatch(cells.end - cells.begin);
+    to = pass.write("leap", to);
+}
+
+}  // namespace
+
+void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage)
+{
+    const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, stage);
+    switch (stage) {
+        case 0: return occupancy(graph, volume, input, cells);
+        case 1: return distance(graph, volume, 0, cells, volume.leap_scratch[0], volume.leap_scratch[1]);
+        case 2: return distance(graph, volume, 1, cells, volume.leap_scratch[1], volume.leap_scratch[0]);
+        case 3: return distance(graph, volume, 2, cells, volume.leap_scratch[0], volume.leap);
+        default: SHVR_CHECK(false, "stage ", stage);
     }
-    return from;  // x and z wrote the leap grid, y the scratch
 }
 
 }  // namespace shvr

@@ -1,7 +1,10 @@
 #pragma once
-// Builds the leap grid of shaders/leap.h from the value ranges of the cells: four passes over the cells, run when the
-// transfer function, the visible groups or the painted bricks change. Cost: one thread a cell and pass, at most
-// 2 * LEAP_LIMIT loads each.
+// Builds the leap grid of shaders/leap.h from the value ranges of the cells: four stages over the cells, run when the
+// transfer function, the visible groups or the painted bricks change. Cost: one thread a cell and stage, at most
+// 2 * LEAP_LIMIT loads each. Each stage is a pass of its own, so that other work gets in between; where only some cells
+// changed, the stages cover no more than what those can reach.
+//
+//   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 
 #include <array>
 #include <optional>
@@ -12,14 +15,24 @@
 
 namespace shvr {
 
+/// Half open.
+struct CellBox {
+    glm::uvec3 begin{0}, end{0};
+    bool operator==(const CellBox&) const = default;
+};
+
 struct LeapGridInput {
-    gpu::OccupancyParams params;
+    gpu::OccupancyParams params;              ///< but for the cells
+    CellBox changed;                          ///< cells whose occupancy may have changed
     std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
     std::optional<MaskBinding> mask;
     std::array<uint32_t, 8> visible_groups{};  ///< bit per group; used with a mask
 };
 
-/// Returns the new version of `volume.leap`.
-Resource leap_grid(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input);
+inline constexpr uint32_t LEAP_STAGES = 4;
+
+/// Adds one stage, 0 ... LEAP_STAGES - 1, and renews the handles of `volume` that it writes. The leap grid holds after the
+/// last one, provided that all four ran in order with the same input.
+void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
 }  // namespace shvr

@@ -97,6 +97,8 @@ DeviceVolume::DeviceVolume(gpu::Executor& executor, gpu::Memory& memory, const V
     page_table_ = memory.create("page table", buffer_desc(bricks * sizeof(uint32_t)));
     cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
     leap_ = memory.create("leap grid", image_desc(Format::r32_uint, cell_counts_));
+    for (gpu::Storage& scratch : leap_scratch_)
+        scratch = memory.create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
 
     Uploader uploader(executor, memory, bricks, codes_per_texel);
     std::vector<uint32_t> slots;  // bricks come in the order of their index
@@ -127,6 +129,8 @@ VolumeBinding DeviceVolume::import(FrameGraph& graph) const
             .page_table = graph.import("page table", page_table_.import()),
             .cell_ranges = graph.import("cell ranges", cell_ranges_.import()),
             .leap = graph.import("leap grid", leap_.import()),
+            .leap_scratch = {graph.import("leap scratch 0", leap_scratch_[0].import()),
+                             graph.import("leap scratch 1", leap_scratch_[1].import())},
             .brick_counts = brick_counts_,
             .cell_counts = cell_counts_,
             .filtered = filtered_};

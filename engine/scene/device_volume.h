@@ -35,6 +35,7 @@ private:
     bool filtered_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
     gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
+    std::array<gpu::Storage, 2> leap_scratch_;
 };
 
 }  // namespace shvr

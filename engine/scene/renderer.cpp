@@ -123,8 +123,8 @@ bool Renderer::LeapState::operator==(const LeapState& other) const
 {
     const auto members = [](const LeapState& state) {
         const gpu::OccupancyParams& p = state.params;
-        return std::tie(p.cell_counts, p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries,
-                        p.skipping, p.mask_slots, state.visible_intervals, state.visible_groups);
+        return std::tie(p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries, p.skipping,
+                        state.visible_intervals, state.visible_groups);
     };
     return members(*this) == members(other);
 }
@@ -166,7 +166,16 @@ const DeviceVolume& Renderer::volume() const
 void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
 {
     mask_.update(mask, bricks);
-    leap_state_.reset();
+    if (bricks.empty() || !leap_state_) return;
+    CellBox changed = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
+    const glm::i64vec3 counts = mask.brick_counts();
+    for (int64_t brick : bricks) {
+        const glm::uvec3 first =
+            gpu::BRICK_CELLS * glm::uvec3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+        changed = {glm::min(changed.begin, first), glm::max(changed.end, first + gpu::BRICK_CELLS)};
+    }
+    leap_changed_ = changed;
+    leap_stage_ = 0;
 }
 
 const Renderer::Table& Renderer::table_of(const Session& session)
@@ -193,12 +202,42 @@ Resource Renderer::upload_table(FrameGraph& graph, const Table& table)
                                {{0, glm::uvec3(0), desc.texels}}, "upload transfer function");
 }
 
-void Renderer::update_leap_grid(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
+LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session)
 {
+    const Table& table = table_of(session);
+    const TableMap map = table_map(session.transfer_function, volume_->window());
+    LeapGridInput input;
+    input.params = {.brick_counts = volume.brick_counts,
+                    .table_lower = map.lower,
+                    .table_upper = map.upper,
+                    .table_scale = map.scale,
+                    .table_entries = TABLE_ENTRIES,
+                    .skipping = session.render.skip_empty_space,
+                    .mask_slots = glm::uvec3(0)};
+    input.visible_intervals = table.visible_intervals;
+    input.visible_groups = visible_groups(session);
     LeapState state{input.params, input.visible_intervals, input.visible_groups};
-    if (leap_state_ && *leap_state_ == state) return;
-    volume.leap = leap_grid(graph, volume, input);
-    leap_state_ = std::move(state);
+    if (!mask_.empty()) {
+        input.mask = mask_.import(graph);
+        input.params.mask_slots = input.mask->slots;
+    }
+    if (!leap_state_ || !(*leap_state_ == state)) {
+        leap_state_ = std::move(state);
+        leap_stage_ = 0;
+        leap_changed_ = {glm::uvec3(0), volume.cell_counts};
+    }
+    input.changed = leap_changed_;
+    return input;
+}
+
+std::optional<FrameGraph> Renderer::next_preparation(const Session& session)
+{
+    FrameGraph graph;
+    VolumeBinding volume = volume_.value().import(graph);
+    const LeapGridInput leap = want_leap_grid(graph, volume, session);
+    if (leap_stage_ == LEAP_STAGES) return std::nullopt;
+    leap_grid_stage(graph, volume, leap, leap_stage_++);
+    return graph;
 }
 
 RaycastInput Renderer::prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
@@ -213,23 +252,13 @@ RaycastInput Renderer::prepare(FrameGraph& graph, VolumeBinding& volume, const S
     input.tile = TILE;
     input.probe = part.probe.has_value();
 
-    LeapGridInput leap;
-    leap.params = {.cell_counts = volume.cell_counts,
-                   .brick_counts = volume.brick_counts,
-                   .table_lower = input.params.table_lower,
-                   .table_upper = input.params.table_upper,
-                   .table_scale = input.params.table_scale,
-                   .table_entries = input.params.table_entries,
-                   .skipping = session.render.skip_empty_space,
-                   .mask_slots = glm::uvec3(0)};
-    leap.visible_intervals = table.visible_intervals;
-    if (!mask_.empty()) {
-        input.mask = leap.mask = mask_.import(graph);
-        input.params.mask_slots = leap.params.mask_slots = leap.mask->slots;
+    const LeapGridInput leap = want_leap_grid(graph, volume, session);
+    while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, volume, leap, leap_stage_++);
+    if (leap.mask) {
+        input.mask = leap.mask;
+        input.params.mask_slots = leap.mask->slots;
         input.groups = group_looks(session);
-        leap.visible_groups = visible_groups(session);
     }
-    update_leap_grid(graph, volume, leap);
     return input;
 }
 

@@ -76,6 +76,10 @@ public:
     /// The picture of `session` (its light, transfer function, groups, cut) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
 
+    /// What has to be computed before parts of `session` are drawn, one short graph at a time; nothing when all is ready.
+    /// Whoever does not ask gets it all in the first `draw`. The graph must be submitted before the next call.
+    std::optional<FrameGraph> next_preparation(const Session& session);
+
     /// Adds the passes that draw a part of `session` from `camera` into `target`, an rgba32_float image, and returns its
     /// new version. The graph must be submitted, and before any other that was made later.
     Resource draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
@@ -96,7 +100,7 @@ private:
     bool filters(Sampling sampling) const;
     const Table& table_of(const Session& session);
     Resource upload_table(FrameGraph& graph, const Table& table);
-    void update_leap_grid(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input);
+    LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     RaycastInput prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
                          const PicturePart& part);
 
@@ -114,10 +118,12 @@ private:
     struct LeapState {
         gpu::OccupancyParams params;
         std::vector<uint32_t> visible_intervals;
-        std::array<uint32_t, 8> visible_groups;
+        std::array<uint32_t, 8> visible_groups;  ///< whether anything is painted or not
         bool operator==(const LeapState& other) const;
     };
     std::optional<LeapState> leap_state_;
+    uint32_t leap_stage_ = 0;  ///< the next of LEAP_STAGES
+    CellBox leap_changed_;     ///< the cells that the stages are about
 };
 
 /// Entries of the transfer function's table on the device.

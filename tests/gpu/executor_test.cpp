@@ -74,7 +74,7 @@ TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch 
                                               {{0, glm::uvec3(0), cells}});
         Pass pass = graph.compute("leap_distance");
         pass.read("source", source);
-        pass.push(gpu::LeapDistanceParams{cells, 0});
+        pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
         pass.dispatch(cells, tile);
         const uint32_t back =
             graph.read_back(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
@@ -184,7 +184,7 @@ TEST_CASE_FIXTURE(Fixture, "a pass that disagrees with its kernel is refused by 
           }).find("pushes 4 bytes") != std::string::npos);
     CHECK(refused([&](FrameGraph& graph, Pass& pass) {
               pass.read("source", filled(graph));
-              pass.push(gpu::LeapDistanceParams{cells, 0});
+              pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
               pass.constant("SPEED", 1);
               graph.keep(pass.write("leap", image(graph, "leap")));
           }).find("no specialization constant 'SPEED'") != std::string::npos);

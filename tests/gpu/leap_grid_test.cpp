@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/scene/annotator.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;
@@ -207,5 +208,29 @@ TEST_CASE_FIXTURE(OnDevice, "random looks of a random field occupy what they sho
         const Grid grid = grid_of(*this, session);
         check_distances(grid);
         check_occupancy(volume(), session, grid);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "painting renews what it can reach, and that is enough")
+{
+    load(dots({150, 130, 140}, {{3, 3, 3}, {140, 120, 130}}));
+    const Session session = bright_session();
+    Session other = session;
+    other.render.skip_empty_space = false;
+    Annotator annotator(renderer());
+    std::mt19937 random(63);  // seed 63
+    const auto below = [&](int end) { return int(random() % uint32_t(end)); };
+    for (int trial = 0; trial < 25; ++trial) {
+        CAPTURE(trial);
+        if (trial % 5 == 4)
+            annotator.undo();
+        else
+            annotator.paint({.brush = Brush::fill,
+                             .group = uint8_t(trial % 3),
+                             .radius_voxels = 1.0 + below(8),
+                             .path = {{below(150), below(130), below(140)}, {below(150), below(130), below(140)}}});
+        const Grid renewed = grid_of(*this, session);
+        draw(other, camera_looking("front", volume().info()));
+        CHECK(renewed.entries == grid_of(*this, session).entries);
     }
 }

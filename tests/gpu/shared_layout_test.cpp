@@ -43,10 +43,11 @@ Members raycast_params()
 
 Members occupancy_params()
 {
-    return {MEMBER(OccupancyParams, cell_counts), MEMBER(OccupancyParams, brick_counts),
-            MEMBER(OccupancyParams, table_lower), MEMBER(OccupancyParams, table_upper),
-            MEMBER(OccupancyParams, table_scale), MEMBER(OccupancyParams, table_entries),
-            MEMBER(OccupancyParams, skipping),    MEMBER(OccupancyParams, mask_slots)};
+    return {MEMBER(OccupancyParams, cell_begin),    MEMBER(OccupancyParams, cell_end),
+            MEMBER(OccupancyParams, brick_counts),  MEMBER(OccupancyParams, table_lower),
+            MEMBER(OccupancyParams, table_upper),   MEMBER(OccupancyParams, table_scale),
+            MEMBER(OccupancyParams, table_entries), MEMBER(OccupancyParams, skipping),
+            MEMBER(OccupancyParams, mask_slots)};
 }
 
 Members region_params()
@@ -89,7 +90,9 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
     for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
         check_members(kernel, "push", occupancy_params());
-    check_members("leap_distance", "push", {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, axis)});
+    check_members("leap_distance", "push",
+                  {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, cell_begin),
+                   MEMBER(LeapDistanceParams, cell_end), MEMBER(LeapDistanceParams, axis)});
     for (const char* kernel : {"region_bits", "region_bits_filtered", "region_merge", "region_mark", "region_select"})
         check_members(kernel, "push", region_params());
     for (const char* kernel : {"region_bits", "region_bits_filtered", "region_mark"})
