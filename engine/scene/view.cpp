@@ -1,0 +1,329 @@
+#include "engine/scene/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/passes/encode.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr uint32_t MOST_SCALE = 8;
+constexpr double LEARNING_RATE = 0.5;  ///< of the cost of a pixel
+constexpr double PREPARATION_MS = 5.0;
+/// Seen through a translucent background.
+constexpr glm::vec3 BEHIND(0.05f);
+
+uint32_t scale_for(double ms, double target_ms)
+{
+    return std::clamp(uint32_t(std::ceil(std::sqrt(ms / target_ms))), 1u, MOST_SCALE);
+}
+
+glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
+{
+    return (pixels + scale - 1u) / scale;
+}
+
+}  // namespace
+
+void View::look(const Session& session, const Camera& camera, const glm::uvec2& pixels)
+{
+    SHVR_CHECK(pixels.x > 0 && pixels.y > 0);
+    scene_ = std::make_shared<const Scene>(Scene{session, camera, pixels});
+}
+
+void View::show_probe(const std::optional<ProbeLook>& probe)
+{
+    probe_ = probe;
+}
+
+void View::changed(const VoxelBox& voxels)
+{
+    patch_is_dirty_ = true;
+    if (base_.job) painted_during_base_.push_back(voxels);
+    if (!shown_scene_) return;
+    // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
+    const glm::dvec3& spacing = renderer_.volume().info().spacing;
+    mark_due(pixels_of_box(shown_scene_->camera, shown_scene_->pixels, glm::dvec3(voxels.lower) * spacing,
+                           glm::dvec3(voxels.upper) * spacing));
+}
+
+glm::uvec2 View::tile_counts() const
+{
+    return divided(shown_scene_->pixels, TILE);
+}
+
+void View::mark_due(const PixelBox& pixels)
+{
+    if (pixels.empty()) return;
+    const glm::uvec2 counts = tile_counts(), first = pixels.begin / TILE, last = (pixels.end - 1u) / TILE;
+    for (uint32_t y = first.y; y <= last.y; ++y)
+        for (uint32_t x = first.x; x <= last.x; ++x) tiles_[x + counts.x * y].is_due = true;
+}
+
+void View::reset_tiles()
+{
+    const glm::uvec2 counts = tile_counts();
+    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = base_.shown.scale > 1});
+}
+
+void View::reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels)
+{
+    if (image && glm::all(glm::greaterThanEqual(glm::uvec2(image.desc().texels), pixels))) return;
+    const glm::uvec2 before = image ? glm::uvec2(image.desc().texels) : glm::uvec2(0);
+    image.reset();
+    image = renderer_.memory().create(name, image_desc(format, glm::uvec3(glm::max(before, pixels), 1)));
+}
+
+// ---- What comes next ------------------------------------------------------------------------------------------------
+
+void View::advance()
+{
+    reap();
+    while (in_flight_ms_ < options_.in_flight_ms && submit_next()) {
+    }
+}
+
+bool View::patch_is_due() const
+{
+    return patch_.shown.scene != shown_scene_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
+}
+
+bool View::submit_next()
+{
+    if (!scene_) return false;
+    if (base_.job && base_.next_row < base_.job->part.end.y) {
+        if (!submit_preparation(*base_.job->scene)) submit_rows(base_, Purpose::base);
+        return true;
+    }
+    if (patch_.job && patch_.next_row < patch_.job->part.end.y) {
+        if (!submit_preparation(*patch_.job->scene)) submit_rows(patch_, Purpose::patch);
+        return true;
+    }
+    if (base_.job || patch_.job) return false;  // on their way
+    if (scene_ != shown_scene_) {
+        pass_times_.clear();
+        painted_during_base_.clear();
+        start(base_, scene_, std::nullopt, options_.motion_ms);
+        if (probe_) start(patch_, scene_, probe_, options_.probe_ms);  // shown together with it
+        patch_is_dirty_ = false;
+        return submit_next();
+    }
+    if (patch_is_due()) {
+        patch_is_dirty_ = false;
+        start(patch_, scene_, probe_, options_.probe_ms);
+        finish_sketches();  // there may be nothing to draw
+        return submit_next();
+    }
+    if (submit_tiles()) return true;
+    if (running_.empty() && patch_.shown.scale > 1 && !patch_.shown.part.empty()) {
+        start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
+        return submit_next();
+    }
+    return false;
+}
+
+bool View::submit_preparation(const Scene& scene)
+{
+    std::optional<FrameGraph> graph = renderer_.next_preparation(scene.session);
+    if (!graph) return false;
+    running_.push_back({.submission = renderer_.executor().submit(std::move(*graph)),
+                        .purpose = Purpose::preparation,
+                        .estimate_ms = PREPARATION_MS});
+    in_flight_ms_ += PREPARATION_MS;
+    ++submissions_;
+    return true;
+}
+
+void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms)
+{
+    const bool is_patch = &sketch == &patch_;
+    PixelBox part{glm::uvec2(0), scene->pixels};
+    if (is_patch)
+        part = probe ? pixels_of_ball(scene->camera, scene->pixels, probe->center, probe->radius) : PixelBox{};
+    const uint32_t scale = scale_for(cost_ms(part.area()), target_ms);
+    Sketch::Content content{.scene = scene, .probe = probe, .scale = scale, .pixels = divided(scene->pixels, scale)};
+    if (!part.empty()) content.part = {part.begin / scale, glm::min(divided(part.end, scale), content.pixels)};
+    sketch.next_row = content.part.begin.y;
+    sketch.rows_done = 0;
+    if (!content.part.empty())
+        reserve(sketch.images[1 - sketch.front], is_patch ? "probe's pixels" : "sketch", Format::rgba8_unorm,
+                content.part.end - content.part.begin);
+    sketch.job = std::move(content);
+}
+
+void View::submit_rows(Sketch& sketch, Purpose purpose)
+{
+    const Sketch::Content& job = *sketch.job;
+    const uint32_t width = job.part.end.x - job.part.begin.x;
+    const auto affordable = uint32_t(std::min(options_.step_ms / cost_ms(width), 65536.0));
+    const uint32_t rows = std::min(std::max(affordable / 8 * 8, 8u), job.part.end.y - sketch.next_row);
+    const PicturePart part{.pixels = job.pixels,
+                           .begin = {job.part.begin.x, sketch.next_row},
+                           .end = {job.part.end.x, sketch.next_row + rows},
+                           .probe = job.probe};
+    const glm::uvec2 target(0, sketch.next_row - job.part.begin.y);
+    sketch.next_row += rows;
+    submit_part(*job.scene, part, sketch.images[1 - sketch.front], target,
+                {.purpose = purpose, .pixels = uint64_t(width) * rows, .rows = rows, .scene = job.scene});
+}
+
+bool View::submit_tiles()
+{
+    const glm::uvec2 counts = tile_counts(), pixels = shown_scene_->pixels;
+    glm::dvec2 focus = 0.5 * glm::dvec2(pixels);
+    if (probe_)
+        if (const auto seen = project(shown_scene_->camera, pixels, probe_->center)) focus = seen->pixel;
+    std::optional<glm::uvec2> nearest;
+    double best = 0.0;
+    for (uint32_t y = 0; y < counts.y; ++y)
+        for (uint32_t x = 0; x < counts.x; ++x) {
+            if (!tiles_[x + counts.x * y].is_due) continue;
+            const glm::dvec2 apart = (glm::dvec2(x, y) + 0.5) * double(TILE) - focus;
+            const double square = glm::dot(apart, apart);
+            if (!nearest || square < best) nearest = glm::uvec2(x, y), best = square;
+        }
+    if (!nearest) return false;
+    if (submit_preparation(*shown_scene_)) return true;
+
+    // As many neighbours in its row as a step affords.
+    const auto is_due = [&](uint32_t x) { return tiles_[x + counts.x * nearest->y].is_due; };
+    uint32_t begin = nearest->x, end = nearest->x + 1;
+    const double tile_ms = cost_ms(uint64_t(TILE) * TILE);
+    const auto affords_more = [&] { return (end - begin + 1) * tile_ms <= options_.step_ms; };
+    while (affords_more() && end < counts.x && is_due(end)) ++end;
+    while (affords_more() && begin > 0 && is_due(begin - 1)) --begin;
+
+    reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
+    Running running{.purpose = Purpose::tiles, .scene = shown_scene_};
+    for (uint32_t x = begin; x < end; ++x) {
+        tiles_[x + counts.x * nearest->y].is_due = false;
+        running.tiles.push_back(x + counts.x * nearest->y);
+    }
+    PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
+    part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
+    running.pixels = PixelBox{part.begin, part.end}.area();
+    submit_part(*shown_scene_, part, sharp_, part.begin, std::move(running));
+    return true;
+}
+
+void View::submit_part(const Scene& scene, const PicturePart& part, const gpu::Storage& display,
+                       const glm::uvec2& target, Running running)
+{
+    const glm::uvec2 size = part.end - part.begin;
+    reserve(work_, "light", Format::rgba32_float, size);
+    FrameGraph graph;
+    const Resource light =
+        renderer_.draw(graph, scene.session, scene.camera, part, graph.import("light", work_.import()));
+    static_cast<void>(encode(graph, light, graph.import("display", display.import()),
+                             {.source = glm::uvec2(0), .target = target, .size = size, .behind = BEHIND}));
+    running.estimate_ms = cost_ms(running.pixels);
+    running.submission = renderer_.executor().submit(std::move(graph));
+    in_flight_ms_ += running.estimate_ms;
+    ++submissions_;
+    running_.push_back(std::move(running));
+}
+
+// ---- What is done ---------------------------------------------------------------------------------------------------
+
+void View::account(const gpu::FrameResult& result, uint64_t pixels)
+{
+    for (const gpu::PassReport& pass : result.passes) {
+        const double ms = pass.timed ? pass.gpu_ms : result.wall_ms;
+        auto known = std::ranges::find(pass_times_, pass.name, &PassTime::name);
+        if (known == pass_times_.end()) known = pass_times_.insert(known, {.name = pass.name});
+        ++known->runs;
+        known->total_ms += ms;
+        known->longest_ms = std::max(known->longest_ms, ms);
+        if (pass.name == "raycast" && pixels > 0)
+            ms_per_pixel_ += LEARNING_RATE * (std::max(ms / double(pixels), 1e-7) - ms_per_pixel_);
+    }
+}
+
+void View::reap()
+{
+    while (!running_.empty() && running_.front().submission.done()) {
+        Running done = std::move(running_.front());
+        running_.pop_front();
+        in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
+        account(done.submission.finish(), done.pixels);
+        switch (done.purpose) {
+            case Purpose::preparation: break;
+            case Purpose::base: base_.rows_done += done.rows; break;
+            case Purpose::patch: patch_.rows_done += done.rows; break;
+            case Purpose::tiles:
+                if (done.scene != shown_scene_) break;
+                for (uint32_t tile : done.tiles) tiles_[tile].is_shown = true;
+                ++revision_;
+                break;
+        }
+        finish_sketches();
+    }
+}
+
+void View::flip(Sketch& sketch)
+{
+    sketch.front = 1 - sketch.front;
+    sketch.shown = std::move(*sketch.job);
+    sketch.job.reset();
+    ++revision_;
+}
+
+void View::finish_sketches()
+{
+    const auto is_drawn = [](const Sketch& sketch) {
+        return !sketch.job || sketch.rows_done == sketch.job->part.end.y - sketch.job->part.begin.y;
+    };
+    if (!is_drawn(base_) || !is_drawn(patch_)) return;
+    // A picture and the probe in it are shown together.
+    if (patch_.job) flip(patch_);
+    if (!base_.job) return;
+    flip(base_);
+    shown_scene_ = base_.shown.scene;
+    reset_tiles();
+    for (const VoxelBox& voxels : std::exchange(painted_during_base_, {})) changed(voxels);
+}
+
+bool View::complete() const
+{
+    if (!scene_) return true;
+    if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
+    return (patch_.shown.scale == 1 || patch_.shown.part.empty()) &&
+           std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
+}
+
+std::vector<View::Layer> View::layers() const
+{
+    std::vector<Layer> layers;
+    if (!shown_scene_) return layers;
+    const glm::uvec2 pixels = shown_scene_->pixels;
+    const auto add_sketch = [&](const Sketch& sketch) {
+        const Sketch::Content& shown = sketch.shown;
+        if (shown.scene != shown_scene_ || shown.part.empty()) return;
+        layers.push_back(
+            {.image = sketch.images[sketch.front].import(),
+             .source = {glm::uvec2(0), shown.part.end - shown.part.begin},
+             .target = {shown.part.begin * pixels / shown.pixels, shown.part.end * pixels / shown.pixels}});
+    };
+    const bool is_sharp = std::ranges::all_of(tiles_, &Tile::is_shown);
+    if (!is_sharp) add_sketch(base_);
+    const glm::uvec2 counts = tile_counts();
+    const auto add_tiles = [&](uint32_t begin, uint32_t end, uint32_t y, uint32_t rows) {
+        const PixelBox box{glm::uvec2(begin, y) * TILE, glm::min(glm::uvec2(end, y + rows) * TILE, pixels)};
+        layers.push_back({.image = sharp_.import(), .source = box, .target = box});
+    };
+    if (is_sharp) add_tiles(0, counts.x, 0, counts.y);
+    for (uint32_t y = 0; !is_sharp && y < counts.y; ++y)
+        for (uint32_t x = 0; x < counts.x; ++x) {
+            const uint32_t begin = x;
+            while (x < counts.x && tiles_[x + counts.x * y].is_shown) ++x;
+            if (x > begin) add_tiles(begin, x, y, 1);
+        }
+    add_sketch(patch_);
+    return layers;
+}
+
+}  // namespace shvr

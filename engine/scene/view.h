@@ -1,0 +1,140 @@
+#pragma once
+// A picture that is made while somebody looks at it: coarse at once, then sharp, tile by tile, nearest to the probe first.
+//
+//   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all of it is done
+//   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
+//   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
+//   voxels painted    the tiles that show them, again
+//
+// Everything is drawn in small graphs of about `step_ms` each, and no more than about `in_flight_ms` of them are on the
+// way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
+// submitted when nothing changed. One thread, the renderer's; no call waits for the device.
+
+#include <deque>
+#include <memory>
+
+#include "engine/scene/camera_motion.h"
+#include "engine/scene/renderer.h"
+
+namespace shvr {
+
+class View {
+public:
+    static constexpr uint32_t TILE = 32;  ///< pixels a side
+
+    struct Options {
+        double step_ms = 4.0;       ///< of the device, for one graph
+        double in_flight_ms = 9.0;  ///< of graphs on their way
+        double motion_ms = 40.0;    ///< for the sketch of a picture
+        double probe_ms = 20.0;     ///< for the sketch of the pixels that the probe may cover
+    };
+    View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
+    explicit View(Renderer& renderer) : View(renderer, Options{}) {}
+
+    /// What is to be seen: all of it is drawn anew. Not to be called where nothing changed.
+    void look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
+    void show_probe(const std::optional<ProbeLook>& probe);
+    /// These voxels have been painted.
+    void changed(const VoxelBox& voxels);
+
+    /// Takes what the device has finished, and submits what is due next.
+    void advance();
+    /// The picture is sharp, and nothing is due or on its way.
+    bool complete() const;
+    /// Counts what changed in layers(): who shows them compares.
+    uint64_t revision() const { return revision_; }
+
+    /// Images to be drawn over each other, back to front. Each is an rgba8_unorm image; sources are stretched to targets.
+    struct Layer {
+        Import image;
+        PixelBox source, target;
+    };
+    std::vector<Layer> layers() const;
+
+    /// Device time of the picture that is being made or was made last, by pass.
+    struct PassTime {
+        std::string name;
+        uint64_t runs = 0;
+        double total_ms = 0.0;
+        double longest_ms = 0.0;
+    };
+    const std::vector<PassTime>& pass_times() const { return pass_times_; }
+    uint64_t submissions() const { return submissions_; }
+
+private:
+    struct Scene {
+        Session session;
+        Camera camera;
+        glm::uvec2 pixels{0};
+    };
+    using SceneRef = std::shared_ptr<const Scene>;
+
+    /// A part of a picture at some scale, in an image of its own. Two images: one is shown while the other is drawn.
+    struct Sketch {
+        struct Content {
+            SceneRef scene;
+            std::optional<ProbeLook> probe;
+            uint32_t scale = 1;    ///< screen pixels per pixel, along each axis
+            glm::uvec2 pixels{0};  ///< of the whole picture, scaled
+            PixelBox part;         ///< scaled pixels; may be empty
+        };
+        std::array<gpu::Storage, 2> images;
+        uint32_t front = 0;
+        Content shown;               ///< in images[front]; scene is null where there is nothing
+        std::optional<Content> job;  ///< goes to the other image
+        uint32_t next_row = 0;       ///< of the job, from part.begin.y
+        uint32_t rows_done = 0;
+    };
+    struct Tile {
+        bool is_shown = false;
+        bool is_due = false;
+    };
+    enum class Purpose : uint8_t { preparation, base, patch, tiles };
+    struct Running {
+        gpu::Submission submission;
+        Purpose purpose = Purpose::preparation;
+        double estimate_ms = 0.0;
+        uint64_t pixels = 0;
+        uint32_t rows = 0;            ///< of a sketch
+        std::vector<uint32_t> tiles;  ///< indices
+        SceneRef scene;
+    };
+
+    bool submit_next();
+    bool submit_preparation(const Scene& scene);
+    void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
+    void submit_rows(Sketch& sketch, Purpose purpose);
+    bool submit_tiles();
+    void submit_part(const Scene& scene, const PicturePart& part, const gpu::Storage& display, const glm::uvec2& target,
+                     Running running);
+    void reap();
+    void account(const gpu::FrameResult& result, uint64_t pixels);
+    void finish_sketches();
+    void flip(Sketch& sketch);
+    void reset_tiles();
+    void mark_due(const PixelBox& pixels);
+    void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
+    bool patch_is_due() const;
+    double cost_ms(uint64_t pixels) const { return double(pixels) * ms_per_pixel_; }
+    glm::uvec2 tile_counts() const;
+
+    Renderer& renderer_;
+    Options options_;
+    SceneRef scene_;                  ///< what is wanted
+    SceneRef shown_scene_;            ///< what base, tiles and patch show
+    std::optional<ProbeLook> probe_;  ///< what is wanted
+    Sketch base_, patch_;
+    bool patch_is_dirty_ = false;  ///< painted under the probe
+    gpu::Storage work_;            ///< linear light of the part that is being drawn
+    gpu::Storage sharp_;           ///< all sharp tiles
+    std::vector<Tile> tiles_;
+    std::vector<VoxelBox> painted_during_base_;
+    std::deque<Running> running_;
+    double in_flight_ms_ = 0.0;
+    double ms_per_pixel_ = 0.002;  ///< learnt
+    uint64_t revision_ = 0;
+    uint64_t submissions_ = 0;
+    std::vector<PassTime> pass_times_;
+};
+
+}  // namespace shvr

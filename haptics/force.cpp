@@ -1,0 +1,180 @@
+#include "haptics/force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace shvr {
+namespace {
+
+constexpr double VELOCITY_CUTOFF_HZ = 100.0;
+/// A servo that was held up for longer fades on as if it had been only that long.
+constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
+
+bool is_finite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool is_place(const DeviceState& state)
+{
+    const glm::dquat& q = state.rotation;
+    const bool is_near = std::abs(state.position_m.x) <= MOST_REACH_M && std::abs(state.position_m.y) <= MOST_REACH_M &&
+                         std::abs(state.position_m.z) <= MOST_REACH_M;  // false for what is not a number
+    return is_near && std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+}
+
+bool is_glitch_between(const DeviceState& a, const DeviceState& b)
+{
+    return glm::distance(a.position_m, b.position_m) > GLITCH_M;
+}
+
+void disengage(ForceMemory& memory)
+{
+    memory.has_begun = false;
+    memory.engagement = 0.0;
+}
+
+/// No force from this tick on, past every limit of its change.
+ForceStep stop(const ForceSettings& settings, ForceMemory& memory, uint32_t flags)
+{
+    memory.flags = (memory.flags & FORCE_FAULT) | flags;
+    memory.has_last = false;
+    memory.glitches = 0;
+    memory.velocity = glm::dvec3(0.0);
+    memory.force_n = glm::dvec3(0.0);
+    memory.contact_fade = 0.0;
+    disengage(memory);
+    const glm::dvec3 probe = settings.workspace.to_point(memory.last.position_m);
+    return {.probe = probe, .proxy = probe, .flags = memory.flags};
+}
+
+void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
+{
+    memory.has_last = true;
+    memory.last = state;
+    memory.glitches = 0;
+    memory.velocity = glm::dvec3(0.0);
+    disengage(memory);
+}
+
+/// Exact for a velocity that is constant over the interval, so that damping does not depend on the rate.
+void accept_next(const DeviceState& state, ForceMemory& memory)
+{
+    // The device's clock may stand still or go back; only then is nothing learned about the velocity.
+    const auto nanoseconds = int64_t(state.time_ns - memory.last.time_ns);
+    if (nanoseconds > 0) {
+        const double dt = double(nanoseconds) * 1e-9;
+        const double share = 1.0 - std::exp(-2.0 * std::numbers::pi * VELOCITY_CUTOFF_HZ * dt);
+        memory.velocity += share * ((state.position_m - memory.last.position_m) / dt - memory.velocity);
+    }
+    memory.last = state;
+    memory.glitches = 0;
+}
+
+void believe_or_not(const DeviceState& state, ForceMemory& memory)
+{
+    if (!memory.has_last || state.jump != memory.last.jump) return accept_elsewhere(state, memory);
+    if (!is_glitch_between(state, memory.last)) return accept_next(state, memory);
+    const bool is_near_candidate = memory.glitches > 0 && !is_glitch_between(state, memory.candidate);
+    memory.glitches = is_near_candidate ? memory.glitches + 1 : 1;
+    memory.candidate = state;
+    if (memory.glitches >= GLITCHES_TO_ACCEPT) accept_elsewhere(state, memory);
+}
+
+/// `value` after `dt_ns`, on its way to 0 or 1, which takes `whole_ns`.
+double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
+{
+    const double change = double(dt_ns) / double(whole_ns);
+    return std::clamp(value + (rises ? change : -change), 0.0, 1.0);
+}
+
+glm::dvec3 shortened(const glm::dvec3& v, double most)
+{
+    const double length = glm::length(v);
+    return length > most ? v * (most / length) : v;
+}
+
+/// The proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so that its transpose, divided by
+/// the scale's square, is its inverse.
+glm::dvec3 spring(const ForceSettings& settings, const DeviceCaps& caps, const glm::dvec3& offset)
+{
+    const double scale = settings.workspace.scale();
+    if (!(scale > 0.0)) return glm::dvec3(0.0);
+    const double stiffness = std::clamp(settings.stiffness, 0.0, caps.stiffness_limit);
+    return stiffness * (glm::transpose(settings.workspace.to_volume) * offset) / (scale * scale);
+}
+
+bool is_usable(const RelevancePatch& patch, const glm::dvec3& probe, double radius, uint64_t now_ns)
+{
+    const bool is_fresh = now_ns <= patch.time_ns || now_ns - patch.time_ns <= RELEVANCE_FRESH_NS;
+    return patch.sequence != 0 && is_fresh && patch.covers(probe, radius);
+}
+
+}  // namespace
+
+ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult result, const DeviceState& state,
+               const RelevancePatch& patch, uint64_t now_ns, ForceMemory& memory) noexcept
+{
+    const uint64_t dt_ns = memory.last_tick_ns == 0 || now_ns < memory.last_tick_ns
+                               ? 0
+                               : std::min(now_ns - memory.last_tick_ns, LONGEST_TICK_NS);
+    memory.last_tick_ns = now_ns;
+
+    // ---- Where the hand is ----
+    if (result == ReadResult::lost) return stop(settings, memory, FORCE_NO_DEVICE);
+    if (result == ReadResult::fresh) {
+        if (!is_place(state)) memory.flags |= FORCE_FAULT;
+        if (!(memory.flags & FORCE_FAULT)) believe_or_not(state, memory);
+        memory.last_fresh_ns = now_ns;
+    }
+    if (memory.flags & FORCE_FAULT) return stop(settings, memory, 0);
+    if (!memory.has_last) return stop(settings, memory, FORCE_NO_DEVICE);
+
+    // ---- What it should feel ----
+    memory.flags = 0;
+    ForceStep now;
+    now.probe = now.proxy = settings.workspace.to_point(memory.last.position_m);
+    glm::dvec3 wanted(0.0);
+    const bool is_there = memory.last.calibrated && now_ns - memory.last_fresh_ns <= SILENCE_NS;
+    if (!is_there) memory.flags |= FORCE_NO_DEVICE;
+    if (is_there && settings.assistance) {
+        const bool usable = is_usable(patch, now.probe, settings.probe_radius, now_ns);
+        if (!usable) memory.flags |= FORCE_NO_REGION;
+        memory.relevance_fade = faded(memory.relevance_fade, usable, dt_ns, RELEVANCE_FADE_NS);
+        const Proxy proxy =
+            patch.sequence == 0 ? Proxy{} : find_proxy(patch, now.probe, settings.probe_radius, settings.law);
+        memory.contact_fade = faded(memory.contact_fade, proxy.in_contact, dt_ns, CONTACT_FADE_NS);
+        now.in_contact = proxy.in_contact;
+        now.relevant_share = proxy.relevant_share;
+        now.proxy = now.probe + proxy.offset;
+        const glm::dvec3 pull = spring(settings, caps, proxy.offset);
+        const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MOST_DAMPING);
+        wanted = memory.relevance_fade * (pull - damping * memory.velocity);
+
+        // What is not known cannot be called small.
+        const bool may_begin = !caps.outputs_force || (usable && glm::length(pull) < ENGAGE_BELOW_N);
+        memory.has_begun = memory.has_begun || may_begin;
+        const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
+        if (memory.has_begun) memory.engagement = faded(memory.engagement, true, dt_ns, engage_ns);
+        if (memory.engagement < 1.0) memory.flags |= FORCE_ENGAGING;
+    } else {
+        disengage(memory);
+        memory.contact_fade = 0.0;
+    }
+
+    // ---- Within limits: both are balls around 0 and around the last force, and hold what lies between two of their points
+    const glm::dvec3 engaged = memory.engagement * wanted;
+    const glm::dvec3 target = shortened(engaged, caps.peak_force_n);
+    if (glm::length(engaged) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
+    memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), caps.peak_force_n);
+    if (!is_finite(memory.force_n) || !is_finite(now.proxy)) {
+        memory.flags |= FORCE_FAULT;  // settings that are no numbers
+        return stop(settings, memory, 0);
+    }
+    now.force_n = memory.force_n;
+    now.flags = memory.flags;
+    return now;
+}
+
+}  // namespace shvr

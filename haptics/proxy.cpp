@@ -1,0 +1,147 @@
+#include "haptics/proxy.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace shvr {
+namespace {
+
+/// Integrals along one chord of 1, t and t^2, where t = x - centre.x.
+struct Moments {
+    double length = 0.0, first = 0.0, second = 0.0;
+};
+
+struct Chord {
+    double lower = 0.0, upper = 0.0;  ///< voxels from the patch's lower corner, within it
+};
+
+/// Runs of set bits are integrated word by word: a run over two words is two touching intervals, whose sum is the
+/// run's. Only the ends of the chord are fractions of a voxel.
+Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, double spacing)
+{
+    Moments moments;
+    const auto last_voxel = int32_t(std::ceil(chord.upper)) - 1;
+    for (int32_t voxel = int32_t(chord.lower); voxel <= last_voxel;) {
+        const int32_t word_start = voxel & ~31, word_last = std::min(word_start + 31, last_voxel);
+        uint32_t bits =
+            words[word_start / 32] & (~0u << (voxel - word_start)) & (~0u >> (31 - (word_last - word_start)));
+        while (bits != 0) {
+            const int first = std::countr_zero(bits), count = std::countr_one(bits >> first);
+            const double run_lower = double(word_start + first), run_upper = double(word_start + first + count);
+            const double a = (std::max(run_lower, chord.lower) - centre) * spacing;
+            const double b = (std::min(run_upper, chord.upper) - centre) * spacing;
+            moments.length += b - a;
+            moments.first += 0.5 * (b * b - a * a);
+            moments.second += (b * b * b - a * a * a) / 3.0;
+            // Adding the lowest bit carries through the run and clears it; what the carry sets is masked out.
+            bits &= bits + (bits & (0u - bits));
+        }
+        voxel = word_last + 1;
+    }
+    return moments;
+}
+
+bool is_well_formed(const RelevancePatch& patch)
+{
+    const auto fits = [](int32_t n) { return n > 0 && n <= RelevancePatch::MOST_VOXELS; };
+    return fits(patch.size.x) && fits(patch.size.y) && fits(patch.size.z) &&
+           patch.words_per_row >= (patch.size.x + 31) / 32 &&
+           size_t(patch.words_per_row) * size_t(patch.size.y) * size_t(patch.size.z) <= RelevancePatch::MOST_WORDS;
+}
+
+/// Rows along one axis of which a part can lie in the ball: half-open.
+struct RowRange {
+    int32_t begin = 0, end = 0;
+};
+RowRange rows_within(double centre, double reach, int32_t count)
+{
+    const double begin = std::clamp(std::floor(centre - reach), 0.0, double(count));
+    const double end = std::clamp(std::ceil(centre + reach), 0.0, double(count));
+    return {int32_t(begin), int32_t(end)};
+}
+
+/// Lines per row of voxels along y, and the same along z. Fixed in the voxels, never in the ball: only so are the sums
+/// of the potential law gradients of one another.
+struct RowRule {
+    std::array<double, 3> places{};   ///< voxels from the row's lower side
+    std::array<double, 3> weights{};  ///< with a sum of 1
+    size_t count = 1;
+};
+constexpr RowRule MIDDLE{{0.5}, {1.0}, 1};
+constexpr RowRule GAUSS_2{{0.21132486540518713, 0.78867513459481287}, {0.5, 0.5}, 2};
+constexpr RowRule GAUSS_3{{0.11270166537925831, 0.5, 0.88729833462074169}, {5.0 / 18, 8.0 / 18, 5.0 / 18}, 3};
+/// Small balls need more lines a row, and have fewer rows. Measured on rods with the mean law, error of the proxy and
+/// RMS second difference along a slow path, % of the radius (goals: 0.4 and 0.06 at 6 voxels, 0.2 and 0.02 from 12 on):
+///     radius   middle            Gauss 2           Gauss 3
+///     6        0.47    0.072     0.14    0.035     0.06    0.024
+///     12       0.10    0.018     0.04    0.009     0.02    0.006
+///     24       0.03    0.004     0.01    0.002
+const RowRule& rule_for(double radius_voxels)
+{
+    return radius_voxels < 7.5 ? GAUSS_3 : radius_voxels < 14.5 ? GAUSS_2 : MIDDLE;
+}
+
+bool is_empty(const uint32_t* words, int32_t count)
+{
+    return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
+}
+
+}  // namespace
+
+BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
+{
+    BallIntegrals ball;
+    const glm::dvec3 spacing = patch.spacing;
+    const glm::dvec3 c = centre / spacing - glm::dvec3(patch.origin);  // voxels from the patch's lower corner
+    if (!is_well_formed(patch) || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return ball;
+    const RowRule& rule = rule_for(radius / std::max(spacing.y, spacing.z));
+
+    const auto add_line = [&](const uint32_t* words, double dy, double dz, double weight) {
+        const double rest = radius * radius - dy * dy - dz * dz;
+        if (rest <= 0.0) return;
+        const double half = std::sqrt(rest) / spacing.x;
+        const Chord chord{std::max(c.x - half, 0.0), std::min(c.x + half, double(patch.size.x))};
+        if (chord.lower >= chord.upper) return;
+        const Moments moments = integrate_row(words, chord, c.x, spacing.x);
+        ball.volume += weight * moments.length;
+        ball.first += weight * glm::dvec3(moments.first, dy * moments.length, dz * moments.length);
+        ball.second += weight * (moments.second + (dy * dy + dz * dz) * moments.length);
+    };
+
+    const RowRange slices = rows_within(c.z, radius / spacing.z, patch.size.z);
+    for (int32_t z = slices.begin; z < slices.end; ++z) {
+        // The slice's widest disc is where it is nearest to the centre.
+        const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
+        const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
+        const RowRange rows = rows_within(c.y, disc / spacing.y, patch.size.y);
+        for (int32_t y = rows.begin; y < rows.end; ++y) {
+            const size_t row = size_t(patch.words_per_row) * (size_t(y) + size_t(patch.size.y) * size_t(z));
+            const uint32_t* words = &patch.words[row];
+            if (is_empty(words, patch.words_per_row)) continue;
+            for (size_t j = 0; j < rule.count; ++j) {
+                const double dz = (z + rule.places[j] - c.z) * spacing.z;
+                for (size_t i = 0; i < rule.count; ++i)
+                    add_line(words, (y + rule.places[i] - c.y) * spacing.y, dz, rule.weights[i] * rule.weights[j]);
+            }
+        }
+    }
+    const double row_area = spacing.y * spacing.z;
+    return {ball.volume * row_area, ball.first * row_area, ball.second * row_area};
+}
+
+Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept
+{
+    const BallIntegrals ball = integrate(patch, centre, radius);
+    if (!(ball.volume > 0.0)) return {};
+    const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends do not enter the derivative of its sum, which
+    // is 2 / r^2 times `first`: exactly, for these rows and not only in the limit.
+    const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
+    const double denominator = law == ProxyLaw::mean ? ball.volume : weighted + POTENTIAL_FLOOR * whole;
+    return {true, ball.first / denominator, ball.volume / whole};
+}
+
+}  // namespace shvr

@@ -1,0 +1,87 @@
+#pragma once
+// The servo: reads the device, finds the proxy, writes the force, a thousand times a second, on a thread of its own.
+// It shares nothing with the rest of the program but three latest values, and never locks, allocates, logs or throws.
+//
+//   application --Latest<ForceSettings>, Latest<RelevancePatch>--> servo --Latest<ServoState>--> application
+//
+// The application's thread calls everything here; the device belongs to the servo until it is destroyed.
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <thread>
+
+#include "engine/base/latest.h"
+#include "haptics/force.h"
+
+namespace shvr {
+
+/// Time and waiting, so that tests can run a servo without either.
+class Pacing {
+public:
+    virtual ~Pacing() = default;
+    virtual uint64_t now_ns() noexcept = 0;
+    /// Sleeps until `deadline_ns`.
+    virtual void wait_until(uint64_t deadline_ns) noexcept = 0;
+};
+/// CLOCK_MONOTONIC, absolute sleeps.
+std::unique_ptr<Pacing> real_pacing();
+
+/// Counts by powers of two of a microsecond: bin 0 below 1 us, bin i from 2^(i-1) to 2^i us; the last holds the rest.
+struct TimeHistogram {
+    static constexpr size_t BINS = 24;
+    std::array<uint64_t, BINS> counts{};
+    uint64_t worst_ns = 0;
+    void add(uint64_t nanoseconds) noexcept;
+    uint64_t total() const noexcept;
+    /// Upper end of the bin that holds the given share of all, microseconds; 0 of nothing.
+    double quantile_us(double share) const noexcept;
+};
+
+/// What the application sees of the servo.
+struct ServoState {
+    uint64_t time_ns = 0;
+    uint64_t ticks = 0;
+    uint64_t late_ticks = 0;  ///< begun more than one period after their time
+    DeviceState device;
+    ForceStep step;
+    DeviceCaps caps;
+    TimeHistogram lateness;       ///< how long after its time a tick began
+    TimeHistogram duration;       ///< of a tick's own work
+    TimeHistogram relevance_age;  ///< of the patch used, on ticks with assistance
+};
+
+class Servo {
+public:
+    struct Options {
+        uint32_t rate_hz = 1000;
+        bool realtime = true;  ///< SCHED_FIFO where the system lets us; said in `is_realtime`
+    };
+    Servo(std::unique_ptr<HapticDevice> device, std::unique_ptr<Pacing> pacing, const Options& options);
+    /// Writes a zero force and joins.
+    ~Servo();
+    Servo(const Servo&) = delete;
+    Servo& operator=(const Servo&) = delete;
+
+    Latest<ForceSettings>& settings() { return settings_; }
+    Latest<RelevancePatch>& relevance() { return relevance_; }
+    Latest<ServoState>& state() { return state_; }
+    /// Whether the system gave SCHED_FIFO; otherwise only the timer slack is small.
+    bool is_realtime() const { return is_realtime_; }
+
+private:
+    void run() noexcept;
+    std::unique_ptr<HapticDevice> device_;
+    std::unique_ptr<Pacing> pacing_;
+    Options options_;
+    Latest<ForceSettings> settings_;
+    Latest<RelevancePatch> relevance_;
+    Latest<ServoState> state_;
+    std::atomic<bool> running_{true};
+    bool is_realtime_ = false;
+    std::thread thread_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,64 @@
+#pragma once
+// A device without hardware: a hand that wants to be somewhere, and gives way to forces. The mouse is one (the wish is
+// where the mouse points, the hand has no mass), and so is the modelled hand of the tests (100 g, 150 N/m, 3 N s/m).
+//
+//   m x'' = k_hand (wish - x) - b_hand x' + F
+//
+// With mass 0 the hand settles at wish + F / k_hand within b_hand / k_hand seconds: assistance eases the probe towards
+// the proxy and never throws it. Forces arrive `delay_ticks` reads after they were written, as on a real link.
+//
+// read() and write(): the servo's thread. `wish()` is the other side's: one thread writes it.
+
+#include <array>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include "engine/base/latest.h"
+#include "haptics/device.h"
+
+namespace shvr {
+
+struct HandWish {
+    glm::dvec3 position_m{0.0};
+    uint32_t buttons = 0;
+    uint32_t jump = 0;  ///< when it changes the hand is put there at once: the probe was placed, not moved
+};
+
+struct HandModel {
+    double mass_kg = 0.0;
+    double stiffness = 75.0;  ///< N/m
+    double damping = 0.75;    ///< N s/m
+    int delay_ticks = 0;      ///< 0 ... 8
+    double tick_s = 0.001;
+};
+inline constexpr HandModel MOUSE_HAND{};
+inline constexpr HandModel MODELLED_HAND{.mass_kg = 0.1, .stiffness = 150.0, .damping = 3.0, .delay_ticks = 2};
+
+class SimulatedDevice : public HapticDevice {
+public:
+    explicit SimulatedDevice(const HandModel& model = MOUSE_HAND);
+    Latest<HandWish>& wish() { return wish_; }
+
+    /// A hand with a mass stands for a device with motors; the mouse has none, though forces move it.
+    DeviceCaps caps() const noexcept override;
+    /// Moves the hand on by one tick. Always fresh; `time_ns` counts ticks.
+    ReadResult read(DeviceState& state) noexcept override;
+    bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
+
+private:
+    HandModel model_;
+    Latest<HandWish> wish_;
+    glm::dvec3 position_m_{0.0}, velocity_{0.0};
+    uint32_t jump_ = 0;
+    uint64_t ticks_ = 0;
+    struct Written {
+        glm::dvec3 force_n{0.0};
+        uint32_t sequence = 0;
+    };
+    /// Where a hand and its velocity, both from its place of rest, are after one tick.
+    glm::dmat2 propagator_{1.0};
+    std::array<Written, 9> in_flight_{};  ///< ring of delayed forces
+};
+
+}  // namespace shvr

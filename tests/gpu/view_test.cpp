@@ -1,0 +1,170 @@
+// The view that a person looks at: it must come to rest on the picture that `shvr render` makes, and do no more than that
+// takes.
+
+#include <cstring>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/passes/encode.h"
+#include "engine/scene/annotator.h"
+#include "engine/scene/view.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// Everything slow: coarse sketches, tiles one by one.
+constexpr View::Options CRAWLING{.step_ms = 1e-6, .in_flight_ms = 1e-5, .motion_ms = 1e-5, .probe_ms = 1e-5};
+
+using Screen = std::vector<uint32_t>;  // 4 bytes a pixel
+
+class Seen : public OnDevice {
+public:
+    Session session = plain_session(busy_points(), {150, 90});
+    std::optional<ProbeLook> probe;
+
+    Seen() { load(noise_volume({40, 33, 50}, 71)); }
+    glm::uvec2 pixels() const { return session.render.size; }
+
+    static void settle(View& view)
+    {
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 10'000'000);
+            view.advance();
+        }
+    }
+    Screen image_of(const Import& image)
+    {
+        FrameGraph graph;
+        graph.read_back(graph.import("image", image));
+        const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
+        Screen texels(bytes.size() / 4);
+        std::memcpy(texels.data(), bytes.data(), bytes.size());
+        return texels;
+    }
+    /// What a window would show; layers that must be stretched are left out.
+    Screen shown(const View& view)
+    {
+        Screen screen(size_t(pixels().x) * pixels().y);
+        for (const View::Layer& layer : view.layers()) {
+            if (layer.source.end - layer.source.begin != layer.target.end - layer.target.begin) continue;
+            const Screen texels = image_of(layer.image);
+            for (uint32_t y = layer.target.begin.y; y < layer.target.end.y; ++y)
+                for (uint32_t x = layer.target.begin.x; x < layer.target.end.x; ++x) {
+                    const glm::uvec2 from = layer.source.begin + glm::uvec2(x, y) - layer.target.begin;
+                    screen[x + size_t(pixels().x) * y] = texels[from.x + size_t(layer.image.desc.texels.x) * from.y];
+                }
+        }
+        return screen;
+    }
+    /// The picture of Renderer::render, encoded.
+    Screen direct(const Camera& camera)
+    {
+        const glm::uvec2 size = pixels();
+        FrameGraph graph;
+        const Resource light =
+            renderer().draw(graph, session, camera, {.pixels = size, .end = size, .probe = probe},
+                            graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))));
+        graph.read_back(encode(graph, light,
+                               graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))),
+                               {.source = {}, .target = {}, .size = size, .behind = glm::vec3(0.05f)}));
+        const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
+        Screen texels(bytes.size() / 4);
+        std::memcpy(texels.data(), bytes.data(), bytes.size());
+        return texels;
+    }
+    Camera camera(const glm::dvec3& direction) const { return camera_along(volume(), direction, 60.0); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Seen, "a view comes to rest on the direct picture, bit for bit, fast device or slow")
+{
+    probe = ProbeLook{.center = {20, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
+    for (const View::Options& options : {View::Options{}, CRAWLING}) {
+        View view(renderer(), options);
+        view.show_probe(probe);
+        for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 0.2, 0)}) {
+            view.look(session, camera(direction), pixels());
+            settle(view);
+            CHECK(shown(view) == direct(camera(direction)));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Seen, "nothing is submitted when nothing changed")
+{
+    View view(renderer());
+    view.advance();
+    CHECK(view.submissions() == 0);
+    view.look(session, camera({1, 2, 3}), pixels());
+    settle(view);
+    const uint64_t submissions = view.submissions(), revision = view.revision();
+    for (int i = 0; i < 100; ++i) view.advance();
+    CHECK(view.submissions() == submissions);
+    CHECK(view.revision() == revision);
+}
+
+TEST_CASE_FIXTURE(Seen, "a probe that moves draws the pixels it may cover, and the rest stays")
+{
+    View view(renderer(), CRAWLING);
+    view.look(session, camera({1, 2, 3}), pixels());
+    settle(view);
+    const uint64_t for_all = view.submissions();
+    std::mt19937 random(72);  // seed 72
+    for (int trial = 0; trial < 12; ++trial) {
+        const auto within = [&](double end) { return end * double(random()) / 4294967296.0; };
+        probe = ProbeLook{.center = {within(40), within(33), within(50)}, .radius = 1.0 + within(4), .color = RED};
+        const uint64_t before = view.submissions();
+        view.show_probe(probe);
+        settle(view);
+        CHECK(view.submissions() - before < for_all / 2);
+        CHECK(shown(view) == direct(camera({1, 2, 3})));
+    }
+    probe.reset();
+    view.show_probe(probe);
+    settle(view);
+    CHECK(shown(view) == direct(camera({1, 2, 3})));
+}
+
+TEST_CASE_FIXTURE(Seen, "paint is seen where it is, whenever it comes")
+{
+    Annotator annotator(renderer());
+    View view(renderer(), CRAWLING);
+    view.look(session, camera({1, 2, 3}), pixels());
+    std::mt19937 random(73);  // seed 73
+    const auto below = [&](int end) { return int(random() % uint32_t(end)); };
+    glm::dvec3 direction(1, 2, 3);
+    for (int trial = 0; trial < 12; ++trial) {
+        if (trial % 3 == 2) {
+            direction.x += 1.0;
+            view.look(session, camera(direction), pixels());
+        }
+        for (int steps = below(60); steps > 0; --steps) view.advance();  // in the middle of anything
+        const glm::ivec3 at(below(40), below(33), below(50));
+        annotator.paint(
+            {.brush = Brush::fill, .group = uint8_t(1 + trial % 3), .radius_voxels = 4.0, .path = {glm::dvec3(at)}});
+        view.changed({Size3(glm::max(at - 5, 0)), Size3(glm::min(at + 6, glm::ivec3(40, 33, 50)))});
+        if (trial % 2 == 0) continue;
+        settle(view);
+        CHECK(shown(view) == direct(camera(direction)));
+    }
+}
+
+TEST_CASE_FIXTURE(Seen, "a camera that never rests is followed, and the last picture is the one that counts")
+{
+    View view(renderer());
+    uint64_t seen = 0;
+    for (int i = 0; i < 60; ++i) {
+        view.look(session, camera({1, 2, 3.0 + 0.1 * i}), pixels());
+        const uint64_t revision = view.revision();
+        for (int steps = 0; steps < 10'000'000 && view.revision() == revision; ++steps) view.advance();
+        seen += view.revision() != revision;
+    }
+    CHECK(seen == 60);  // each picture is begun before the last is sharp
+    settle(view);
+    CHECK(shown(view) == direct(camera({1, 2, 3.0 + 5.9})));
+}

@@ -1,0 +1,80 @@
+#pragma once
+// Scenes for the tests of the haptics: relevance made from a claim about points, and the slow truth about a ball in it.
+
+#include <cmath>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include "haptics/proxy.h"
+
+namespace shvr {
+
+/// The voxels whose centres satisfy `is_relevant`, in `size` voxels from `origin` on.
+template <class Claim>
+void fill_patch(RelevancePatch& patch, const glm::ivec3& origin, const glm::ivec3& size, const glm::dvec3& spacing,
+                const Claim& is_relevant)
+{
+    patch.sequence += 1;
+    patch.origin = origin;
+    patch.size = size;
+    patch.spacing = spacing;
+    patch.words_per_row = (size.x + 31) / 32;
+    patch.words.fill(0);
+    for (int z = 0; z < size.z; ++z) {
+        for (int y = 0; y < size.y; ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                const glm::dvec3 centre = (glm::dvec3(origin + glm::ivec3(x, y, z)) + 0.5) * spacing;
+                const auto word = size_t(x / 32 + patch.words_per_row * (y + size.y * z));
+                if (is_relevant(centre)) patch.words[word] |= 1u << (x % 32);
+            }
+        }
+    }
+}
+
+inline bool is_set(const RelevancePatch& patch, int x, int y, int z)
+{
+    return patch.row_word(x / 32, y, z) >> (x % 32) & 1u;
+}
+
+/// An endless round rod.
+struct Rod {
+    glm::dvec3 point{0.0}, direction{1.0, 0.0, 0.0};
+    double radius = 1.0;
+    bool holds(const glm::dvec3& p) const
+    {
+        const glm::dvec3 away = p - point - direction * glm::dot(p - point, direction);
+        return glm::dot(away, away) <= radius * radius;
+    }
+};
+
+/// The relevant voxels as boxes, each cut along `lines` x `lines` lines along x whose ends are exact.
+inline BallIntegrals integrate_slowly(const RelevancePatch& patch, const glm::dvec3& centre, double radius, int lines)
+{
+    BallIntegrals ball;
+    const glm::dvec3 s = patch.spacing;
+    const double weight = s.y * s.z / (lines * lines);
+    for (int z = 0; z < patch.size.z; ++z) {
+        for (int y = 0; y < patch.size.y; ++y) {
+            for (int x = 0; x < patch.size.x; ++x) {
+                if (!is_set(patch, x, y, z)) continue;
+                const glm::dvec3 lower = glm::dvec3(patch.origin + glm::ivec3(x, y, z)) * s - centre;
+                if (glm::length(lower + 0.5 * s) > radius + glm::length(s)) continue;
+                for (int j = 0; j < lines * lines; ++j) {
+                    const double dy = lower.y + s.y * (j % lines + 0.5) / lines;
+                    const double dz = lower.z + s.z * (j / lines + 0.5) / lines;
+                    const double rest = radius * radius - dy * dy - dz * dz;
+                    if (rest <= 0.0) continue;
+                    const double a = std::max(lower.x, -std::sqrt(rest)), b = std::min(lower.x + s.x, std::sqrt(rest));
+                    if (a >= b) continue;
+                    ball.volume += weight * (b - a);
+                    ball.first += weight * glm::dvec3((b * b - a * a) / 2.0, dy * (b - a), dz * (b - a));
+                    ball.second += weight * ((b * b * b - a * a * a) / 3.0 + (dy * dy + dz * dz) * (b - a));
+                }
+            }
+        }
+    }
+    return ball;
+}
+
+}  // namespace shvr
