@@ -3,6 +3,8 @@
 #include <ranges>
 #include <utility>
 
+#include "engine/base/error.h"
+
 namespace shvr {
 
 void apply(Document& document, const Change& change, Direction direction)
@@ -16,6 +18,15 @@ void History::perform(Document& document, Command command)
     commands_.resize(done_);
     commands_.push_back(std::move(command));
     redo(document);
+}
+
+void History::extend(Document& document, std::vector<Change> changes)
+{
+    SHVR_CHECK(done_ > 0 && done_ == commands_.size(), done_, " of ", commands_.size());
+    for (Change& change : changes) {
+        apply(document, change, Direction::forwards);
+        commands_.back().changes.push_back(std::move(change));
+    }
 }
 
 const Command* History::undo(Document& document)

@@ -31,6 +31,8 @@ class History {
 public:
     /// Applies the command and records it; what had been undone is dropped. A command without changes is not recorded.
     void perform(Document& document, Command command);
+    /// Applies `changes` and adds them to the command performed last, of which nothing was undone since: a stroke goes on.
+    void extend(Document& document, std::vector<Change> changes);
     /// The command undone or redone, or null where there is none.
     const Command* undo(Document& document);
     const Command* redo(Document& document);

@@ -1,8 +1,10 @@
 #include "engine/scene/annotator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "engine/annotation/mask_file.h"
 #include "engine/passes/paint.h"
@@ -57,83 +59,181 @@ const char* name_of(Brush brush)
     return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
 }
 
-std::vector<int64_t> bricks_of(const Command& command)
+std::string label_of(const PaintOp& op)
+{
+    return sentence(name_of(op.brush), ", group ", int(op.group));
+}
+
+std::vector<int64_t> bricks_of(std::span<const Change> changes)
 {
     std::vector<int64_t> bricks;
-    for (const Change& change : command.changes)
+    for (const Change& change : changes)
         if (const auto* mask = std::get_if<MaskBrickChange>(&change)) bricks.push_back(mask->brick);
     return bricks;
+}
+
+int64_t voxels_of(std::span<const Change> changes)
+{
+    int64_t voxels = 0;
+    for (const Change& change : changes) voxels += std::get<MaskBrickChange>(change).voxels();
+    return voxels;
+}
+
+void add_answers(VoxelSelection& selection, std::span<const BrushRegion> regions, std::span<const uint32_t> read_backs,
+                 const gpu::FrameResult& result)
+{
+    for (size_t i = 0; i < regions.size(); ++i) {
+        const std::vector<std::byte>& bytes = result.read_backs[read_backs[i]];
+        std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
+        std::memcpy(words.data(), bytes.data(), bytes.size());
+        selection.add(regions[i], words);
+    }
 }
 
 }  // namespace
 
 Annotator::Annotator(Renderer& renderer) : renderer_(renderer), document_{Mask(renderer.volume().info().size)} {}
 
-VoxelSelection Annotator::select(const PaintOp& op)
+Annotator::Batch Annotator::make_batch(const PaintOp& op, std::span<const glm::dvec3> positions, size_t& next)
 {
     const VolumeInfo& info = renderer_.volume().info();
     const uint32_t threshold_code = renderer_.volume().window().threshold_code(op.threshold);
-    const std::vector<glm::dvec3> positions = stroke_positions(op.path);
-    VoxelSelection selection(info.size);
+    Batch batch;
+    const VolumeBinding volume = renderer_.volume().import(batch.graph);
+    batch.regions.reserve(
+        std::min(positions.size() - next, MOST_REGIONS));  // spans of earlier ones stay where they are
+    uint64_t labels = 0;
+    for (; next < positions.size() && labels < LABEL_BYTES && batch.regions.size() < MOST_REGIONS; ++next) {
+        BrushRegion region = make_region(op.region, positions[next], op.radius_voxels, info.spacing, info.size);
+        if (region.rows.empty() || region.words_per_row() == 0) continue;
+        labels += uint64_t(region.words_per_row()) * 32 * region.rows.size() * sizeof(uint32_t);
+        const gpu::RegionParams params = region_params(region, volume, op, threshold_code, voxel_at(positions[next]));
+        batch.regions.push_back(std::move(region));
+        batch.read_backs.push_back(
+            batch.graph.read_back(add_brush(batch.graph, volume, op.brush, {params, batch.regions.back().rows})));
+    }
+    return batch;
+}
 
-    size_t next = 0;
-    while (next < positions.size()) {
-        FrameGraph graph;
-        const VolumeBinding volume = renderer_.volume().import(graph);
-        std::vector<BrushRegion> regions;
-        regions.reserve(std::min(positions.size() - next, MOST_REGIONS));  // spans of earlier ones stay where they are
-        std::vector<uint32_t> read_backs;
-        uint64_t labels = 0;
-        for (; next < positions.size() && labels < LABEL_BYTES && regions.size() < MOST_REGIONS; ++next) {
-            BrushRegion region = make_region(op.region, positions[next], op.radius_voxels, info.spacing, info.size);
-            if (region.rows.empty() || region.words_per_row() == 0) continue;
-            labels += uint64_t(region.words_per_row()) * 32 * region.rows.size() * sizeof(uint32_t);
-            const gpu::RegionParams params =
-                region_params(region, volume, op, threshold_code, voxel_at(positions[next]));
-            regions.push_back(std::move(region));
-            read_backs.push_back(graph.read_back(add_brush(graph, volume, op.brush, {params, regions.back().rows})));
-        }
-        if (regions.empty()) break;
-        const gpu::FrameResult result = renderer_.executor().run(graph, {.timestamps = false});
-        for (size_t i = 0; i < regions.size(); ++i) {
-            const std::vector<std::byte>& bytes = result.read_backs[read_backs[i]];
-            std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-            std::memcpy(words.data(), bytes.data(), bytes.size());
-            selection.add(regions[i], words);
-        }
+VoxelSelection Annotator::select(const PaintOp& op)
+{
+    const std::vector<glm::dvec3> positions = stroke_positions(op.path);
+    VoxelSelection selection(renderer_.volume().info().size);
+    for (size_t next = 0; next < positions.size();) {
+        Batch batch = make_batch(op, positions, next);
+        if (batch.regions.empty()) break;
+        add_answers(selection, batch.regions, batch.read_backs,
+                    renderer_.executor().run(std::move(batch.graph), {.timestamps = false}));
     }
     return selection;
 }
 
 int64_t Annotator::paint(const PaintOp& op)
 {
-    Command command{sentence(name_of(op.brush), ", group ", int(op.group)),
-                    paint_changes(document_.mask, select(op), op.group)};
-    int64_t voxels = 0;
-    for (const Change& change : command.changes) voxels += std::get<MaskBrickChange>(change).voxels();
-    const std::vector<int64_t> bricks = bricks_of(command);
+    SHVR_CHECK(!stroke_);
+    Command command{label_of(op), paint_changes(document_.mask, select(op), op.group)};
+    const int64_t voxels = voxels_of(command.changes);
+    const std::vector<int64_t> bricks = bricks_of(command.changes);
     history_.perform(document_, std::move(command));
     renderer_.update_mask(document_.mask, bricks);
     return voxels;
 }
 
+void Annotator::begin_stroke(const PaintOp& brush)
+{
+    SHVR_CHECK(!stroke_);
+    stroke_.emplace();
+    stroke_->brush = brush;
+}
+
+void Annotator::extend_stroke(const glm::dvec3& voxel)
+{
+    SHVR_CHECK(stroke_ && !stroke_->has_ended);
+    if (stroke_->last == voxel) return;
+    const glm::dvec3 from = stroke_->last.value_or(voxel);
+    const std::vector<glm::dvec3> way = stroke_positions(std::array{from, voxel});
+    // The way's first position is the last one's end. A dab is a way from a point to itself: two positions, one kept.
+    stroke_->waiting.insert(stroke_->waiting.end(), way.begin() + 1, way.end());
+    stroke_->last = voxel;
+}
+
+void Annotator::end_stroke()
+{
+    SHVR_CHECK(stroke_);
+    stroke_->has_ended = true;
+}
+
+std::optional<VoxelBox> Annotator::advance()
+{
+    if (!stroke_) return std::nullopt;
+    Stroke& stroke = *stroke_;
+    std::optional<VoxelBox> changed;
+    if (stroke.answer) {
+        if (!stroke.answer.done()) return std::nullopt;
+        changed = paint_answer();
+    }
+    if (stroke.next < stroke.waiting.size()) {
+        Batch batch = make_batch(stroke.brush, stroke.waiting, stroke.next);
+        stroke.asked = std::move(batch.regions);
+        stroke.read_backs = std::move(batch.read_backs);
+        if (!stroke.asked.empty())
+            stroke.answer = renderer_.executor().submit(std::move(batch.graph), {.timestamps = false});
+    } else if (stroke.has_ended) {
+        last_stroke_voxels_ = stroke.voxels;
+        stroke_.reset();
+    }
+    return changed;
+}
+
+std::optional<VoxelBox> Annotator::paint_answer()
+{
+    Stroke& stroke = *stroke_;
+    VoxelSelection selection(document_.mask.size());
+    add_answers(selection, stroke.asked, stroke.read_backs, stroke.answer.finish());
+    std::vector<Change> changes = paint_changes(document_.mask, selection, stroke.brush.group);
+    if (changes.empty()) return std::nullopt;
+    stroke.voxels += voxels_of(changes);
+    const std::vector<int64_t> bricks = bricks_of(changes);
+    if (std::exchange(stroke.is_recorded, true))
+        history_.extend(document_, std::move(changes));
+    else
+        history_.perform(document_, {label_of(stroke.brush), std::move(changes)});
+    renderer_.update_mask(document_.mask, bricks);
+    VoxelBox box = stroke.asked.front().box;
+    for (const BrushRegion& region : stroke.asked)
+        box = {glm::min(box.lower, region.box.lower), glm::max(box.upper, region.box.upper)};
+    return box;
+}
+
 void Annotator::bring_to_device(const Command& command)
 {
-    renderer_.update_mask(document_.mask, bricks_of(command));
+    renderer_.update_mask(document_.mask, bricks_of(command.changes));
 }
 
-bool Annotator::undo()
+const Command* Annotator::undo()
 {
-    const Command* command = history_.undo(document_);
+    const Command* command = stroke_ ? nullptr : history_.undo(document_);
     if (command) bring_to_device(*command);
-    return command != nullptr;
+    return command;
 }
 
-bool Annotator::redo()
+const Command* Annotator::redo()
 {
-    const Command* command = history_.redo(document_);
+    const Command* command = stroke_ ? nullptr : history_.redo(document_);
     if (command) bring_to_device(*command);
-    return command != nullptr;
+    return command;
+}
+
+VoxelBox Annotator::reach_of(const Command& command) const
+{
+    const Size3 counts = document_.mask.brick_counts(), size = document_.mask.size();
+    VoxelBox box{size, Size3(0)};
+    for (const int64_t brick : bricks_of(command.changes)) {
+        const Size3 first = int64_t(gpu::BRICK_SIZE) *
+                            Size3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+        box = {glm::min(box.lower, first), glm::max(box.upper, glm::min(first + int64_t(gpu::BRICK_SIZE), size))};
+    }
+    return box;
 }
 
 void Annotator::load(const std::filesystem::path& mask_file)

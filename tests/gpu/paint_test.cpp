@@ -509,9 +509,41 @@ TEST_CASE("a stroke selects what its positions select, and is one command")
         if (brush != Brush::flood) continue;
         CHECK(annotator.paint(op) == voxels_selected);
         CHECK(annotator.history().undoable() == 1);
-        CHECK(annotator.undo());
+        CHECK(annotator.undo() != nullptr);
         CHECK(annotator.document().mask.painted_bricks().empty());
     }
+    CHECK(messages_of(renderer) == "");
+}
+
+TEST_CASE("a stroke by hand paints what a script's stroke paints, and is one command")
+{
+    Renderer renderer(with_validation());
+    Voxels voxels = noise({70, 40, 40}, 56);  // seed 56
+    load(renderer, voxels);
+    Annotator by_script(renderer), by_hand(renderer);
+    PaintOp op = flood_at(glm::dvec3(0.0), 5.0, 400.0);
+    op.path = {{-4.0, 5.0, 5.0}, {40.0, 20.0, 12.0}, {40.0, 20.0, 12.0}, {75.0, 20.0, 30.0}, {60.0, 25.0, 30.0}};
+    const int64_t painted = by_script.paint(op);
+    REQUIRE(painted > 1000);
+
+    by_hand.begin_stroke(op);
+    for (size_t i = 0; i < op.path.size(); ++i) {
+        by_hand.extend_stroke(op.path[i]);
+        for (size_t turns = 0; turns < i * 1000; ++turns) by_hand.advance();
+    }
+    CHECK(by_hand.undo() == nullptr);  // a stroke is running
+    by_hand.end_stroke();
+    int64_t reported = 0;
+    while (by_hand.stroke_is_running())
+        if (const auto box = by_hand.advance()) reported += box->size().x * box->size().y * box->size().z;
+    CHECK(reported > 0);
+    CHECK(by_hand.last_stroke_voxels() == painted);
+    CHECK(by_hand.document().mask.voxels_by_group() == by_script.document().mask.voxels_by_group());
+    for (const int64_t brick : by_script.document().mask.painted_bricks())
+        CHECK(*by_hand.document().mask.brick(brick) == *by_script.document().mask.brick(brick));
+    CHECK(by_hand.history().undoable() == 1);
+    CHECK(by_hand.undo() != nullptr);
+    CHECK(by_hand.document().mask.painted_bricks().empty());
     CHECK(messages_of(renderer) == "");
 }
 
@@ -560,14 +592,14 @@ TEST_CASE("undo and redo bring back mask and picture, bit for bit")
     CHECK(mask_bytes(renderer) > 0);
     for (int round = 0; round < 2; ++round) {
         for (size_t i = 6; i-- > 0;) {
-            CHECK(annotator.undo());
+            CHECK(annotator.undo() != nullptr);
             CHECK(masks[i] == groups_of(annotator.document().mask));
             CHECK((pictures[i] == picture(renderer, session)));
         }
         CHECK(!annotator.undo());
         CHECK(mask_bytes(renderer) == 0);
         for (size_t i = 1; i <= 6; ++i) {
-            CHECK(annotator.redo());
+            CHECK(annotator.redo() != nullptr);
             CHECK(masks[i] == groups_of(annotator.document().mask));
             CHECK((pictures[i] == picture(renderer, session)));
         }
@@ -596,7 +628,7 @@ TEST_CASE("paint counts the voxels it changed; later paint overwrites, group 0 e
     CHECK(annotator.document().mask.at({20, 20, 25}) == 0);
     CHECK(annotator.paint(fill_at(glm::dvec3(20.0), 30.0, 0)) == 1000);
     CHECK(mask_bytes(renderer) == 0);
-    CHECK(annotator.undo());
+    CHECK(annotator.undo() != nullptr);
     CHECK(in_group(3) == 500);
     CHECK(mask_bytes(renderer) > 0);
     CHECK(messages_of(renderer) == "");
