@@ -45,7 +45,8 @@ ForceStep stop(const ForceSettings& settings, ForceMemory& memory, uint32_t flag
     memory.force_n = glm::dvec3(0.0);
     memory.contact_fade = 0.0;
     disengage(memory);
-    const glm::dvec3 probe = settings.workspace.to_point(memory.last.position_m);
+    const glm::dvec3 place = settings.workspace.to_point(memory.last.position_m);
+    const glm::dvec3 probe = is_finite(place) ? place : glm::dvec3(0.0);
     return {.probe = probe, .proxy = probe, .flags = memory.flags};
 }
 
@@ -111,6 +112,37 @@ bool is_usable(const RelevancePatch& patch, const glm::dvec3& probe, double radi
     return patch.sequence != 0 && is_fresh && patch.covers(probe, radius);
 }
 
+struct Moment {
+    uint64_t now_ns = 0, dt_ns = 0;
+};
+
+/// Spring and damping, faded, but without limits.
+ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
+               ForceMemory& memory)
+{
+    const glm::dvec3 probe = settings.workspace.to_point(memory.last.position_m);
+    const bool usable = is_usable(patch, probe, settings.probe_radius, moment.now_ns);
+    const Proxy proxy = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, settings.law);
+    const glm::dvec3 pull = spring(settings, caps, proxy.offset);
+
+    // What is not known cannot be called small.
+    const bool may_begin = !caps.outputs_force || (usable && glm::length(pull) < ENGAGE_BELOW_N);
+    memory.has_begun = memory.has_begun || may_begin;
+    const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
+    if (memory.has_begun) memory.engagement = faded(memory.engagement, true, moment.dt_ns, engage_ns);
+    memory.relevance_fade = faded(memory.relevance_fade, usable, moment.dt_ns, RELEVANCE_FADE_NS);
+    memory.contact_fade = faded(memory.contact_fade, proxy.in_contact, moment.dt_ns, CONTACT_FADE_NS);
+    if (!usable) memory.flags |= FORCE_NO_REGION;
+    if (memory.engagement < 1.0) memory.flags |= FORCE_ENGAGING;
+
+    const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MOST_DAMPING);
+    return {.force_n = memory.engagement * memory.relevance_fade * (pull - damping * memory.velocity),
+            .probe = probe,
+            .proxy = probe + proxy.offset,
+            .in_contact = proxy.in_contact,
+            .relevant_share = proxy.relevant_share};
+}
+
 }  // namespace
 
 ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult result, const DeviceState& state,
@@ -133,40 +165,21 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult
 
     // ---- What it should feel ----
     memory.flags = 0;
+    const bool is_there = memory.last.calibrated && now_ns - memory.last_fresh_ns <= SILENCE_NS;
     ForceStep now;
     now.probe = now.proxy = settings.workspace.to_point(memory.last.position_m);
-    glm::dvec3 wanted(0.0);
-    const bool is_there = memory.last.calibrated && now_ns - memory.last_fresh_ns <= SILENCE_NS;
-    if (!is_there) memory.flags |= FORCE_NO_DEVICE;
     if (is_there && settings.assistance) {
-        const bool usable = is_usable(patch, now.probe, settings.probe_radius, now_ns);
-        if (!usable) memory.flags |= FORCE_NO_REGION;
-        memory.relevance_fade = faded(memory.relevance_fade, usable, dt_ns, RELEVANCE_FADE_NS);
-        const Proxy proxy =
-            patch.sequence == 0 ? Proxy{} : find_proxy(patch, now.probe, settings.probe_radius, settings.law);
-        memory.contact_fade = faded(memory.contact_fade, proxy.in_contact, dt_ns, CONTACT_FADE_NS);
-        now.in_contact = proxy.in_contact;
-        now.relevant_share = proxy.relevant_share;
-        now.proxy = now.probe + proxy.offset;
-        const glm::dvec3 pull = spring(settings, caps, proxy.offset);
-        const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MOST_DAMPING);
-        wanted = memory.relevance_fade * (pull - damping * memory.velocity);
-
-        // What is not known cannot be called small.
-        const bool may_begin = !caps.outputs_force || (usable && glm::length(pull) < ENGAGE_BELOW_N);
-        memory.has_begun = memory.has_begun || may_begin;
-        const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
-        if (memory.has_begun) memory.engagement = faded(memory.engagement, true, dt_ns, engage_ns);
-        if (memory.engagement < 1.0) memory.flags |= FORCE_ENGAGING;
+        now = feel(settings, caps, patch, {now_ns, dt_ns}, memory);
     } else {
         disengage(memory);
         memory.contact_fade = 0.0;
     }
+    if (!is_there) memory.flags |= FORCE_NO_DEVICE;
 
-    // ---- Within limits: both are balls around 0 and around the last force, and hold what lies between two of their points
-    const glm::dvec3 engaged = memory.engagement * wanted;
-    const glm::dvec3 target = shortened(engaged, caps.peak_force_n);
-    if (glm::length(engaged) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
+    // ---- Within limits: a ball around 0 and one around the last force, whose centre lies in the first ----
+    const glm::dvec3 wanted = now.force_n;
+    const glm::dvec3 target = shortened(wanted, caps.peak_force_n);
+    if (glm::length(wanted) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
     memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), caps.peak_force_n);
     if (!is_finite(memory.force_n) || !is_finite(now.proxy)) {
         memory.flags |= FORCE_FAULT;  // settings that are no numbers

@@ -1,11 +1,11 @@
 #pragma once
-// The proxy by exact integration: instead of sampling points in the probe's ball, every row of relevant voxels is cut to
-// the chord that lies in the ball and integrated along x in closed form. The result is continuous in the probe's
-// place, since a chord's length goes to 0 at the ball's rim. Across y and z a row is a line through its voxels' middles,
-// or, for small balls, four or nine lines.
+// The proxy by exact integration: instead of sampling points in the probe's ball, every row of relevant voxels is cut
+// to the chord that lies in the ball and integrated along x in closed form. The result is continuous in the probe's
+// place, since a chord's length goes to 0 at the ball's rim. Across y and z a row is a line through its voxels'
+// middles, or, for small balls, four or nine lines.
 //
 // Two laws:
-//   mean      proxy = mean of the relevant points in the ball: the thesis's (eq. 3.3 to 3.5), without its sampling noise
+//   mean      proxy = mean of the relevant points in the ball: the thesis's (eq. 3.3 to 3.5) without sampling noise
 //   potential offset = sum(a - p) / (sum(1 - |a - p|^2 / r^2) + eps N): the gradient of log(S + eps N), so no loop of
 //             the hand gains energy, and the force grows from 0 when the first voxel enters. N is the ball's volume.
 //

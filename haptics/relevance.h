@@ -1,6 +1,6 @@
 #pragma once
-// Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a small grid of
-// bits by value, with its place and age. Made by a compute pass, mirrored to the host, published through `Latest`.
+// Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a small grid
+// of bits by value, with its place and age. Made by a compute pass, mirrored to the host, published through `Latest`.
 // Plain data; nothing in it allocates.
 
 #include <array>

@@ -1,6 +1,7 @@
 #pragma once
 // Scenes for the tests of the haptics: relevance made from a claim about points, and the slow truth about a ball in it.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 

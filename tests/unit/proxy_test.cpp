@@ -1,6 +1,7 @@
 #include "haptics/proxy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>

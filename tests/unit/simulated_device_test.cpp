@@ -1,8 +1,11 @@
 #include "haptics/simulated_device.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include <doctest/doctest.h>
 

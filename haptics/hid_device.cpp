@@ -1,0 +1,158 @@
+#include "haptics/hid_device.h"
+
+#include <hidapi/hidapi.h>
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "haptics/hid_link.h"
+
+namespace shvr {
+namespace {
+
+/// hidapi's global functions share state (their last error, what udev set up); those of one open device do not.
+std::mutex& hidapi_mutex()
+{
+    static std::mutex mutex;
+    return mutex;
+}
+
+/// ASCII of a name that a device may have filled with anything.
+std::string printable(const wchar_t* text)
+{
+    std::string result;
+    for (; text && *text; ++text) result += *text >= 0x20 && *text < 0x7f ? char(*text) : '?';
+    return result;
+}
+
+struct CloseDevice {
+    void operator()(hid_device* device) const { hid_close(device); }
+};
+
+class HidapiPort : public HidPort {
+public:
+    explicit HidapiPort(hid_device* device) : device_(device) {}
+    int read(std::span<uint8_t> report, int timeout_ms) override
+    {
+        return hid_read_timeout(device_.get(), report.data(), report.size(), timeout_ms);
+    }
+    bool write(std::span<const uint8_t> report) override
+    {
+        return hid_write(device_.get(), report.data(), report.size()) >= 0;
+    }
+    int read_feature(uint8_t id, std::span<uint8_t> report) override
+    {
+        report[0] = id;
+        return std::max(hid_get_feature_report(device_.get(), report.data(), report.size()), 0);
+    }
+
+private:
+    std::unique_ptr<hid_device, CloseDevice> device_;
+};
+
+bool matches(const HidMatch& match, const HidListing& device)
+{
+    return match.vendor == device.vendor && match.product == device.product &&
+           (match.usage_page == 0 || match.usage_page == device.usage_page) &&
+           (match.usage == 0 || match.usage == device.usage);
+}
+
+bool matches(const HidProfile& profile, const HidListing& device)
+{
+    return std::any_of(profile.matches.begin(), profile.matches.end(),
+                       [&](const HidMatch& match) { return matches(match, device); });
+}
+
+/// "Touch (2988:0304 at /dev/hidraw3)"
+std::string described(const HidListing& device)
+{
+    constexpr const char* DIGITS = "0123456789abcdef";
+    const auto hexadecimal = [&](uint16_t id) {
+        std::string text;
+        for (int shift = 12; shift >= 0; shift -= 4) text += DIGITS[(id >> shift) & 15];
+        return text;
+    };
+    return sentence(device.name.empty() ? "device" : device.name, " (", hexadecimal(device.vendor), ":",
+                    hexadecimal(device.product), " at ", device.path, ")");
+}
+
+struct Opened {
+    std::unique_ptr<HidPort> port;
+    std::string reason;  ///< without a port: hidapi's words
+};
+Opened open_port(const std::string& path)
+{
+    const std::lock_guard lock(hidapi_mutex());
+    if (hid_device* device = hid_open_path(path.c_str())) return {std::make_unique<HidapiPort>(device), {}};
+    return {nullptr, printable(hid_error(nullptr))};
+}
+
+/// The first plugged-in device that the profile matches.
+std::optional<HidListing> find_device(const HidProfile& profile)
+{
+    for (HidListing& device : list_hid_devices({})) {
+        if (matches(profile, device)) return std::move(device);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<HidListing> list_hid_devices(std::span<const HidProfile> profiles)
+{
+    std::vector<HidListing> devices;
+    {
+        const std::lock_guard lock(hidapi_mutex());
+        const std::unique_ptr<hid_device_info, decltype(&hid_free_enumeration)> found(hid_enumerate(0, 0),
+                                                                                      hid_free_enumeration);
+        for (const hid_device_info* info = found.get(); info; info = info->next) {
+            devices.push_back({.vendor = info->vendor_id,
+                               .product = info->product_id,
+                               .usage_page = info->usage_page,
+                               .usage = info->usage,
+                               .path = info->path,
+                               .manufacturer = printable(info->manufacturer_string),
+                               .name = printable(info->product_string),
+                               .serial = printable(info->serial_number)});
+        }
+    }
+    for (HidListing& device : devices) {
+        const auto profile = std::ranges::find_if(profiles, [&](const HidProfile& p) { return matches(p, device); });
+        if (profile != profiles.end()) device.profile = profile->name;
+    }
+    return devices;
+}
+
+std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force)
+{
+    const std::vector<HidListing> devices = list_hid_devices({});
+    const auto device_of = [&](const HidProfile& profile) {
+        return std::ranges::find_if(devices, [&](const HidListing& device) { return matches(profile, device); });
+    };
+    for (const HidProfile& profile : profiles) {
+        const auto device = device_of(profile);
+        if (!profile.input || device == devices.end()) continue;
+        Opened opened = open_port(device->path);
+        if (!opened.port) {
+            fail(described(*device), ": cannot be opened: ", opened.reason, "; expected leave to read and write it, ",
+                 "which the rule tools/udev/70-shvr-haptics.rules gives");
+        }
+        const auto reopen = [profile]() -> std::unique_ptr<HidPort> {
+            const std::optional<HidListing> found = find_device(profile);
+            return found ? open_port(found->path).port : nullptr;
+        };
+        return make_hid_link(profile, std::move(opened.port), reopen, {.allow_force = allow_force, .realtime = true});
+    }
+    // What is only recognised comes last: another profile may know the same device's layout.
+    for (const HidProfile& profile : profiles) {
+        if (const auto device = device_of(profile); device != devices.end())
+            fail(described(*device), ": is recognised as ", profile.name, ", whose reports are not described; ",
+                 profile.note.empty() ? "expected a profile with an input report" : profile.note);
+    }
+    return nullptr;
+}
+
+}  // namespace shvr

@@ -1,0 +1,95 @@
+#pragma once
+// What a HID device's reports hold, as a file tells (assets/devices/*.json): a device that nobody here has seen needs a
+// file, not a recompilation. assets/devices/README.md describes the format.
+//
+// Loading is strict: unknown keys, fields that do not fit into their report and layouts without a source are refused
+// with one sentence. Any thread.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "haptics/device.h"
+
+namespace shvr {
+
+/// Everything a field can mean. Values are raw * scale + offset: metres, seconds, newtons; rotations are a quaternion.
+enum class HidQuantity : uint8_t {
+    // input
+    buttons,
+    calibrated,
+    time,
+    position_x,
+    position_y,
+    position_z,
+    rotation_w,
+    rotation_x,
+    rotation_y,
+    rotation_z,
+    force_sequence,
+    motor_temperature,
+    // input and output
+    sequence,
+    // output
+    enable,
+    watchdog,
+    force_x,
+    force_y,
+    force_z,
+    // feature
+    peak_force,
+    usable_x,
+    usable_y,
+    usable_z,
+    resolution,
+    firmware,
+    latency,
+};
+
+struct HidField {
+    HidQuantity quantity = HidQuantity::buttons;
+    uint32_t bit = 0;   ///< of its lowest bit, from the first byte after the id; little endian
+    uint32_t bits = 8;  ///< 1 ... 32
+    bool is_signed = false;
+    double scale = 1.0, offset = 0.0;
+};
+
+struct HidReport {
+    uint8_t id = 0;       ///< 0: the device does not number its reports
+    uint32_t length = 0;  ///< bytes after the id
+    std::vector<HidField> fields;
+    const HidField* find(HidQuantity quantity) const;
+};
+
+struct HidMatch {
+    uint16_t vendor = 0, product = 0;
+    uint16_t usage_page = 0, usage = 0;  ///< 0: any
+};
+
+struct HidProfile {
+    std::string name;
+    std::vector<HidMatch> matches;
+    std::optional<HidReport> input;  ///< without one the device is only recognised
+    std::optional<HidReport> output, feature;
+    glm::dmat3 axes{
+        1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; each one turned or flipped
+    DeviceCaps limits;
+    uint32_t watchdog_ms = 0;  ///< after which the device drops its force; 0: it has none
+    std::string provenance;    ///< where the layout is from
+    bool verified = false;     ///< somebody has tried it; without that it gets no force
+    std::string note;          ///< for the person who has such a device
+};
+
+inline constexpr uint32_t MOST_REPORT_BYTES = 64;
+
+/// `origin` names the text in errors.
+HidProfile parse_hid_profile(const std::string& text, const std::string& origin);
+HidProfile load_hid_profile(const std::filesystem::path& file);
+/// All *.json of a folder, by name.
+std::vector<HidProfile> load_hid_profiles(const std::filesystem::path& folder);
+
+}  // namespace shvr

@@ -1,0 +1,154 @@
+#include "haptics/hid_profile.h"
+
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+
+using namespace shvr;
+
+namespace {
+
+const std::string FOLDER = "assets/devices";
+
+nlohmann::json reference()
+{
+    return nlohmann::json::parse(read_text(FOLDER + "/shvr_reference.json", 1 << 20));
+}
+
+/// The error of a profile; empty where it is taken.
+std::string error_of_text(const std::string& text)
+{
+    try {
+        parse_hid_profile(text, "x.json");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+std::string error_of(const nlohmann::json& document)
+{
+    return error_of_text(document.dump());
+}
+/// The error of the reference after `changed` has put `value` to the JSON pointer.
+std::string error_with(const char* pointer, const nlohmann::json& value)
+{
+    nlohmann::json document = reference();
+    document[nlohmann::json::json_pointer(pointer)] = value;
+    return error_of(document);
+}
+std::string error_without(const char* parent, const char* key)
+{
+    nlohmann::json document = reference();
+    document[nlohmann::json::json_pointer(parent)].erase(key);
+    return error_of(document);
+}
+
+}  // namespace
+
+TEST_CASE("the profiles that are shipped load; the Touch's is only for recognising it")
+{
+    const std::vector<HidProfile> profiles = load_hid_profiles(FOLDER);
+    REQUIRE(profiles.size() == 2);
+    const HidProfile &reference = profiles[0], &touch = profiles[1];
+    CHECK(reference.verified);
+    REQUIRE(reference.input);
+    CHECK(reference.input->length == 32);
+    CHECK(reference.matches[0].vendor == 0x1209);
+    CHECK(reference.matches[0].product == 0x0001);
+    CHECK(reference.matches[0].usage_page == 0xff00);
+    CHECK(reference.limits.peak_force_n == 3.3);
+    CHECK(reference.limits.senses_rotation);
+    CHECK_FALSE(reference.limits.outputs_force);
+    CHECK(reference.watchdog_ms == 20);
+    CHECK_FALSE(touch.verified);
+    CHECK_FALSE(touch.input);
+    CHECK(touch.matches[0].vendor == 0x2988);
+    CHECK(touch.note.find("verified profile") != std::string::npos);
+}
+
+TEST_CASE("what is wrong in a profile is said in one sentence")
+{
+    CHECK(error_of(reference()).empty());
+    CHECK(error_of_text("{") == "x.json: is not JSON from byte 2 on; expected a device profile");
+    CHECK(error_of_text("[1]") == "x.json: the document is [1]; expected an object");
+    CHECK(error_with("/colour", 1).starts_with("x.json: unknown key \"colour\"; expected one of: name, match, "));
+    CHECK(
+        error_with("/limits/colour", 1).starts_with("x.json: unknown key \"limits.colour\"; expected one of: usable"));
+    CHECK(error_with("/input/fields/2/colour", 1).starts_with("x.json: unknown key \"input.fields.2.colour\""));
+    CHECK(error_without("", "provenance") == "x.json: key provenance is missing");
+    CHECK(error_without("/limits", "peak_force_n") == "x.json: key limits.peak_force_n is missing");
+    CHECK(error_with("/verified", 1) == "x.json: key verified is 1; expected true or false");
+    CHECK(error_with("/name", "") == "x.json: key name is \"\"; expected a text");
+    CHECK(error_with("/match", nlohmann::json::array()) == "x.json: key match is []; expected a list of 1 or more");
+    CHECK(error_with("/match/0/vendor", 4617) ==
+          "x.json: key match.0.vendor is 4617; expected four hexadecimal digits, as in \"0x1209\"");
+    CHECK(error_with("/match/0/vendor", "0x12g9").find("expected four hexadecimal digits") != std::string::npos);
+    CHECK(error_with("/input/id", 256) == "x.json: key input.id is 256; expected a whole number from 0 to 255");
+    CHECK(error_with("/input/id", 1.5) == "x.json: key input.id is 1.5; expected a whole number from 0 to 255");
+    CHECK(error_with("/input/length", 0) == "x.json: key input.length is 0; expected a whole number from 1 to 64");
+    CHECK(error_with("/input/length", uint64_t{1} << 63).ends_with("expected a whole number from 1 to 64"));
+    CHECK(error_with("/watchdog_ms", -1) == "x.json: key watchdog_ms is -1; expected a whole number from 0 to 255");
+    CHECK(error_with("/limits/peak_force_n", 400) ==
+          "x.json: key limits.peak_force_n is 400; expected a number from 0 to 40");
+    CHECK(error_with("/limits/usable_lower_m", {1, 2}).ends_with("is [1,2]; expected three numbers [x,y,z]"));
+    CHECK(error_with("/limits/usable_upper_m", {0.1, 0.1, -0.1})
+              .ends_with("expected more than usable_lower_m along every axis"));
+    CHECK(error_without("", "limits") == "x.json: key limits is missing");
+}
+
+TEST_CASE("fields must fit into their report, apart from one another")
+{
+    CHECK(error_with("/input/fields/12/bit", 241).ends_with("expected at most bit 255, the last of 32 bytes"));
+    CHECK(error_with("/input/fields/12/bit", 256) ==
+          "x.json: key input.fields.12.bit is 256; expected a whole number from 0 to 255");
+    CHECK(error_with("/input/fields/12/bits", 33) ==
+          "x.json: key input.fields.12.bits is 33; expected a whole number from 1 to 32");
+    CHECK(error_with("/input/length", 31).ends_with("expected at most bit 247, the last of 31 bytes"));
+    CHECK(error_with("/input/fields/1/bit", 7).ends_with("expected bits that no other field has; bit 7 is taken"));
+    CHECK(error_with("/input/fields/1/name", "buttons").ends_with("is \"buttons\"; expected each name once"));
+    CHECK(error_with("/input/fields/1/name", "force_x").find("is \"force_x\"; expected one of: buttons, ") !=
+          std::string::npos);
+    CHECK(error_with("/input/fields/4/scale", 0).ends_with("is 0; expected a number other than 0"));
+    CHECK(error_with("/input/fields/4/scale", nullptr).find("is null; expected a number from ") != std::string::npos);
+}
+
+TEST_CASE("a layout must hold what the servo needs")
+{
+    nlohmann::json document = reference();
+    document["input"]["fields"].erase(4);
+    CHECK(error_of(document).ends_with("expected a field named position_x"));
+    document = reference();
+    document["input"]["fields"].erase(7);
+    CHECK(error_of(document).ends_with("expected a field named rotation_w"));
+    document = reference();
+    document["output"]["fields"].erase(0);
+    CHECK(error_of(document).ends_with("expected a field named enable"));
+    CHECK(error_without("", "input") == "x.json: key verified is true; expected false where there is no key input");
+}
+
+TEST_CASE("axes are turned and flipped, never bent")
+{
+    CHECK(error_with("/axes", {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}).empty());
+    const std::string expected = "expected one 1 or -1 in each row and column";
+    CHECK(error_with("/axes", {{1, 0, 0}, {1, 0, 0}, {0, 0, 1}}).ends_with(expected));
+    CHECK(error_with("/axes", {{0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}).ends_with(expected));
+    CHECK(error_with("/axes", {{1, 1, 0}, {0, 1, 0}, {0, 0, 1}}).ends_with(expected));
+    CHECK(error_with("/axes", {{1, 0, 0}, {0, 1, 0}}).ends_with("expected a list of 3 or more"));
+    nlohmann::json document = reference();
+    document["axes"] = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+    const HidProfile profile = parse_hid_profile(document.dump(), "x.json");
+    CHECK(profile.axes * glm::dvec3(1, 2, 3) == glm::dvec3(1, -3, 2));
+}
+
+TEST_CASE("a file that is absent, too long or nested without end is refused with a sentence")
+{
+    CHECK_THROWS_AS(load_hid_profile("/nowhere/x.json"), Error);
+    CHECK_THROWS_AS(load_hid_profiles("/nowhere"), Error);
+    CHECK(error_of_text(std::string(20'000, ' ')) == "x.json: holds 20000 bytes; expected at most 16384");
+    CHECK(error_of_text(std::string(8000, '[') + std::string(8000, ']')) ==
+          "x.json: is nested deeper than 8 levels; expected four");
+}
