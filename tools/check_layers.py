@@ -35,7 +35,7 @@ THIRD_PARTIES = {
     "Vulkan": (r"vulkan/", r"engine/gpu/|ui/window\.cpp"),
     "hidapi": (r"hidapi", r"haptics/hid_device\.cpp"),
     "GLFW": (r"GLFW/", r"ui/"),
-    "Dear ImGui": (r"(imgui/)?imgui", r"ui/"),
+    "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/"),
     # 25,000 lines that every reader of a header would compile; json_fwd.hpp is small.
     "nlohmann/json": (r"nlohmann/(?!json_fwd\.hpp)", r".*\.cpp|tools/|tests/"),
     "CLI11": (r"CLI/", r"tools/cli/"),

@@ -91,10 +91,10 @@ void check(VkResult result, const char* call)
 Device::Device(const DeviceOptions& options)
 {
     try {
-        create_instance(options.validation);
+        create_instance(options);
         const char* wanted = std::getenv("SHVR_DEVICE");
         choose_physical(!options.device.empty() ? options.device : wanted ? wanted : "");
-        create_device();
+        create_device(!options.instance_extensions.empty());
     } catch (...) {
         destroy();
         throw;
@@ -120,12 +120,18 @@ void Device::destroy() noexcept
     if (instance_) vkDestroyInstance(instance_, nullptr);
 }
 
-void Device::create_instance(bool validation)
+void Device::create_instance(const DeviceOptions& options)
 {
+    const bool validation = options.validation;
     const VkApplicationInfo application{
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "shvr", .apiVersion = VK_API_VERSION_1_3};
     std::vector<const char*> layers;
     std::vector<const char*> extensions;
+    for (const std::string& name : options.instance_extensions) {
+        if (!instance_extension_is_present(name.c_str(), nullptr))
+            fail("Vulkan has no ", name, ", which the window needs; expected a driver that can present");
+        extensions.push_back(name.c_str());
+    }
     if (validation) {
         if (!layer_is_installed(VALIDATION_LAYER))
             fail("Vulkan layer ", VALIDATION_LAYER, " is not installed; expected the package vulkan-validationlayers");
@@ -226,7 +232,7 @@ void Device::choose_physical(const std::string& wanted)
             traits_.device_bytes = std::max(traits_.device_bytes, uint64_t(memory_properties_.memoryHeaps[i].size));
 }
 
-void Device::create_device()
+void Device::create_device(bool presents)
 {
     VkPhysicalDeviceVulkan13Features has13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
     VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -254,10 +260,13 @@ void Device::create_device()
                                         .queueFamilyIndex = queue_family_,
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
+    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &want,
                                   .queueCreateInfoCount = 1,
-                                  .pQueueCreateInfos = &queue};
+                                  .pQueueCreateInfos = &queue,
+                                  .enabledExtensionCount = presents ? 1u : 0u,
+                                  .ppEnabledExtensionNames = &swapchain};
     SHVR_VK(vkCreateDevice(physical_, &info, nullptr, &device_));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     set_name(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<uint64_t>(queue_), "queue");

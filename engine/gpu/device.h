@@ -22,6 +22,7 @@ void check(VkResult result, const char* call);
 struct DeviceOptions {
     std::string device;       ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
     bool validation = false;  ///< Khronos layer with synchronisation validation; fails where it is not installed
+    std::vector<std::string> instance_extensions;  ///< those of a window's surface; with any, the device can present
 };
 
 /// What the rest of the program may ask of the device.
@@ -65,9 +66,9 @@ public:
     bool validates() const { return messenger_ != VK_NULL_HANDLE; }
 
 private:
-    void create_instance(bool validation);
+    void create_instance(const DeviceOptions& options);
     void choose_physical(const std::string& wanted);
-    void create_device();
+    void create_device(bool presents);
     void destroy() noexcept;
     static VkBool32 on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);

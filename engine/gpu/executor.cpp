@@ -134,6 +134,7 @@ struct Submission::Frame {
     void transition_new_images() const;
     void submit();
     bool done() const;
+    void wait() const;
     FrameResult collect();
 };
 
@@ -416,10 +417,15 @@ bool Submission::Frame::done() const
     return result == VK_SUCCESS;
 }
 
+void Submission::Frame::wait() const
+{
+    if (fence) SHVR_VK(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
+}
+
 FrameResult Submission::Frame::collect()
 {
     if (!fence) return {};  // no step, nothing submitted
-    SHVR_VK(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
+    wait();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
     FrameResult result{.wall_ms = wall.count()};
     for (Storage* storage : read_backs) {
@@ -529,6 +535,12 @@ bool Submission::done() const
 {
     SHVR_CHECK(frame_ != nullptr);
     return frame_->done();
+}
+
+void Submission::wait() const
+{
+    SHVR_CHECK(frame_ != nullptr);
+    frame_->wait();
 }
 
 FrameResult Submission::finish()

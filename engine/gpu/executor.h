@@ -52,6 +52,7 @@ public:
     explicit operator bool() const { return frame_ != nullptr; }
     /// Whether the device is done with it; never waits.
     bool done() const;
+    void wait() const;
     /// Waits where it must. Afterwards this is empty.
     FrameResult finish();
     const FrameGraph& graph() const;

@@ -36,6 +36,8 @@ public:
     void end_stroke();
     /// A stroke is open, or not all of it has been painted yet.
     bool stroke_is_running() const { return stroke_.has_value(); }
+    /// It has begun and not ended.
+    bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
     /// Takes the device's answer, if it is there, paints it and asks the next. Returns the voxels that may have changed.
     std::optional<VoxelBox> advance();
 

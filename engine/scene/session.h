@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "engine/annotation/script.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/open_volume.h"
@@ -55,6 +56,19 @@ struct CutBox {
     bool operator==(const CutBox&) const = default;
 };
 
+/// Where a person works, and with what. What is not given here is chosen for the volume (`probe_for`).
+struct ProbeSettings {
+    std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
+    double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
+    uint8_t group = 1;                ///< that is painted
+    Brush brush = Brush::flood;
+    RegionShape region = RegionShape::ball;
+    int connectivity = 6;                    ///< 6 or 26
+    std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
+    std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    bool operator==(const ProbeSettings&) const = default;
+};
+
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
@@ -66,6 +80,7 @@ struct Session {
     Light light;
     RenderSettings render;
     CutBox cut;
+    ProbeSettings probe;
     std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
 };
 

@@ -192,6 +192,32 @@ CutBox read_cut(const JsonNode& node)
     return cut;
 }
 
+std::optional<double> read_intensity(const JsonNode& node)
+{
+    if (!node.exists()) return std::nullopt;
+    return node.number(0.0, range(-3.4e38, 3.4e38));
+}
+
+ProbeSettings read_probe(const JsonNode& node)
+{
+    ProbeSettings probe;
+    if (!node.exists()) return probe;
+    node.expect_object(
+        {"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold", "haptic_threshold"});
+    if (node["voxel"].exists()) probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-1048576.0, 2097152.0));
+    probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
+    probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
+    probe.brush = node["brush"].choice(probe.brush,
+                                       {{"fill", Brush::fill}, {"flood", Brush::flood}, {"speckle", Brush::speckle}});
+    probe.region = node["region"].choice(probe.region, {{"ball", RegionShape::ball}, {"box", RegionShape::box}});
+    const auto connectivity = int(node["connectivity"].whole(probe.connectivity, 6, 26));
+    if (connectivity != 6 && connectivity != 26) node["connectivity"].refuse("6 or 26");
+    probe.connectivity = connectivity;
+    probe.paint_threshold = read_intensity(node["paint_threshold"]);
+    probe.haptic_threshold = read_intensity(node["haptic_threshold"]);
+    return probe;
+}
+
 std::filesystem::path read_mask_path(const JsonNode& node, const std::filesystem::path& folder)
 {
     if (!node.exists()) return {};
@@ -265,7 +291,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
 {
     const JsonNode document(json, origin);
     document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "render", "cut", "annotation"});
+                            "render", "cut", "probe", "annotation"});
     document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
     Session session;
     read_volume(document.required("volume", "an object with path or procedural"), folder, session);
@@ -276,6 +302,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.light = read_light(document["light"]);
     session.render = read_render(document["render"]);
     session.cut = read_cut(document["cut"]);
+    session.probe = read_probe(document["probe"]);
     session.mask_path = read_mask_path(document["annotation"], folder);
     return session;
 }

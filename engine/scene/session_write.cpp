@@ -131,6 +131,21 @@ json write_render(const RenderSettings& render)
             {"sampling", name_of(render.sampling)},   {"skip_empty_space", render.skip_empty_space}};
 }
 
+json write_probe(const ProbeSettings& probe)
+{
+    const std::map<Brush, const char*> brushes{
+        {Brush::fill, "fill"}, {Brush::flood, "flood"}, {Brush::speckle, "speckle"}};
+    json document = {{"radius_voxels", probe.radius_voxels},
+                     {"group", probe.group},
+                     {"brush", brushes.at(probe.brush)},
+                     {"region", probe.region == RegionShape::ball ? "ball" : "box"},
+                     {"connectivity", probe.connectivity}};
+    if (probe.voxel) document["voxel"] = array_of(*probe.voxel);
+    if (probe.paint_threshold) document["paint_threshold"] = *probe.paint_threshold;
+    if (probe.haptic_threshold) document["haptic_threshold"] = *probe.haptic_threshold;
+    return document;
+}
+
 bool is_row(const json& value)
 {
     return std::ranges::none_of(value, [](const json& member) { return member.is_structured(); });
@@ -167,6 +182,7 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["light"] = write_light(session.light);
     document["render"] = write_render(session.render);
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
+    document["probe"] = write_probe(session.probe);
     if (!session.mask_path.empty()) document["annotation"] = {{"mask", path_text(session.mask_path, folder)}};
     try {
         return laid_out(document, "", false) + "\n";

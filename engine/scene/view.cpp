@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -12,7 +13,6 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t MOST_SCALE = 8;
-constexpr double LEARNING_RATE = 0.5;  ///< of the cost of a pixel
 constexpr double PREPARATION_MS = 5.0;
 /// Seen through a translucent background.
 constexpr glm::vec3 BEHIND(0.05f);
@@ -130,6 +130,7 @@ bool View::submit_preparation(const Scene& scene)
 {
     std::optional<FrameGraph> graph = renderer_.next_preparation(scene.session);
     if (!graph) return false;
+    if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
     running_.push_back({.submission = renderer_.executor().submit(std::move(*graph)),
                         .purpose = Purpose::preparation,
                         .estimate_ms = PREPARATION_MS});
@@ -144,7 +145,8 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
     PixelBox part{glm::uvec2(0), scene->pixels};
     if (is_patch)
         part = probe ? pixels_of_ball(scene->camera, scene->pixels, probe->center, probe->radius) : PixelBox{};
-    const uint32_t scale = scale_for(cost_ms(part.area()), target_ms);
+    const uint32_t scale = scale_for(double(part.area()) * average_ms_per_pixel_, target_ms);
+    sketch_ms_ = 0.0;
     Sketch::Content content{.scene = scene, .probe = probe, .scale = scale, .pixels = divided(scene->pixels, scale)};
     if (!part.empty()) content.part = {part.begin / scale, glm::min(divided(part.end, scale), content.pixels)};
     sketch.next_row = content.part.begin.y;
@@ -221,6 +223,7 @@ void View::submit_part(const Scene& scene, const PicturePart& part, const gpu::S
     static_cast<void>(encode(graph, light, graph.import("display", display.import()),
                              {.source = glm::uvec2(0), .target = target, .size = size, .behind = BEHIND}));
     running.estimate_ms = cost_ms(running.pixels);
+    if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
     running.submission = renderer_.executor().submit(std::move(graph));
     in_flight_ms_ += running.estimate_ms;
     ++submissions_;
@@ -229,17 +232,47 @@ void View::submit_part(const Scene& scene, const PicturePart& part, const gpu::S
 
 // ---- What is done ---------------------------------------------------------------------------------------------------
 
+void View::note(const std::string& pass, double ms)
+{
+    auto known = std::ranges::find(pass_times_, pass, &PassTime::name);
+    if (known == pass_times_.end()) known = pass_times_.insert(known, {.name = pass});
+    ++known->runs;
+    known->total_ms += ms;
+    known->longest_ms = std::max(known->longest_ms, ms);
+}
+
+/// A picture costs twenty times more here than there, so the estimate rises at once and falls slowly: a graph that takes
+/// less time than it might is the smaller evil.
+void View::learn(double ms, uint64_t pixels)
+{
+    constexpr double FALL = 0.1;
+    const double seen = std::max(ms / double(pixels), 1e-7);
+    ms_per_pixel_ = std::max(seen, ms_per_pixel_ + FALL * (seen - ms_per_pixel_));
+}
+
 void View::account(const gpu::FrameResult& result, uint64_t pixels)
 {
+    const auto now = std::chrono::steady_clock::now();
+    const double host_ms = std::chrono::duration<double, std::milli>(now - busy_since_).count();
+    busy_since_ = now;
+    double gpu_ms = 0.0;
     for (const gpu::PassReport& pass : result.passes) {
-        const double ms = pass.timed ? pass.gpu_ms : result.wall_ms;
-        auto known = std::ranges::find(pass_times_, pass.name, &PassTime::name);
-        if (known == pass_times_.end()) known = pass_times_.insert(known, {.name = pass.name});
-        ++known->runs;
-        known->total_ms += ms;
-        known->longest_ms = std::max(known->longest_ms, ms);
-        if (pass.name == "raycast" && pixels > 0)
-            ms_per_pixel_ += LEARNING_RATE * (std::max(ms / double(pixels), 1e-7) - ms_per_pixel_);
+        gpu_ms += pass.gpu_ms;
+        if (!host_tells_time()) note(pass.name, pass.gpu_ms);
+    }
+    const double ms = host_tells_time() ? host_ms : gpu_ms;
+    // What only the host can time is put down to the pass that takes nearly all of it.
+    if (host_tells_time() && !result.passes.empty()) note(pixels > 0 ? "raycast" : result.passes.back().name, ms);
+    if (pixels == 0) return;
+    learn(ms, pixels);
+    sketch_ms_ += ms;
+}
+
+void View::wait()
+{
+    while (!running_.empty()) {
+        running_.front().submission.wait();
+        reap();
     }
 }
 
@@ -281,6 +314,7 @@ void View::finish_sketches()
     // A picture and the probe in it are shown together.
     if (patch_.job) flip(patch_);
     if (!base_.job) return;
+    average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());
     flip(base_);
     shown_scene_ = base_.shown.scene;
     reset_tiles();
@@ -324,6 +358,25 @@ std::vector<View::Layer> View::layers() const
         }
     add_sketch(patch_);
     return layers;
+}
+
+Image8 View::read_back()
+{
+    const glm::uvec2 pixels = shown_scene_ ? shown_scene_->pixels : glm::uvec2(0);
+    Image8 picture{int(pixels.x), int(pixels.y), std::vector<uint8_t>(size_t(pixels.x) * pixels.y * 4)};
+    for (const Layer& layer : layers()) {
+        const glm::uvec2 size = layer.target.end - layer.target.begin;
+        if (layer.source.end - layer.source.begin != size) continue;
+        FrameGraph graph;
+        graph.read_back(graph.import("layer", layer.image));
+        const gpu::FrameResult result = renderer_.executor().run(std::move(graph), {.timestamps = false});
+        const size_t source_width = layer.image.desc.texels.x;
+        for (uint32_t y = 0; y < size.y; ++y)
+            std::memcpy(&picture.rgba[4 * ((layer.target.begin.y + y) * size_t(pixels.x) + layer.target.begin.x)],
+                        &result.read_backs[0][4 * ((layer.source.begin.y + y) * source_width + layer.source.begin.x)],
+                        4 * size_t(size.x));
+    }
+    return picture;
 }
 
 }  // namespace shvr

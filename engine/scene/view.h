@@ -10,6 +10,7 @@
 // way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
 // submitted when nothing changed. One thread, the renderer's; no call waits for the device.
 
+#include <chrono>
 #include <deque>
 #include <memory>
 
@@ -23,8 +24,8 @@ public:
     static constexpr uint32_t TILE = 32;  ///< pixels a side
 
     struct Options {
-        double step_ms = 4.0;       ///< of the device, for one graph
-        double in_flight_ms = 9.0;  ///< of graphs on their way
+        double step_ms = 3.0;       ///< of the device, for one graph
+        double in_flight_ms = 5.0;  ///< of graphs on their way
         double motion_ms = 40.0;    ///< for the sketch of a picture
         double probe_ms = 20.0;     ///< for the sketch of the pixels that the probe may cover
     };
@@ -39,8 +40,12 @@ public:
 
     /// Takes what the device has finished, and submits what is due next.
     void advance();
+    /// Waits for what is on its way; `in_flight_ms` or so.
+    void wait();
     /// The picture is sharp, and nothing is due or on its way.
     bool complete() const;
+    /// The camera of what layers() show; null before there is anything.
+    const Camera* shown_camera() const { return shown_scene_ ? &shown_scene_->camera : nullptr; }
     /// Counts what changed in layers(): who shows them compares.
     uint64_t revision() const { return revision_; }
 
@@ -50,6 +55,9 @@ public:
         PixelBox source, target;
     };
     std::vector<Layer> layers() const;
+    /// What the layers show together, as a screen would; waits for the device. Layers that have to be stretched are left
+    /// out: ask when the view is complete.
+    Image8 read_back();
 
     /// Device time of the picture that is being made or was made last, by pass.
     struct PassTime {
@@ -109,6 +117,8 @@ private:
                      Running running);
     void reap();
     void account(const gpu::FrameResult& result, uint64_t pixels);
+    void note(const std::string& pass, double ms);
+    void learn(double ms, uint64_t pixels);
     void finish_sketches();
     void flip(Sketch& sketch);
     void reset_tiles();
@@ -116,6 +126,8 @@ private:
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * ms_per_pixel_; }
+    /// Timestamps of lavapipe are wrong beside a window's render passes, so the time there is the host's.
+    bool host_tells_time() const { return renderer_.device().traits().is_cpu; }
     glm::uvec2 tile_counts() const;
 
     Renderer& renderer_;
@@ -131,7 +143,10 @@ private:
     std::vector<VoxelBox> painted_during_base_;
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
-    double ms_per_pixel_ = 0.002;  ///< learnt
+    double ms_per_pixel_ = 0.002;          ///< learnt: where the picture is costly
+    double average_ms_per_pixel_ = 0.002;  ///< learnt: of whole sketches
+    double sketch_ms_ = 0.0;               ///< of the one that is being drawn
+    std::chrono::steady_clock::time_point busy_since_;
     uint64_t revision_ = 0;
     uint64_t submissions_ = 0;
     std::vector<PassTime> pass_times_;

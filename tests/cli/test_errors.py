@@ -4,9 +4,9 @@ import os
 import subprocess
 import unittest
 
-from harness import ENVIRONMENT, SHVR, CliTest, Volume
+from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
-COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"]]
+COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"]]
 
 
 class Usage(CliTest):
@@ -20,7 +20,7 @@ class Usage(CliTest):
 
     def test_wrong_usage_is_status_2(self):
         session = self.write_session()
-        for arguments in [[], ["paint"], ["render"], ["render", session],
+        for arguments in [["paint"], ["render"], ["render", session],
                           ["render", session, "-o", "a.png", "--sise", "1"],
                           ["render", session, "-o", "a.png", "--size", "12"],
                           ["render", session, "-o", "a.png", "--size", "0x5"],
@@ -28,6 +28,13 @@ class Usage(CliTest):
                           ["annotate", session], ["compare", "a.png"], ["info"]]:
             with self.subTest(arguments=arguments):
                 self.check_refused(*arguments, status=2)
+
+    def test_without_a_display_the_window_says_so(self):
+        for arguments in [[], ["view"], ["view", self.write_session()]]:
+            result = run(*arguments, environment={"DISPLAY": "", "WAYLAND_DISPLAY": ""})
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertIn("display", result.stderr)
 
     def test_help_is_no_error(self):
         self.assertIn("shvr COMMAND --help", self.check("--help").stdout)

@@ -36,28 +36,11 @@ public:
             view.advance();
         }
     }
-    Screen image_of(const Import& image)
+    static Screen shown(View& view)
     {
-        FrameGraph graph;
-        graph.read_back(graph.import("image", image));
-        const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
-        Screen texels(bytes.size() / 4);
-        std::memcpy(texels.data(), bytes.data(), bytes.size());
-        return texels;
-    }
-    /// What a window would show; layers that must be stretched are left out.
-    Screen shown(const View& view)
-    {
-        Screen screen(size_t(pixels().x) * pixels().y);
-        for (const View::Layer& layer : view.layers()) {
-            if (layer.source.end - layer.source.begin != layer.target.end - layer.target.begin) continue;
-            const Screen texels = image_of(layer.image);
-            for (uint32_t y = layer.target.begin.y; y < layer.target.end.y; ++y)
-                for (uint32_t x = layer.target.begin.x; x < layer.target.end.x; ++x) {
-                    const glm::uvec2 from = layer.source.begin + glm::uvec2(x, y) - layer.target.begin;
-                    screen[x + size_t(pixels().x) * y] = texels[from.x + size_t(layer.image.desc.texels.x) * from.y];
-                }
-        }
+        const Image8 image = view.read_back();
+        Screen screen(image.rgba.size() / 4);
+        std::memcpy(screen.data(), image.rgba.data(), image.rgba.size());
         return screen;
     }
     /// The picture of Renderer::render, encoded.

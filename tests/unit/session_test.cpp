@@ -75,6 +75,8 @@ const std::string EVERYTHING = R"({
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "skip_empty_space": false},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
+  "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
+            "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3},
   "annotation": {"mask": "shvr/labels.mask"}
 })";
 
@@ -128,6 +130,8 @@ TEST_CASE("every key of a session is read")
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render == RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, false});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
+    CHECK(session.probe ==
+          ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5, -3});
     CHECK(session.mask_path == "/data/scans/shvr/labels.mask");
 }
 
@@ -141,6 +145,7 @@ TEST_CASE("a session that says little has the defaults of the structures")
     CHECK(session.light == Light{});
     CHECK(session.render == RenderSettings{});
     CHECK(session.cut == CutBox{});
+    CHECK(session.probe == ProbeSettings{});
     CHECK(session.mask_path.empty());
     CHECK_FALSE(session.procedural);
     CHECK_FALSE(session.raw_layout);
@@ -165,6 +170,7 @@ TEST_CASE("what is written reads back the same")
         CHECK(second.light == first.light);
         CHECK(second.render == first.render);
         CHECK(second.cut == first.cut);
+        CHECK(second.probe == first.probe);
         CHECK(second.mask_path == first.mask_path);
         REQUIRE(second.procedural.has_value() == first.procedural.has_value());
         if (first.procedural) {
@@ -294,6 +300,9 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
              Case{R"("groups": {"1": {"name": 7}})", "groups.1.name is 7; expected a text that is not empty"},
              Case{R"("groups": [])", "groups is []; expected an object"},
              Case{R"("cut": {"lower": [5, 0, 0], "upper": [4, 9, 9]})", "cut is {"},
+             Case{R"("probe": {"connectivity": 18})", "probe.connectivity is 18; expected 6 or 26"},
+             Case{R"("probe": {"radius_voxels": 127.5})", "probe.radius_voxels is 127.5; expected"},
+             Case{R"("probe": {"brush": "pen"})", "probe.brush is"},
              Case{R"("cut": {"lower": [-1, 0, 0]})", "cut.lower.0 is -1; expected a number from 0 to"},
              Case{R"("annotation": {"mask": ""})", "annotation.mask is \"\"; expected a text that is not empty"},
              Case{R"("annotation": {"mask": "a\u0000b"})", "annotation.mask is \"a\\u0000b\"; expected a path"},

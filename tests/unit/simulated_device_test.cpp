@@ -55,7 +55,7 @@ struct Following {
     double largest_n = 0.0;  ///< force
 };
 
-/// A hand follows the vessel at 20 mm/s and wanders off as hands do; haptics.md 4.4.
+/// A hand follows the vessel at 20 mm/s and wanders off as hands do.
 Following follow(const HandModel& hand, bool assistance, uint32_t seed)
 {
     std::mt19937 random(seed);

@@ -66,5 +66,6 @@ void add_annotate(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);
+void add_view(CLI::App& program);
 
 }  // namespace shvr::cli

@@ -14,15 +14,21 @@ int run(int argc, char** argv)
 {
     CLI::App program("SHVR: see, feel and annotate tubular structures in 3-D scans", "shvr");
     program.require_subcommand(1);
-    program.footer("shvr COMMAND --help shows options and an example.");
+    program.footer("shvr alone opens the window. shvr COMMAND --help shows options and an example.");
     shvr::cli::add_info(program);
     shvr::cli::add_render(program);
     shvr::cli::add_annotate(program);
     shvr::cli::add_compare(program);
     shvr::cli::add_profile(program);
     shvr::cli::add_phantom(program);
+    shvr::cli::add_view(program);
     try {
-        program.parse(argc, argv);  // runs the command's callback
+        char view[] = "view";
+        char* alone[] = {argv[0], view};
+        if (argc == 1)
+            program.parse(2, alone);
+        else
+            program.parse(argc, argv);  // runs the command's callback
     } catch (const CLI::ParseError& error) {
         return program.exit(error) == 0 ? Exit::done : Exit::usage;
     }

@@ -1,0 +1,171 @@
+"""The window, driven by real key and mouse events on a virtual display (Xvfb, xdotool)."""
+import json
+import os
+import subprocess
+import time
+import unittest
+
+from harness import ENVIRONMENT, SHVR, CliTest, read_png_header
+
+PATIENCE_S = 60
+WINDOW = (900, 600)
+
+
+class Display:
+    """A virtual screen of its own."""
+
+    def __init__(self):
+        read_end, write_end = os.pipe()
+        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1000x700x24"],
+                                       pass_fds=[write_end], stderr=subprocess.DEVNULL)
+        os.close(write_end)
+        with os.fdopen(read_end) as told:
+            self.name = ":" + told.readline().strip()
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+    def do(self, *arguments):
+        """One chain of xdotool commands; returns what it printed."""
+        return subprocess.run(["xdotool", *map(str, arguments)], capture_output=True, text=True, timeout=PATIENCE_S,
+                              env={**os.environ, "DISPLAY": self.name}).stdout
+
+
+class View(CliTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.display = Display()
+        cls.addClassCleanup(cls.display.close)
+
+    def start(self, *arguments):
+        self.program = subprocess.Popen(
+            [SHVR, "view", *map(str, arguments), "--json", "--size", f"{WINDOW[0]}x{WINDOW[1]}"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**ENVIRONMENT, "DISPLAY": self.display.name})
+        self.addCleanup(self.program.kill)
+
+    def wait_for_window(self, title):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end and self.program.poll() is None:
+            if self.display.do("search", "--name", title).strip():
+                return
+            time.sleep(0.1)
+        self.fail(f"no window named {title}: {self.program.communicate(timeout=5)}")
+
+    def do(self, *arguments, pause_s=0.3):
+        self.display.do(*arguments)
+        time.sleep(pause_s)
+
+    def wait_for_file(self, path):
+        end = time.monotonic() + PATIENCE_S
+        while not path.exists():
+            self.assertLess(time.monotonic(), end, f"{path} is not written")
+            time.sleep(0.05)
+
+    def finish(self):
+        """Closes the window by its key; the report, which a validation message would have turned into a failure."""
+        self.do("key", "ctrl+q")
+        output, errors = self.program.communicate(timeout=PATIENCE_S)
+        self.assertEqual(self.program.returncode, 0, errors)
+        return json.loads(output)
+
+    def write_ball(self, **keys):
+        return self.write_session(
+            volume={"procedural": "sphere", "size": [64, 64, 64]}, camera="front",
+            transfer_function={"points": [{"intensity": 100, "color": "#c0a080", "opacity": 0.0},
+                                          {"intensity": 160, "color": "#ffe0c0", "opacity": 0.9},
+                                          {"intensity": 255, "color": "#ffffff", "opacity": 1.0}]},
+            probe={"radius_voxels": 5, "group": 3, "paint_threshold": 120}, **keys)
+
+    def middle(self):
+        """Of the graphics window: left of the side panel, between menu and status bar."""
+        return (WINDOW[0] - 330) // 2, WINDOW[1] // 2
+
+    def test_a_scan_is_looked_at_painted_saved_and_photographed(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        # Look from elsewhere, then put the probe onto the ball and paint a stroke.
+        self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 40, y + 15, "mousemove", x + 80, y + 20, "mouseup", 1)
+        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=1)
+        self.do("mousedown", 3, pause_s=0.1)
+        self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "mouseup", 3, pause_s=1)
+        self.do("key", "7", "keydown", "f", "mousemove", x - 30, y - 10, "keyup", "f", pause_s=1)
+        self.do("key", "ctrl+z", pause_s=0.5)
+        self.do("key", "ctrl+s", pause_s=0.5)
+        self.do("key", "p")
+        photograph = self.folder / "session-view-1.png"
+        self.wait_for_file(photograph)
+        report = self.finish()
+
+        self.assertGreater(report["voxels_in_group"].get("3", 0), 50, report["messages"])
+        self.assertNotIn("7", report["voxels_in_group"])  # undone
+        self.assertEqual((report["undoable"], report["redoable"]), (1, 1))
+        self.assertTrue(any(line.startswith("Undone: flood fill, group 7") for line in report["messages"]))
+        self.assertTrue(report["view_complete"])
+        self.assertTrue((self.folder / "paint.mask").exists())
+
+        saved = json.loads(session.read_text())
+        self.assertEqual(saved["camera"], "window")
+        self.assertEqual(saved["probe"]["group"], 7)
+        self.check_photograph(session, photograph)
+
+    def check_photograph(self, session, photograph):
+        """It is what `shvr render` makes of what was saved, but for the probe's ball."""
+        size = read_png_header(photograph)
+        picture = self.folder / "render.png"
+        self.check("render", session, "-o", picture, "--size", f"{size[0]}x{size[1]}")
+        difference = self.check_json("compare", photograph, picture)
+        self.assertLess(difference["fraction_over_1"], 0.03)
+
+    def test_assistance_guides_the_probe_and_the_servo_keeps_time(self):
+        self.start(self.write_ball())
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.5)
+        self.do("key", "space", pause_s=0.5)
+        for step in range(20):
+            self.do("mousemove", x + 2 * step, y + step, pause_s=0.03)
+        self.do("key", "Page_Up", "key", "End", "key", "Home", pause_s=0.5)
+        report = self.finish()
+        self.assertGreater(report["servo"]["ticks"], 300)
+        self.assertGreater(report["relevance_ms"]["count"], 5)
+        self.assertGreater(report["servo"]["relevance_age"]["count"], 100)
+        self.assertTrue(any("Assistance on" in line for line in report["messages"]), report["messages"])
+
+    def test_a_control_point_is_dragged(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        before = json.loads(session.read_text())["transfer_function"]
+        # The widget's upper edge holds the points of opacity 1; the last lies in its right corner.
+        for y in range(340, 420, 4):
+            self.do("mousemove", WINDOW[0] - 22, y, "mousedown", 1, "mousemove", WINDOW[0] - 60, y + 10, "mouseup", 1,
+                    pause_s=0.05)
+        self.do("key", "ctrl+s", pause_s=0.5)
+        self.finish()
+        self.assertNotEqual(json.loads(session.read_text())["transfer_function"], before)
+
+    def test_paint_that_was_not_saved_is_saved_when_the_window_closes(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.do("click", 3, pause_s=1)
+        report = self.finish()
+        painted = report["voxels_in_group"]["3"]
+        again = self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
+            {"op": "expect", "voxels_in_group": {"3": painted}}]))
+        self.assertEqual(again["commands"], 1)
+
+    def test_what_cannot_be_opened_is_said_before_a_window_stays(self):
+        self.start(self.folder / "missing.nhdr")
+        _, errors = self.program.communicate(timeout=PATIENCE_S)
+        self.assertEqual(self.program.returncode, 1)
+        self.assertIn("missing.nhdr", errors)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,111 @@
+#pragma once
+// What a person asks for. Keys, mouse, menus and panels make actions and change nothing themselves; the application
+// carries them out, in one place, in the order they came. Plain data; any thread.
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/annotation/script.h"
+#include "engine/scene/session.h"
+#include "haptics/proxy.h"
+
+namespace shvr::ui {
+
+// ---- Looking. Angles in degrees, pixels are those of the graphics window.
+struct Orbit {
+    double right_degrees = 0.0, up_degrees = 0.0;
+};
+struct Roll {
+    double degrees = 0.0;
+};
+/// Along the camera's right, up and forward; 1 is the height of what is seen at the target's depth.
+struct Move {
+    glm::dvec3 heights{0.0};
+};
+struct Zoom {
+    glm::dvec2 pixel{0.0};
+    double factor = 1.0;
+};
+struct LookFrom {
+    std::string camera;  ///< a camera of the session, or a side
+};
+/// Cutting planes: axis 0 ... 2, the lower or upper one, in shares of the volume's size.
+struct MoveCut {
+    int axis = 0;
+    bool upper = false;
+    double share = 0.0;
+};
+/// Clip planes of the camera, in shares of the distance to the target.
+struct MoveClip {
+    bool far = false;
+    double share = 0.0;
+};
+struct ResetCuts {};
+
+// ---- What things look like
+struct SetTransferFunction {
+    TransferFunction function;
+};
+struct SetGroup {
+    uint8_t group = 1;
+    ColorGroup look;
+};
+struct SetShaded {
+    bool shaded = true;
+};
+
+// ---- The probe
+struct ProbeTo {  ///< follows the mouse in the plane through the probe
+    glm::dvec2 pixel{0.0};
+};
+struct ProbeOnto {  ///< onto what is seen there
+    glm::dvec2 pixel{0.0};
+};
+struct PushProbe {  ///< away from the viewer, in voxels
+    double voxels = 0.0;
+};
+struct ScaleProbe {
+    double factor = 1.0;
+};
+/// Everything about the brush but its path and group: shape, radius, threshold, connectivity.
+struct SetBrush {
+    PaintOp brush;
+};
+struct ChooseGroup {
+    uint8_t group = 1;
+};
+struct Paint {  ///< begins and ends a stroke
+    bool on = false;
+};
+struct SetHapticThreshold {
+    double intensity = 0.0;
+};
+struct Assist {
+    bool on = false;
+};
+struct SetProxyLaw {
+    ProxyLaw law = ProxyLaw::potential;
+};
+
+// ---- The work
+struct Undo {};
+struct Redo {};
+struct Save {};
+struct Screenshot {};
+struct Open {
+    std::filesystem::path path;
+};
+struct ShowHelp {
+    bool on = true;
+};
+struct Quit {};
+
+using Action =
+    std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction, SetGroup,
+                 SetShaded, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold,
+                 Assist, SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+using Actions = std::vector<Action>;
+
+}  // namespace shvr::ui

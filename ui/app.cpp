@@ -1,0 +1,356 @@
+#include "ui/app.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include <imgui/imgui.h>
+
+#include "engine/base/image_file.h"
+#include "haptics/hid_device.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr double FRAME_S = 1.0 / 60.0;
+/// While work is on its way the loop looks after it this often: half of what View keeps in flight.
+constexpr double WORK_S = 0.003;
+constexpr double IDLE_S = 0.25;
+/// While nobody does anything, sharper tiles are shown this often: drawing the interface takes time from them.
+constexpr double SHARPEN_S = 0.12;
+/// Widgets settle, hover and blink for so long after the last event.
+constexpr double AFTERGLOW_S = 0.3;
+
+ImU32 color_of(const glm::dvec3& linear, float alpha)
+{
+    const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
+    return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
+}
+
+/// $SHVR_ASSETS/devices, or what lies where the program was installed or built. Empty where there is none.
+std::filesystem::path device_profile_folder()
+{
+    std::vector<std::filesystem::path> candidates;
+    if (const char* assets = std::getenv("SHVR_ASSETS")) candidates.emplace_back(assets);
+    std::error_code unknown;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+    candidates.push_back(program / "../share/shvr");
+    candidates.push_back(program / "../../assets");
+    for (const std::filesystem::path& candidate : candidates)
+        if (std::filesystem::is_directory(candidate / "devices")) return candidate / "devices";
+    return {};
+}
+
+}  // namespace
+
+App::App(const AppOptions& options) : options_(options), window_("SHVR", options.window_size)
+{
+    gpu::DeviceOptions device = window_.device_needs();
+    device.device = options.device;
+    device.validation = options.validation;
+    renderer_ = std::make_unique<Renderer>(
+        Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
+    set_style(window_.content_scale());
+    window_.attach(renderer_->device(), renderer_->memory());
+    if (!options.input.empty())
+        open(options.input, options.settings);
+    else
+        say("Drop a volume, a session or a project folder onto the window");
+}
+
+App::~App()
+{
+    document_.reset();
+    window_.detach();
+}
+
+void App::say(const std::string& status)
+{
+    status_ = status;
+    report_.messages.push_back(status);
+    ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+}
+
+void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
+{
+    OpenedSession opened = open_session(path, settings);
+    document_.reset();  // its volume gives way before the next takes memory
+    std::string device_said;
+    std::unique_ptr<HapticDevice> device = find_device(device_said);
+    auto document = std::make_unique<Document>(*renderer_, std::move(opened), path, std::move(device), "haptic device");
+    document_ = std::move(document);
+    window_.set_title("SHVR");  // until it can be seen
+    look_again();
+    std::string status = "Opened " + path.string();
+    for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
+    if (!device_said.empty()) status += "; " + device_said;
+    say(status);
+}
+
+/// A device that cannot be used is told of, and the mouse takes its place.
+std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
+{
+    try {
+        const std::filesystem::path profiles = device_profile_folder();
+        return profiles.empty() ? nullptr : open_hid_device(load_hid_profiles(profiles), options_.allow_force);
+    } catch (const Error& error) {
+        said = error.what();
+        return nullptr;
+    }
+}
+
+// ---- The loop -------------------------------------------------------------------------------------------------------
+
+void App::run()
+{
+    while (!closes()) {
+        handle_events(time_to_wait());
+        apply_all();
+        work();
+        note_presented();
+        const double now = window_.now_s();
+        if (now < next_frame_s_) continue;
+        const bool only_sharpens = !something_moves() || (now > ui_until_s_ && !document_->assistance && !probe_moved_);
+        if (only_sharpens && now < last_begun_s_ + SHARPEN_S && unanswered_s_.empty()) continue;
+        if (!something_moves() && now > ui_until_s_ && unanswered_s_.empty()) {
+            was_moving_ = false;
+            continue;
+        }
+        draw_ui();
+        next_frame_s_ = std::max(next_frame_s_ + FRAME_S, now);
+    }
+    if (screenshot_.valid()) screenshot_.wait();
+}
+
+/// Paint is never lost: it is saved before the window goes, and where that fails the window stays.
+bool App::closes()
+{
+    if (!window_.should_close()) return false;
+    if (!document_ || document_->paint_is_saved) return true;
+    try {
+        save();
+        return true;
+    } catch (const Error& error) {
+        say(std::string("The window stays open, since the paint could not be saved: ") + error.what());
+        window_.stay_open();
+        return false;
+    }
+}
+
+bool App::something_moves() const
+{
+    if (!document_) return false;
+    return document_->view.revision() != drawn_revision_ || look_is_stale_ || probe_moved_ || document_->assistance;
+}
+
+double App::time_to_wait() const
+{
+    const bool has_work = document_ && (!document_->view.complete() || document_->annotator.stroke_is_running() ||
+                                        document_->assistance || look_is_stale_);
+    const double now = window_.now_s();
+    const bool draws = now < ui_until_s_ || something_moves() || !unanswered_s_.empty();
+    const double until_frame = std::max(next_frame_s_ - now, 0.0);
+    if (has_work) return draws ? std::min(WORK_S, until_frame) : WORK_S;
+    return draws || screenshot_.valid() ? until_frame : IDLE_S;
+}
+
+void App::handle_events(double timeout_s)
+{
+    for (const InputEvent& event : window_.wait_events(timeout_s)) {
+        ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+        const bool is_answered =
+            std::holds_alternative<KeyEvent>(event.what) || std::holds_alternative<ButtonEvent>(event.what);
+        if (is_answered) unanswered_s_.push_back(event.time_s);
+        if (document_) {
+            const ImGuiIO& io = ImGui::GetIO();
+            viewport_.handle(event, model(), io.WantCaptureMouse, io.WantTextInput, actions_);
+        } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
+            if (!drop->paths.empty()) actions_.emplace_back(Open{drop->paths.front()});
+        }
+    }
+    const double now = window_.now_s();
+    if (document_ && !ImGui::GetIO().WantTextInput)
+        keys_held(window_, std::min(now - last_keys_s_, 0.1), model(), actions_);
+    last_keys_s_ = now;
+}
+
+void App::apply_all()
+{
+    for (const Action& action : std::exchange(actions_, {})) {
+        const bool needs_document = !std::holds_alternative<Open>(action) &&
+                                    !std::holds_alternative<ShowHelp>(action) && !std::holds_alternative<Quit>(action);
+        if (needs_document && !document_) continue;
+        try {
+            std::visit([&](const auto& what) { apply(what); }, action);
+        } catch (const Error& error) {
+            say(error.what());
+        }
+    }
+}
+
+TouchSettings App::touch_settings() const
+{
+    return {.assistance = document_->assistance,
+            .threshold = document_->haptic_threshold,
+            .probe_radius = document_->probe_radius(),
+            .law = document_->law,
+            .axes = axes_of(document_->camera),
+            .target = document_->camera.target,
+            .view_height =
+                pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target))};
+}
+
+void App::work()
+{
+    if (!document_) return;
+    Document& document = *document_;
+    probe_moved_ |= document.touch.advance(touch_settings());
+    if (const bool paints = document.touch.buttons() & 1; paints != device_paints_) {
+        device_paints_ = paints;
+        apply(Paint{paints});
+    }
+    extend_stroke();
+    const bool stroke_was_running = document.annotator.stroke_is_running();
+    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.view.changed(*painted);
+    if (stroke_was_running && !document.annotator.stroke_is_running()) {
+        const int64_t voxels = document.annotator.last_stroke_voxels();
+        if (voxels > 0) document.is_saved = document.paint_is_saved = false;
+        say(voxels > 0
+                ? sentence("Painted ", voxels, " voxels in group ", int(document.brush.group))
+                : std::string("The stroke changed nothing: no voxel at or above the paint threshold here, or all of "
+                              "them are in this group"));
+    }
+    if (std::exchange(look_is_stale_, false) && viewport_.pixels().x > 0 && viewport_.pixels().y > 0)
+        document.view.look(document.session, document.camera, viewport_.pixels());
+    document.view.show_probe(document.probe_look());
+    document.view.advance();
+    if (wants_screenshot_) finish_screenshot();
+    if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        say(screenshot_.get());
+}
+
+void App::draw_ui()
+{
+    const double begun = window_.now_s();
+    // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
+    // for below; and the view learns what its work costs without the interface's share.
+    if (document_ && renderer_->device().traits().is_cpu) document_->view.wait();
+    window_.begin_ui();
+    std::vector<View::Layer> layers;
+    Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
+    if (document_) {
+        layout = draw_panels(model(), window_.pixels(), actions_);
+        draw_probe();
+        layers = document_->view.layers();
+        drawn_revision_ = document_->view.revision();
+        probe_moved_ = false;
+    } else {
+        ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
+    }
+    if (layout.begin != viewport_.layout().begin || layout.end != viewport_.layout().end) {
+        viewport_.set_layout(layout);
+        look_again();
+    }
+    if (!window_.present(layers, viewport_.layout().begin)) return;
+    if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
+    const bool moves = begun < ui_until_s_ || (document_ && document_->assistance);
+    if (was_moving_ && moves) report_.interval_ms.push_back((begun - last_begun_s_) * 1e3);
+    was_moving_ = moves;
+    last_begun_s_ = begun;
+    ++report_.frames;
+    presented_.push_back({window_.frames_presented(), begun, std::exchange(unanswered_s_, {})});
+}
+
+void App::note_presented()
+{
+    if (presented_.empty()) return;
+    const uint64_t done = window_.frames_done();
+    const double now = window_.now_s();
+    std::erase_if(presented_, [&](const Presented& frame) {
+        if (frame.frame > done) return false;
+        report_.frame_ms.push_back((now - frame.begun_s) * 1e3);
+        for (double input : frame.inputs_s) report_.input_ms.push_back((now - input) * 1e3);
+        return true;
+    });
+}
+
+/// The probe's outline shows through what hides it, and a line goes to where assistance pulls it.
+void App::draw_probe() const
+{
+    const Document& document = *document_;
+    const glm::uvec2 pixels = viewport_.pixels();
+    if (pixels.x == 0 || pixels.y == 0 || !document.view.shown_camera()) return;
+    const Camera& camera = *document.view.shown_camera();  // so that it lies on what is seen, which may lag behind
+    const ProbeLook look = document.probe_look();
+    const std::optional<Projected> center = project(camera, pixels, look.center);
+    if (!center) return;
+    const glm::dvec2 origin(viewport_.layout().begin);
+    const auto on_screen = [&](const glm::dvec2& pixel) {
+        return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
+    };
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
+    const float radius = float(look.radius / pixel_size(camera, pixels, center->depth));
+    list.AddCircle(on_screen(center->pixel), radius + 1.5f, IM_COL32(0, 0, 0, 140), 0, 3.5f);
+    list.AddCircle(on_screen(center->pixel), radius + 1.5f, color_of(look.color, 1.0f), 0, 1.8f);
+    const ServoState* servo = document.touch.servo();
+    if (servo && servo->step.in_contact)
+        if (const auto proxy = project(camera, pixels, servo->step.proxy)) {
+            list.AddLine(on_screen(center->pixel), on_screen(proxy->pixel), IM_COL32(255, 255, 255, 200), 1.5f);
+            list.AddCircleFilled(on_screen(proxy->pixel), 3.0f, IM_COL32(255, 255, 255, 230));
+        }
+    list.PopClipRect();
+}
+
+Model App::model()
+{
+    Document& document = *document_;
+    return {.session = document.session,
+            .volume = document.volume(),
+            .statistics = document.statistics,
+            .cameras = document.cameras(),
+            .brush = document.brush,
+            .haptic_threshold = document.haptic_threshold,
+            .probe_voxel = document.probe_voxel(),
+            .is_painting = document.annotator.stroke_is_running(),
+            .assistance = document.assistance,
+            .law = document.law,
+            .servo = document.touch.servo(),
+            .device_name = document.touch.device_name(),
+            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+            .undoable = document.annotator.history().undoable(),
+            .redoable = document.annotator.history().redoable(),
+            .is_saved = document.is_saved,
+            .status = status_,
+            .shows_help = shows_help_,
+            .gpu_name = renderer_->device().traits().name,
+            .pass_times = document.view.pass_times(),
+            .view_is_complete = document.view.complete(),
+            .relevance_age_ms = document.touch.relevance_age_ms(),
+            .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
+            .device_bytes = renderer_->memory().device_bytes(),
+            .device_budget = renderer_->memory().device_budget()};
+}
+
+AppReport App::report()
+{
+    AppReport report = report_;
+    report.gpu_name = renderer_->device().traits().name;
+    report.status = status_;
+    if (document_) {
+        report.relevance_ms = document_->touch.mirror_ms();
+        report.view_submissions = document_->view.submissions();
+        report.view_complete = document_->view.complete();
+        report.servo = document_->touch.last_state();
+        report.probe_voxel = document_->probe_voxel();
+        report.voxels_by_group = document_->annotator.document().mask.voxels_by_group();
+        report.undoable = document_->annotator.history().undoable();
+        report.redoable = document_->annotator.history().redoable();
+    }
+    report.validation_messages = renderer_->device().take_validation_messages();
+    return report;
+}
+
+}  // namespace shvr::ui

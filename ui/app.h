@@ -1,0 +1,142 @@
+#pragma once
+// The application: owns the window, the device and what is open; takes what the person did, carries out the actions, and
+// keeps everything that runs beside the user interface supplied with work.
+//
+//   events -> Viewport, keys, panels -> Actions -> apply -> Session, Annotator, Touch -> View -> Window
+//
+// Threads: this one (main), the servo's while assistance is on, and one that writes a screenshot. The device's queue is
+// shared by turns of a few milliseconds: brush, relevance, probe, sketch, tiles, user interface. The interface is drawn
+// when something changed, at most 60 times a second; with nothing to do the loop sleeps.
+
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "ui/document.h"
+#include "ui/panels.h"
+#include "ui/viewport.h"
+
+namespace shvr::ui {
+
+struct AppOptions {
+    std::string input;  ///< session, project or volume; empty: nothing is open
+    std::vector<std::string> settings;
+    std::string device;
+    gpu::Budget budget;
+    int threads = 0;
+    bool validation = false;
+    bool allow_force = false;  ///< on the hand, by a haptic device whose profile is verified
+    glm::uvec2 window_size{1280, 800};
+};
+
+/// Measured over a run, for people who profile and for tests.
+struct AppReport {
+    std::string gpu_name;
+    uint64_t frames = 0;               ///< of the user interface
+    std::vector<double> frame_ms;      ///< one interface frame: from its first call to the device being done with it
+    std::vector<double> interval_ms;   ///< between two frames while something was moving
+    std::vector<double> input_ms;      ///< from a key or button to the frame that shows it being done
+    std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it
+    uint64_t view_submissions = 0;
+    bool view_complete = false;
+    ServoState servo;
+    glm::dvec3 probe_voxel{0.0};
+    std::array<int64_t, 256> voxels_by_group{};
+    size_t undoable = 0, redoable = 0;
+    std::string status;
+    std::vector<std::string> messages;  ///< every status so far
+    std::vector<std::string> validation_messages;
+};
+
+class App {
+public:
+    explicit App(const AppOptions& options);
+    ~App();
+
+    /// Until the window is closed.
+    void run();
+    AppReport report();
+
+private:
+    void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    std::unique_ptr<HapticDevice> find_device(std::string& said) const;
+    void handle_events(double timeout_s);
+    void work();
+    void draw_ui();
+    void draw_probe() const;
+    Model model();
+    bool something_moves() const;
+    double time_to_wait() const;
+    void apply_all();
+    void say(const std::string& status);
+    void look_again() { look_is_stale_ = true; }
+    void note_presented();
+    TouchSettings touch_settings() const;
+    void extend_stroke();
+    void save();
+    bool closes();
+    void finish_screenshot();
+    std::filesystem::path free_screenshot_path() const;
+
+    // One for each action.
+    void apply(const Orbit& action);
+    void apply(const Roll& action);
+    void apply(const Move& action);
+    void apply(const Zoom& action);
+    void apply(const LookFrom& action);
+    void apply(const MoveCut& action);
+    void apply(const MoveClip& action);
+    void apply(const ResetCuts& action);
+    void apply(const SetTransferFunction& action);
+    void apply(const SetGroup& action);
+    void apply(const SetShaded& action);
+    void apply(const ProbeTo& action);
+    void apply(const ProbeOnto& action);
+    void apply(const PushProbe& action);
+    void apply(const ScaleProbe& action);
+    void apply(const SetBrush& action);
+    void apply(const ChooseGroup& action);
+    void apply(const Paint& action);
+    void apply(const SetHapticThreshold& action);
+    void apply(const Assist& action);
+    void apply(const SetProxyLaw& action);
+    void apply(const Undo& action);
+    void apply(const Redo& action);
+    void apply(const Save& action);
+    void apply(const Screenshot& action);
+    void apply(const Open& action);
+    void apply(const ShowHelp& action);
+    void apply(const Quit& action);
+
+    AppOptions options_;
+    Window window_;
+    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<Document> document_;
+    Viewport viewport_;
+    Actions actions_;
+    bool shows_help_ = false;
+    bool look_is_stale_ = true;
+    bool wants_screenshot_ = false;
+    bool device_paints_ = false;  ///< its paint button is down
+    std::future<std::string> screenshot_;
+    std::string status_;
+
+    // Pace
+    double next_frame_s_ = 0.0;
+    double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
+    double last_keys_s_ = 0.0;
+    uint64_t drawn_revision_ = ~uint64_t(0);
+    bool probe_moved_ = false;
+    std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
+    struct Presented {
+        uint64_t frame = 0;
+        double begun_s = 0.0;
+        std::vector<double> inputs_s;
+    };
+    std::vector<Presented> presented_;
+    double last_begun_s_ = 0.0;
+    bool was_moving_ = false;
+    AppReport report_;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,293 @@
+// What each action does. Every one ends as a sentence in the status bar where a person would want to read it.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/image_file.h"
+#include "ui/app.h"
+
+namespace shvr::ui {
+
+namespace {
+
+const char* name_of(Brush brush)
+{
+    return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
+}
+
+/// What the view turns about: the middle of what is looked at.
+glm::dvec3 pivot_of(const Document& document)
+{
+    return document.camera.target;
+}
+
+/// The height of what is seen at the target's depth.
+double height_of(const Camera& camera)
+{
+    return pixel_size(camera, {1, 1}, glm::distance(camera.eye, camera.target));
+}
+
+}  // namespace
+
+// ---- Looking --------------------------------------------------------------------------------------------------------
+
+void App::apply(const Orbit& action)
+{
+    document_->camera = orbited(document_->camera, pivot_of(*document_), action.right_degrees, action.up_degrees);
+    look_again();
+}
+
+void App::apply(const Roll& action)
+{
+    document_->camera = rolled(document_->camera, action.degrees);
+    look_again();
+}
+
+void App::apply(const Move& action)
+{
+    document_->camera = moved(document_->camera, action.heights * height_of(document_->camera));
+    look_again();
+}
+
+void App::apply(const Zoom& action)
+{
+    document_->camera = zoomed(document_->camera, viewport_.pixels(), action.pixel, action.factor);
+    look_again();
+}
+
+void App::apply(const LookFrom& action)
+{
+    document_->camera = camera_named(document_->session, action.camera, document_->volume());
+    look_again();
+    say("Looking from " + action.camera);
+}
+
+void App::apply(const MoveCut& action)
+{
+    CutBox& cut = document_->session.cut;
+    const glm::dvec3 size(document_->volume().size);
+    cut.upper = glm::min(cut.upper, size);
+    double& plane = action.upper ? cut.upper[action.axis] : cut.lower[action.axis];
+    const double low = action.upper ? cut.lower[action.axis] : 0.0;
+    const double high = action.upper ? size[action.axis] : cut.upper[action.axis];
+    plane = std::clamp(plane + action.share * size[action.axis], low, high);
+    look_again();
+    say(sentence(action.upper ? "Far" : "Near", " cutting plane of ", "xyz"[action.axis], " at voxel ",
+                 std::lround(plane)));
+}
+
+void App::apply(const MoveClip& action)
+{
+    Camera& camera = document_->camera;
+    const double reach = glm::distance(camera.eye, camera.target);
+    const double diagonal = glm::length(glm::dvec3(document_->volume().size) * document_->volume().spacing);
+    if (!action.far) {
+        camera.near_distance = std::max(0.0, camera.near_distance + action.share * reach);
+    } else {
+        const double from = camera.far_distance > 0.0 ? camera.far_distance : reach + 0.5 * diagonal;
+        camera.far_distance = std::max(from + action.share * reach, 0.01 * reach);
+    }
+    look_again();
+    say(sentence(action.far ? "Far" : "Near", " clip plane at ",
+                 action.far ? camera.far_distance : camera.near_distance, " ", document_->volume().unit,
+                 " from the eye"));
+}
+
+void App::apply(const ResetCuts&)
+{
+    document_->session.cut = {};
+    document_->camera.near_distance = document_->camera.far_distance = 0.0;
+    look_again();
+    say("The whole volume is drawn");
+}
+
+// ---- What things look like ------------------------------------------------------------------------------------------
+
+void App::apply(const SetTransferFunction& action)
+{
+    document_->session.transfer_function = action.function;
+    document_->is_saved = false;
+    look_again();
+}
+
+void App::apply(const SetGroup& action)
+{
+    document_->session.groups[action.group] = action.look;
+    document_->is_saved = false;
+    look_again();
+}
+
+void App::apply(const SetShaded& action)
+{
+    document_->session.light.shaded = action.shaded;
+    look_again();
+    say(action.shaded ? "Shading on" : "Shading off");
+}
+
+// ---- The probe ------------------------------------------------------------------------------------------------------
+
+void App::apply(const ProbeTo& action)
+{
+    const CameraAxes axes = axes_of(document_->camera);
+    const double depth = glm::dot(document_->touch.probe() - document_->camera.eye, axes.forward);
+    const double shallowest = 1e-3 * glm::distance(document_->camera.eye, document_->camera.target);
+    document_->touch.wish(unproject(document_->camera, viewport_.pixels(), action.pixel, std::max(depth, shallowest)));
+}
+
+void App::apply(const ProbeOnto& action)
+{
+    const glm::uvec2 pixels = viewport_.pixels();
+    const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+    const auto point = renderer_->pick(document_->session, document_->camera, pixels, pixel);
+    if (!point) return say("Nothing is seen there that is half opaque; the probe stays where it is");
+    document_->touch.place(*point);
+    const glm::dvec3 voxel = document_->probe_voxel();
+    say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
+}
+
+void App::apply(const PushProbe& action)
+{
+    const double voxel =
+        std::min({document_->volume().spacing.x, document_->volume().spacing.y, document_->volume().spacing.z});
+    document_->touch.wish(document_->touch.probe() + axes_of(document_->camera).forward * (action.voxels * voxel));
+}
+
+void App::apply(const ScaleProbe& action)
+{
+    document_->brush.radius_voxels = std::clamp(document_->brush.radius_voxels * action.factor, 0.5, 60.0);
+    say(sentence("Probe radius ", std::round(10.0 * document_->brush.radius_voxels) / 10.0, " voxels"));
+}
+
+void App::apply(const SetBrush& action)
+{
+    const uint8_t group = document_->brush.group;
+    const bool is_other = action.brush.brush != document_->brush.brush;
+    document_->brush = action.brush;
+    document_->brush.group = group;
+    if (is_other) say(sentence("Brush: ", name_of(action.brush.brush)));
+}
+
+void App::apply(const ChooseGroup& action)
+{
+    document_->brush.group = action.group;
+    say(action.group == 0
+            ? std::string("Eraser: painting takes voxels out of their group")
+            : sentence("Group ", int(action.group), ": ", group_of(document_->session, action.group).name));
+}
+
+void App::apply(const SetHapticThreshold& action)
+{
+    document_->haptic_threshold = action.intensity;
+}
+
+void App::apply(const Assist& action)
+{
+    document_->assistance = action.on;
+    say(action.on ? "Assistance on: the probe is drawn to what is at or above the haptic threshold" : "Assistance off");
+}
+
+void App::apply(const SetProxyLaw& action)
+{
+    document_->law = action.law;
+    say(action.law == ProxyLaw::potential ? "Assistance: smooth" : "Assistance: as in the thesis");
+}
+
+// ---- The work -------------------------------------------------------------------------------------------------------
+
+void App::apply(const Paint& action)
+{
+    Annotator& annotator = document_->annotator;
+    if (action.on && !annotator.stroke_is_running()) {
+        check_radius(document_->brush.radius_voxels, document_->volume().spacing, document_->volume().size);
+        annotator.begin_stroke(document_->brush);
+        annotator.extend_stroke(document_->probe_voxel());
+    } else if (!action.on && annotator.stroke_is_running()) {
+        extend_stroke();
+        annotator.end_stroke();
+    }
+}
+
+void App::extend_stroke()
+{
+    if (document_->annotator.stroke_is_open()) document_->annotator.extend_stroke(document_->probe_voxel());
+}
+
+void App::apply(const Undo&)
+{
+    const Command* command = document_->annotator.undo();
+    if (!command) return say("Nothing is left to undo");
+    document_->view.changed(document_->annotator.reach_of(*command));
+    document_->is_saved = document_->paint_is_saved = false;
+    say("Undone: " + command->label);
+}
+
+void App::apply(const Redo&)
+{
+    const Command* command = document_->annotator.redo();
+    if (!command) return say("Nothing is left to redo");
+    document_->view.changed(document_->annotator.reach_of(*command));
+    document_->is_saved = document_->paint_is_saved = false;
+    say("Redone: " + command->label);
+}
+
+void App::apply(const Save&)
+{
+    save();
+}
+
+std::filesystem::path App::free_screenshot_path() const
+{
+    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = sentence(stem.string(), "-view-", number, ".png");
+        if (!std::filesystem::exists(path)) return path;
+    }
+}
+
+void App::apply(const Screenshot&)
+{
+    wants_screenshot_ = true;
+    say("The screenshot is taken as soon as the picture is sharp");
+}
+
+void App::finish_screenshot()
+{
+    if (!document_->view.complete() || screenshot_.valid()) return;
+    wants_screenshot_ = false;
+    // Reading back takes a millisecond or two; packing the file takes long, and goes to another thread.
+    screenshot_ = std::async(std::launch::async, [image = document_->view.read_back(), path = free_screenshot_path()] {
+        try {
+            write_png(path, image);
+            return "Screenshot: " + path.string();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+    });
+}
+
+void App::apply(const Open& action)
+{
+    if (document_ && !document_->paint_is_saved) save();
+    open(action.path, {});
+}
+
+void App::save()
+{
+    Annotator& annotator = document_->annotator;
+    if (annotator.stroke_is_open()) annotator.end_stroke();
+    while (annotator.stroke_is_running()) annotator.advance();  // what is on its way belongs to it
+    document_->save();
+    say("Saved " + document_->session.mask_path.string() + " and " + document_->session_path.string());
+}
+
+void App::apply(const ShowHelp& action)
+{
+    shows_help_ = action.on;
+}
+
+void App::apply(const Quit&)
+{
+    window_.close();
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,111 @@
+#include "ui/document.h"
+
+#include <algorithm>
+
+#include "engine/base/atomic_file.h"
+
+namespace shvr::ui {
+
+namespace {
+
+const char* const WINDOW_CAMERA = "window";
+
+/// A session file is saved where it was; a bare volume gets one beside it.
+std::filesystem::path session_path_of(const std::filesystem::path& input)
+{
+    if (std::filesystem::is_directory(input)) return input / "shvr" / "session.json";
+    if (input.extension() == ".json") return input;
+    std::filesystem::path beside = input;
+    return beside.replace_extension(".session.json");
+}
+
+/// The middle of what the transfer function shows, weighted by its opacity.
+double middle_of(const TransferFunction& function, const VolumeStatistics& statistics)
+{
+    double weight = 0.0, sum = 0.0;
+    for (const ControlPoint& point : function.points()) {
+        weight += point.opacity;
+        sum += point.opacity * point.intensity;
+    }
+    const double middle = weight > 0.0 ? sum / weight : 0.5 * (statistics.minimum + statistics.maximum);
+    return std::clamp(0.5 * (middle + function.lower()), statistics.minimum, statistics.maximum);
+}
+
+void load(Renderer& renderer, const VolumeSource& source, const OpenedSession& opened)
+{
+    renderer.load(source, opened.statistics, opened.session.render.sampling);
+}
+
+}  // namespace
+
+Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
+                   std::unique_ptr<HapticDevice> device, const std::string& device_name)
+    : session_path(session_path_of(input)),
+      session(opened.session),
+      source((load(renderer, *opened.source, opened), std::move(opened.source))),
+      statistics(opened.statistics),
+      camera(camera_named(session, session.camera_name, source->info())),
+      annotator(renderer),
+      view(renderer),
+      touch(renderer, std::move(device), device_name)
+{
+    if (session.mask_path.empty()) {
+        session.mask_path = session_path;
+        session.mask_path.replace_extension(".mask");
+    }
+    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
+    const ProbeSettings& probe = session.probe;
+    const double threshold = probe.paint_threshold.value_or(middle_of(session.transfer_function, statistics));
+    brush = {.brush = probe.brush,
+             .region = probe.region,
+             .group = probe.group,
+             .threshold = threshold,
+             .radius_voxels = probe.radius_voxels,
+             .connectivity = probe.connectivity,
+             .path = {}};
+    haptic_threshold = probe.haptic_threshold.value_or(threshold);
+    touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
+}
+
+ProbeLook Document::probe_look() const
+{
+    const glm::dvec3 eraser(0.5);
+    const glm::dvec3 color = brush.group == 0 ? eraser : group_of(session, brush.group).color;
+    return {.center = touch.probe(), .radius = probe_radius(), .color = color};
+}
+
+Session Document::saved_session() const
+{
+    Session saved = session;
+    saved.cameras[WINDOW_CAMERA] = camera;
+    saved.camera_name = WINDOW_CAMERA;
+    saved.probe = {.voxel = probe_voxel(),
+                   .radius_voxels = brush.radius_voxels,
+                   .group = brush.group,
+                   .brush = brush.brush,
+                   .region = brush.region,
+                   .connectivity = brush.connectivity,
+                   .paint_threshold = brush.threshold,
+                   .haptic_threshold = haptic_threshold};
+    return saved;
+}
+
+void Document::save()
+{
+    const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
+    annotator.save(session.mask_path);
+    const std::string text = to_text(saved_session(), folder);
+    write_file_atomically(session_path, std::as_bytes(std::span(text)));
+    is_saved = paint_is_saved = true;
+}
+
+std::vector<std::string> Document::cameras() const
+{
+    std::vector<std::string> names;
+    for (const auto& [name, camera_spec] : session.cameras) names.push_back(name);
+    for (const std::string& side : camera_sides())
+        if (std::ranges::find(names, side) == names.end()) names.push_back(side);
+    return names;
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,46 @@
+#pragma once
+// What is open in the application: session, volume, mask and history, and how they are looked at and touched. Main thread.
+
+#include <filesystem>
+#include <memory>
+
+#include "engine/scene/annotator.h"
+#include "engine/scene/session.h"
+#include "engine/scene/view.h"
+#include "ui/touch.h"
+
+namespace shvr::ui {
+
+struct Document {
+    std::filesystem::path session_path;  ///< where the session is saved
+    Session session;
+    std::unique_ptr<VolumeSource> source;
+    VolumeStatistics statistics;
+    Camera camera;
+    PaintOp brush;  ///< but for its path
+    double haptic_threshold = 0.0;
+    bool assistance = false;
+    ProxyLaw law = ProxyLaw::potential;
+    Annotator annotator;
+    View view;
+    Touch touch;
+    bool is_saved = true;  ///< the session and the paint
+    bool paint_is_saved = true;
+
+    /// Loads the volume and, where there is one, the mask onto the device.
+    /// `device`: what moves the probe; null for the mouse.
+    Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
+             std::unique_ptr<HapticDevice> device, const std::string& device_name);
+
+    const VolumeInfo& volume() const { return source->info(); }
+    glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
+    double probe_radius() const { return brush.radius_voxels * volume().spacing.x; }
+    ProbeLook probe_look() const;
+    /// The session as it would be saved: with the camera, the probe and the thresholds of the moment.
+    Session saved_session() const;
+    /// Writes the mask, then the session; each file appears whole or not at all.
+    void save();
+    std::vector<std::string> cameras() const;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,260 @@
+#include "ui/keys.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <GLFW/glfw3.h>
+
+namespace shvr::ui {
+
+namespace {
+
+// What a tap does.
+constexpr double TURN_DEGREES = 3.0;
+constexpr double MOVE_HEIGHTS = 0.05;
+constexpr double CUT_SHARE = 0.01;
+constexpr double CLIP_SHARE = 0.01;
+constexpr double PROBE_FACTOR = 1.1;
+
+constexpr double SLOWED = 0.2;
+constexpr double TAPS_PER_SECOND = 5.0;  ///< of a key that is held
+constexpr double LONGEST_FRAME_S = 0.5;  ///< a frame that hung must not throw the view away
+constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and its like
+
+// ---- What keys do. The ones with parameters stand several times in the table.
+
+Action undo(const Model&, double)
+{
+    return Undo{};
+}
+
+Action redo(const Model&, double)
+{
+    return Redo{};
+}
+
+template <uint8_t GROUP>
+Action choose(const Model&, double)
+{
+    return ChooseGroup{GROUP};
+}
+
+Action next_brush(const Model& model, double)
+{
+    PaintOp brush = model.brush;
+    brush.path.clear();
+    switch (model.brush.brush) {
+        case Brush::fill: brush.brush = Brush::flood; break;
+        case Brush::flood: brush.brush = Brush::speckle; break;
+        case Brush::speckle: brush.brush = Brush::fill; break;
+    }
+    return SetBrush{brush};
+}
+
+template <int DIRECTION>
+Action scale_probe(const Model&, double amount)
+{
+    return ScaleProbe{std::pow(PROBE_FACTOR, DIRECTION * amount)};
+}
+
+Action next_law(const Model& model, double)
+{
+    return SetProxyLaw{model.law == ProxyLaw::potential ? ProxyLaw::mean : ProxyLaw::potential};
+}
+
+template <int RIGHT, int UP, int FORWARD>
+Action move(const Model&, double amount)
+{
+    return Move{MOVE_HEIGHTS * amount * glm::dvec3(RIGHT, UP, FORWARD)};
+}
+
+template <int RIGHT, int UP>
+Action orbit(const Model&, double amount)
+{
+    return Orbit{TURN_DEGREES * RIGHT * amount, TURN_DEGREES * UP * amount};
+}
+
+template <int DIRECTION>
+Action roll(const Model&, double amount)
+{
+    return Roll{TURN_DEGREES * DIRECTION * amount};
+}
+
+enum class Plane { lower, upper };
+
+template <int AXIS, Plane PLANE, int DIRECTION>
+Action move_cut(const Model&, double amount)
+{
+    return MoveCut{AXIS, PLANE == Plane::upper, CUT_SHARE * DIRECTION * amount};
+}
+
+template <bool FAR, int DIRECTION>
+Action move_clip(const Model&, double amount)
+{
+    return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
+}
+
+// ---- The table
+
+using Act = Action (*)(const Model&, double);
+
+/// A key that does one thing once.
+constexpr KeyBinding tap(int key, int mods, const char* group, const char* name, Act action)
+{
+    return {.key = key, .mods = mods, .group = group, .name = name, .action = action};
+}
+
+/// A key that goes on while it is held, and slowly with Shift.
+constexpr KeyBinding hold(int key, int mods, const char* group, const char* name, Act action)
+{
+    return {
+        .key = key, .mods = mods, .is_slowed = true, .repeats = true, .group = group, .name = name, .action = action};
+}
+
+constexpr int CTRL = GLFW_MOD_CONTROL, ALT = GLFW_MOD_ALT, SHIFT = GLFW_MOD_SHIFT;
+constexpr const char *WORK = "Work", *PAINTING = "Painting", *PROBE = "Probe", *TURN = "Turn the view",
+                     *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes";
+
+constexpr KeyBinding BINDINGS[] = {
+    tap(GLFW_KEY_Z, CTRL, WORK, "Undo", undo),
+    tap(GLFW_KEY_Z, CTRL | SHIFT, WORK, "Redo", redo),
+    tap(GLFW_KEY_S, CTRL, WORK, "Save", [](const Model&, double) -> Action { return Save{}; }),
+    tap(GLFW_KEY_P, 0, WORK, "Screenshot", [](const Model&, double) -> Action { return Screenshot{}; }),
+    tap(GLFW_KEY_F12, 0, WORK, "Keys and mouse",
+        [](const Model& m, double) -> Action { return ShowHelp{!m.shows_help}; }),
+    tap(GLFW_KEY_Q, CTRL, WORK, "Quit", [](const Model&, double) -> Action { return Quit{}; }),
+
+    // The application begins and ends the stroke.
+    tap(GLFW_KEY_F, 0, PAINTING, "Paint while held", nullptr),
+    tap(GLFW_KEY_0, 0, PAINTING, "Eraser", choose<0>),
+    tap(GLFW_KEY_1, 0, PAINTING, "Group 1", choose<1>),
+    tap(GLFW_KEY_2, 0, PAINTING, "Group 2", choose<2>),
+    tap(GLFW_KEY_3, 0, PAINTING, "Group 3", choose<3>),
+    tap(GLFW_KEY_4, 0, PAINTING, "Group 4", choose<4>),
+    tap(GLFW_KEY_5, 0, PAINTING, "Group 5", choose<5>),
+    tap(GLFW_KEY_6, 0, PAINTING, "Group 6", choose<6>),
+    tap(GLFW_KEY_7, 0, PAINTING, "Group 7", choose<7>),
+    tap(GLFW_KEY_8, 0, PAINTING, "Group 8", choose<8>),
+    tap(GLFW_KEY_9, 0, PAINTING, "Group 9", choose<9>),
+    tap(GLFW_KEY_END, 0, PAINTING, "Next brush", next_brush),
+    hold(GLFW_KEY_RIGHT_BRACKET, 0, PAINTING, "Larger brush", scale_probe<1>),
+    hold(GLFW_KEY_LEFT_BRACKET, 0, PAINTING, "Smaller brush", scale_probe<-1>),
+
+    tap(GLFW_KEY_SPACE, 0, PROBE, "Guide the probe",
+        [](const Model& m, double) -> Action { return Assist{!m.assistance}; }),
+    tap(GLFW_KEY_HOME, 0, PROBE, "Next way of guiding", next_law),
+    hold(GLFW_KEY_PAGE_UP, 0, PROBE, "Larger probe", scale_probe<1>),
+    hold(GLFW_KEY_PAGE_DOWN, 0, PROBE, "Smaller probe", scale_probe<-1>),
+
+    hold(GLFW_KEY_W, ALT, TURN, "Turn up", orbit<0, 1>),
+    hold(GLFW_KEY_S, ALT, TURN, "Turn down", orbit<0, -1>),
+    hold(GLFW_KEY_A, ALT, TURN, "Turn left", orbit<-1, 0>),
+    hold(GLFW_KEY_D, ALT, TURN, "Turn right", orbit<1, 0>),
+    hold(GLFW_KEY_Q, ALT, TURN, "Roll left", roll<-1>),
+    hold(GLFW_KEY_E, ALT, TURN, "Roll right", roll<1>),
+
+    hold(GLFW_KEY_W, 0, MOVE, "Move forward", move<0, 0, 1>),
+    hold(GLFW_KEY_S, 0, MOVE, "Move back", move<0, 0, -1>),
+    hold(GLFW_KEY_A, 0, MOVE, "Move left", move<-1, 0, 0>),
+    hold(GLFW_KEY_D, 0, MOVE, "Move right", move<1, 0, 0>),
+    hold(GLFW_KEY_Q, 0, MOVE, "Move down", move<0, -1, 0>),
+    hold(GLFW_KEY_E, 0, MOVE, "Move up", move<0, 1, 0>),
+
+    hold(GLFW_KEY_Y, 0, CUT, "Near x cut inwards", move_cut<0, Plane::lower, 1>),
+    hold(GLFW_KEY_Y, CTRL, CUT, "Near x cut outwards", move_cut<0, Plane::lower, -1>),
+    hold(GLFW_KEY_U, 0, CUT, "Near y cut inwards", move_cut<1, Plane::lower, 1>),
+    hold(GLFW_KEY_U, CTRL, CUT, "Near y cut outwards", move_cut<1, Plane::lower, -1>),
+    hold(GLFW_KEY_I, 0, CUT, "Near z cut inwards", move_cut<2, Plane::lower, 1>),
+    hold(GLFW_KEY_I, CTRL, CUT, "Near z cut outwards", move_cut<2, Plane::lower, -1>),
+    hold(GLFW_KEY_H, 0, CUT, "Far x cut inwards", move_cut<0, Plane::upper, -1>),
+    hold(GLFW_KEY_H, CTRL, CUT, "Far x cut outwards", move_cut<0, Plane::upper, 1>),
+    hold(GLFW_KEY_J, 0, CUT, "Far y cut inwards", move_cut<1, Plane::upper, -1>),
+    hold(GLFW_KEY_J, CTRL, CUT, "Far y cut outwards", move_cut<1, Plane::upper, 1>),
+    hold(GLFW_KEY_K, 0, CUT, "Far z cut inwards", move_cut<2, Plane::upper, -1>),
+    hold(GLFW_KEY_K, CTRL, CUT, "Far z cut outwards", move_cut<2, Plane::upper, 1>),
+
+    hold(GLFW_KEY_C, 0, CLIP, "Near clip plane away", move_clip<false, 1>),
+    hold(GLFW_KEY_C, CTRL, CLIP, "Near clip plane closer", move_clip<false, -1>),
+    hold(GLFW_KEY_V, 0, CLIP, "Far clip plane closer", move_clip<true, -1>),
+    hold(GLFW_KEY_V, CTRL, CLIP, "Far clip plane away", move_clip<true, 1>),
+};
+
+/// The modifiers are exactly the binding's; where Shift slows, it may be there or not.
+bool mods_match(const KeyBinding& binding, int mods)
+{
+    const int counted = binding.is_slowed ? MODIFIERS & ~GLFW_MOD_SHIFT : MODIFIERS;
+    return (mods & counted) == binding.mods;
+}
+
+double rate(const KeyBinding& binding, int mods)
+{
+    return binding.is_slowed && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
+}
+
+/// What the keyboard's own repetition may do again: a step of the history at a time.
+bool steps_through_history(const KeyBinding& binding)
+{
+    return binding.action == undo || binding.action == redo;
+}
+
+int mods_held(const Window& window)
+{
+    const auto either = [&](int left, int right, int mod) {
+        return window.is_down(left) || window.is_down(right) ? mod : 0;
+    };
+    return either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_MOD_CONTROL) |
+           either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT, GLFW_MOD_ALT) |
+           either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT, GLFW_MOD_SHIFT);
+}
+
+std::string name_of_key(int key)
+{
+    switch (key) {
+        case GLFW_KEY_SPACE: return "Space";
+        case GLFW_KEY_HOME: return "Home";
+        case GLFW_KEY_END: return "End";
+        case GLFW_KEY_PAGE_UP: return "Page Up";
+        case GLFW_KEY_PAGE_DOWN: return "Page Down";
+        default: break;
+    }
+    if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return "F" + std::to_string(key - GLFW_KEY_F1 + 1);
+    return std::string(1, char(key));  // GLFW's codes of printable keys are ASCII
+}
+
+}  // namespace
+
+std::span<const KeyBinding> key_bindings()
+{
+    return BINDINGS;
+}
+
+std::string name_of(const KeyBinding& binding)
+{
+    std::string name;
+    if (binding.mods & GLFW_MOD_CONTROL) name += "Ctrl + ";
+    if (binding.mods & GLFW_MOD_ALT) name += "Alt + ";
+    if (binding.mods & GLFW_MOD_SHIFT) name += "Shift + ";
+    return name + name_of_key(binding.key);
+}
+
+void key_pressed(const KeyEvent& event, const Model& model, Actions& actions)
+{
+    if (!event.pressed) return;
+    for (const KeyBinding& binding : key_bindings()) {
+        if (!binding.action || binding.key != event.key || !mods_match(binding, event.mods)) continue;
+        if (event.repeated && !steps_through_history(binding)) continue;
+        actions.push_back(binding.action(model, rate(binding, event.mods)));
+    }
+}
+
+void keys_held(const Window& window, double seconds, const Model& model, Actions& actions)
+{
+    const int mods = mods_held(window);
+    const double taps = TAPS_PER_SECOND * std::clamp(seconds, 0.0, LONGEST_FRAME_S);
+    for (const KeyBinding& binding : key_bindings()) {
+        if (!binding.repeats || !window.is_down(binding.key) || !mods_match(binding, mods)) continue;
+        actions.push_back(binding.action(model, taps * rate(binding, mods)));
+    }
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,48 @@
+#pragma once
+// What panels may look at: the state of the application as it is in this frame, to read only. Plain references and
+// numbers; the application fills it once a frame.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "engine/scene/annotator.h"
+#include "engine/scene/session.h"
+#include "engine/scene/view.h"
+#include "haptics/servo.h"
+
+namespace shvr::ui {
+
+struct Model {
+    const Session& session;
+    const VolumeInfo& volume;
+    const VolumeStatistics& statistics;
+    std::vector<std::string> cameras;  ///< names that LookFrom takes
+
+    // The probe
+    const PaintOp& brush;  ///< the group it paints, its radius, its threshold
+    double haptic_threshold = 0.0;
+    glm::dvec3 probe_voxel{0.0};
+    bool is_painting = false;
+    bool assistance = false;
+    ProxyLaw law = ProxyLaw::potential;
+    const ServoState* servo = nullptr;  ///< null while no servo runs
+    std::string device_name;            ///< of what moves the probe: "mouse", ...
+
+    // The work
+    std::array<int64_t, 256> voxels_by_group{};
+    size_t undoable = 0, redoable = 0;
+    bool is_saved = true;
+    std::string status;  ///< the last action, in words
+    bool shows_help = false;
+
+    // The device
+    std::string gpu_name;
+    const std::vector<View::PassTime>& pass_times;
+    bool view_is_complete = true;
+    double relevance_age_ms = 0.0;  ///< of what the servo uses; 0 without assistance
+    double ui_frame_ms = 0.0;       ///< median of the last frames
+    uint64_t device_bytes = 0, device_budget = 0;
+};
+
+}  // namespace shvr::ui

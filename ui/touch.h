@@ -1,0 +1,83 @@
+#pragma once
+// Between the hand and the volume: runs the servo, tells it which voxels are relevant, and where the probe is.
+//
+//   mouse -> wish -> servo's device -> probe -> relevance pass (device) -> bits -> Latest -> servo -> force -> probe
+//
+// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view, right,
+// up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force; then the
+// servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is computed. Main
+// thread; the servo has its own, and shares only latest values with it.
+
+#include <memory>
+#include <string>
+
+#include "engine/scene/camera_motion.h"
+#include "engine/scene/relevance.h"
+#include "haptics/servo.h"
+#include "haptics/simulated_device.h"
+
+namespace shvr::ui {
+
+struct TouchSettings {
+    bool assistance = false;
+    double threshold = 0.0;     ///< intensity
+    double probe_radius = 1.0;  ///< physical units
+    ProxyLaw law = ProxyLaw::potential;
+    CameraAxes axes;  ///< of the view, and what it looks at: where a device's workspace lies
+    glm::dvec3 target{0.0};
+    double view_height = 1.0;  ///< physical units, at the target
+};
+
+class Touch {
+public:
+    /// `device`: null for the mouse.
+    Touch(Renderer& renderer, std::unique_ptr<HapticDevice> device, const std::string& device_name);
+
+    /// Puts the probe somewhere at once (physical units of the volume).
+    void place(const glm::dvec3& point);
+    /// Where the hand wants it.
+    void wish(const glm::dvec3& point);
+    /// Takes what came from the servo and the device, and sends what they need. Returns whether the probe has moved.
+    bool advance(const TouchSettings& settings);
+
+    glm::dvec3 probe() const { return probe_; }
+    /// Null while no servo runs.
+    const ServoState* servo() const { return servo_ ? &state_ : nullptr; }
+    const std::string& device_name() const { return device_name_; }
+    bool is_mouse() const { return is_mouse_; }
+    /// Of the device, as the servo read them last; 0 for the mouse.
+    uint32_t buttons() const { return is_mouse_ ? 0 : state_.device.buttons; }
+    /// From asking the device which voxels are relevant to the servo being told, milliseconds; newest last.
+    const std::vector<double>& mirror_ms() const { return mirror_ms_; }
+    double relevance_age_ms() const;
+    double relevance_gpu_ms() const { return relevance_gpu_ms_; }
+    /// The last state of the servo that ran, for reports.
+    const ServoState& last_state() const { return state_; }
+
+private:
+    void start_mouse();
+    void send_wish(bool jump);
+    void send_settings(const TouchSettings& settings);
+    void ask(const TouchSettings& settings);
+    void mirror();
+    Workspace mouse_workspace() const;
+    static Workspace device_workspace(const TouchSettings& settings);
+
+    Renderer& renderer_;
+    Relevance relevance_;
+    const bool is_mouse_;
+    const std::string device_name_;
+    std::unique_ptr<Servo> servo_;
+    SimulatedDevice* mouse_ = nullptr;  ///< the servo's, while it runs
+    bool was_assisting_ = false;
+    uint32_t resets_ = 0;
+    uint32_t jumps_ = 0;
+    glm::dvec3 wish_{0.0}, probe_{0.0};
+    ServoState state_;
+    uint64_t asked_ns_ = 0, published_ns_ = 0;
+    uint64_t patches_ = 0;
+    double relevance_gpu_ms_ = 0.0;
+    std::vector<double> mirror_ms_;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,42 @@
+#pragma once
+// Mouse and keys in the graphics window, turned into actions. Knows where the graphics window lies, and which gesture is
+// under way; changes nothing else. Main thread.
+//
+//   no button          the probe follows in its plane          wheel          zoom
+//   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
+//   middle drag        move (also Shift + left drag)           double click   put the probe onto what is seen there
+//   right held, or F   paint
+
+#include <optional>
+
+#include "ui/keys.h"
+#include "ui/panels.h"
+
+namespace shvr::ui {
+
+class Viewport {
+public:
+    void set_layout(const Layout& layout) { layout_ = layout; }
+    const Layout& layout() const { return layout_; }
+    glm::uvec2 pixels() const { return layout_.end - layout_.begin; }
+
+    /// `ui_has_mouse`, `ui_has_keys`: Dear ImGui wants them.
+    void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, bool ui_has_keys, Actions& actions);
+
+private:
+    enum class Gesture { none, turn, move, paint };
+    void press(const ButtonEvent& event, double time_s, Actions& actions);
+    void release(const ButtonEvent& event, Actions& actions);
+    void follow(const MoveEvent& event, bool ui_has_mouse, Actions& actions);
+    bool contains(const glm::dvec2& at) const;
+    glm::dvec2 local(const glm::dvec2& at) const { return at - glm::dvec2(layout_.begin); }
+
+    Layout layout_;
+    Gesture gesture_ = Gesture::none;
+    int button_ = 0;
+    glm::dvec2 last_{0.0};
+    std::optional<double> last_click_s_;
+    glm::dvec2 last_click_{0.0};
+};
+
+}  // namespace shvr::ui
