@@ -54,16 +54,11 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
     set_style(window_.content_scale());
     window_.attach(renderer_->device(), renderer_->memory());
+    attached_.reset(&window_);
     if (!options.input.empty())
         open(options.input, options.settings);
     else
         say("Drop a volume, a session or a project folder onto the window");
-}
-
-App::~App()
-{
-    document_.reset();
-    window_.detach();
 }
 
 void App::say(const std::string& status)

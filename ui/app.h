@@ -51,7 +51,6 @@ struct AppReport {
 class App {
 public:
     explicit App(const AppOptions& options);
-    ~App();
 
     /// Until the window is closed.
     void run();
@@ -111,6 +110,10 @@ private:
     AppOptions options_;
     Window window_;
     std::unique_ptr<Renderer> renderer_;
+    struct Detach {
+        void operator()(Window* window) const { window->detach(); }
+    };
+    std::unique_ptr<Window, Detach> attached_;  ///< the window lets go of the device before that goes
     std::unique_ptr<Document> document_;
     Viewport viewport_;
     Actions actions_;

@@ -144,7 +144,7 @@ TEST_CASE_FIXTURE(OnDevice,
     Relevance relevance(renderer());
     for (const HandModel& hand : {MODELLED_HAND, MOUSE_HAND}) {
         const double alone_mm = follow(relevance, hand, false, 83), guided_mm = follow(relevance, hand, true, 83);
-        MESSAGE((hand.mass_kg > 0.0 ? "hand" : "mouse"), ": RMS error ", alone_mm, " mm alone, ", guided_mm,
+        MESSAGE(std::string(hand.mass_kg > 0.0 ? "hand" : "mouse"), ": RMS error ", alone_mm, " mm alone, ", guided_mm,
                 " mm guided");
         CHECK(alone_mm > 1.0);
         CHECK(guided_mm < 0.4 * alone_mm);
