@@ -137,11 +137,12 @@ TEST_CASE("what is encoded and sent back is what was meant, for fields at odd bi
                    {.quantity = HidQuantity::force_x, .bit = 5, .bits = 13, .is_signed = true, .scale = 0.01},
                    {.quantity = HidQuantity::force_y, .bit = 18, .bits = 32, .is_signed = true, .scale = -1e-6},
                    {.quantity = HidQuantity::force_z, .bit = 51, .bits = 12, .scale = 0.01, .offset = -20.0}}};
+    HidReport as_input = profile.output.value();
+    as_input.fields[1].quantity = HidQuantity::position_x;
+    as_input.fields[2].quantity = HidQuantity::position_y;
+    as_input.fields[3].quantity = HidQuantity::position_z;
     HidProfile mirror = profile;
-    mirror.input = profile.output;
-    mirror.input->fields[1].quantity = HidQuantity::position_x;
-    mirror.input->fields[2].quantity = HidQuantity::position_y;
-    mirror.input->fields[3].quantity = HidQuantity::position_z;
+    mirror.input = as_input;
     for (const glm::dvec3& force : {glm::dvec3(0.0), glm::dvec3(1.25, -3.5, 7.0), glm::dvec3(-40.0, 19.0, -19.99)}) {
         const HidBytes report = encode(profile, force, 0, true);
         CHECK(report.bytes[0] == 0);
