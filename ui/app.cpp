@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include <imgui/imgui.h>
@@ -106,13 +107,7 @@ void App::run()
         work();
         note_presented();
         const double now = window_.now_s();
-        if (now < next_frame_s_) continue;
-        const bool only_sharpens = !something_moves() || (now > ui_until_s_ && !document_->assistance && !probe_moved_);
-        if (only_sharpens && now < last_begun_s_ + SHARPEN_S && unanswered_s_.empty()) continue;
-        if (!something_moves() && now > ui_until_s_ && unanswered_s_.empty()) {
-            was_moving_ = false;
-            continue;
-        }
+        if (now < next_frame_s_ || now < next_reason_to_draw_s()) continue;
         draw_ui();
         next_frame_s_ = std::max(next_frame_s_ + FRAME_S, now);
     }
@@ -136,19 +131,27 @@ bool App::closes()
 
 bool App::something_moves() const
 {
+    if (window_.now_s() < ui_until_s_ || !unanswered_s_.empty()) return true;
     if (!document_) return false;
-    return document_->view.revision() != drawn_revision_ || look_is_stale_ || probe_moved_ || document_->assistance;
+    constexpr double STIR_VOXELS = 0.05;
+    return look_is_stale_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
+}
+
+/// When the interface should be drawn next, as far as is known: at once, a little later, or not at all.
+double App::next_reason_to_draw_s() const
+{
+    if (something_moves()) return 0.0;
+    const bool sharpens_or_tells =
+        document_ && (document_->view.revision() != drawn_revision_ || document_->assistance);
+    return sharpens_or_tells ? last_begun_s_ + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
 
 double App::time_to_wait() const
 {
     const bool has_work = document_ && (!document_->view.complete() || document_->annotator.stroke_is_running() ||
-                                        document_->assistance || look_is_stale_);
-    const double now = window_.now_s();
-    const bool draws = now < ui_until_s_ || something_moves() || !unanswered_s_.empty();
-    const double until_frame = std::max(next_frame_s_ - now, 0.0);
-    if (has_work) return draws ? std::min(WORK_S, until_frame) : WORK_S;
-    return draws || screenshot_.valid() ? until_frame : IDLE_S;
+                                        document_->assistance || look_is_stale_ || screenshot_.valid());
+    const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
+    return std::clamp(until_frame, 0.0, has_work ? WORK_S : IDLE_S);
 }
 
 void App::handle_events(double timeout_s)
@@ -201,7 +204,7 @@ void App::work()
 {
     if (!document_) return;
     Document& document = *document_;
-    probe_moved_ |= document.touch.advance(touch_settings());
+    document.touch.advance(touch_settings());
     if (const bool paints = document.touch.buttons() & 1; paints != device_paints_) {
         device_paints_ = paints;
         apply(Paint{paints});
@@ -229,6 +232,7 @@ void App::work()
 void App::draw_ui()
 {
     const double begun = window_.now_s();
+    const bool moves = something_moves();
     // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
     // for below; and the view learns what its work costs without the interface's share.
     if (document_ && renderer_->device().traits().is_cpu) document_->view.wait();
@@ -240,7 +244,7 @@ void App::draw_ui()
         draw_probe();
         layers = document_->view.layers();
         drawn_revision_ = document_->view.revision();
-        probe_moved_ = false;
+        drawn_probe_voxel_ = document_->probe_voxel();
     } else {
         ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
     }
@@ -250,7 +254,6 @@ void App::draw_ui()
     }
     if (!window_.present(layers, viewport_.layout().begin)) return;
     if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
-    const bool moves = begun < ui_until_s_ || (document_ && document_->assistance);
     if (was_moving_ && moves) report_.interval_ms.push_back((begun - last_begun_s_) * 1e3);
     was_moving_ = moves;
     last_begun_s_ = begun;

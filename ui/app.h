@@ -65,6 +65,7 @@ private:
     void draw_probe() const;
     Model model();
     bool something_moves() const;
+    double next_reason_to_draw_s() const;
     double time_to_wait() const;
     void apply_all();
     void say(const std::string& status);
@@ -129,7 +130,7 @@ private:
     double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
-    bool probe_moved_ = false;
+    glm::dvec3 drawn_probe_voxel_{0.0};
     std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
     struct Presented {
         uint64_t frame = 0;

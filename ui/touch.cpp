@@ -12,7 +12,7 @@ constexpr double VOXEL_M = 0.00025;
 /// A haptic device's reach from side to side, which is laid over the height of the view.
 constexpr double WORKSPACE_M = 0.12;
 /// Relevance is asked for anew this often, so that it is never older than a few of these.
-constexpr uint64_t ASK_EVERY_NS = 10'000'000;
+constexpr uint64_t ASK_EVERY_NS = 16'000'000;
 
 uint64_t now_ns()
 {
@@ -120,9 +120,8 @@ double Touch::relevance_age_ms() const
     return servo_ && published_ns_ > 0 ? double(now_ns() - published_ns_) * 1e-6 : 0.0;
 }
 
-bool Touch::advance(const TouchSettings& settings)
+void Touch::advance(const TouchSettings& settings)
 {
-    const glm::dvec3 before = probe_;
     if (settings.assistance && !servo_) start_mouse();
     if (is_mouse_ && !settings.assistance && servo_) {
         servo_.reset();
@@ -131,7 +130,7 @@ bool Touch::advance(const TouchSettings& settings)
     }
     resets_ += settings.assistance && !was_assisting_;  // switching it on again is how a person clears a fault
     was_assisting_ = settings.assistance;
-    if (!servo_) return probe_ != before;
+    if (!servo_) return;
     send_settings(settings);
     mirror();
     if (settings.assistance) ask(settings);
@@ -139,7 +138,6 @@ bool Touch::advance(const TouchSettings& settings)
         state_ = servo_->state().value();
         if (state_.ticks > 0) probe_ = state_.step.probe;
     }
-    return probe_ != before;
 }
 
 }  // namespace shvr::ui

@@ -37,8 +37,8 @@ public:
     void place(const glm::dvec3& point);
     /// Where the hand wants it.
     void wish(const glm::dvec3& point);
-    /// Takes what came from the servo and the device, and sends what they need. Returns whether the probe has moved.
-    bool advance(const TouchSettings& settings);
+    /// Takes what came from the servo and the device, and sends what they need.
+    void advance(const TouchSettings& settings);
 
     glm::dvec3 probe() const { return probe_; }
     /// Null while no servo runs.
