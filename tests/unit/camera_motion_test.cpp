@@ -64,7 +64,7 @@ TEST_CASE("what a ray passes through is seen at the ray's pixel")
         Camera camera = camera_looking("front", volume);
         camera = orbited(camera, camera.target, uniform(random, -180, 180), uniform(random, -80, 80));
         const RayPlanes planes = ray_planes(camera, PIXELS, volume);
-        const glm::dvec2 pixel(random() % 640 + 0.5, random() % 480 + 0.5);
+        const glm::dvec2 pixel(double(random() % 640) + 0.5, double(random() % 480) + 0.5);
         const glm::dvec3 near = planes.near_corner + pixel.x * planes.near_dx + pixel.y * planes.near_dy;
         const glm::dvec3 far = planes.far_corner + pixel.x * planes.far_dx + pixel.y * planes.far_dy;
         const double share = uniform(random, 0.0, 1.0);
