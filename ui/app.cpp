@@ -16,8 +16,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr double FRAME_S = 1.0 / 60.0;
-/// While work is on its way the loop looks after it this often: half of what View keeps in flight.
-constexpr double WORK_S = 0.003;
+/// While work is on its way the loop looks after it this often, so that the device never runs dry.
+constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
 /// While nobody does anything, sharper tiles are shown this often: drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
@@ -75,7 +75,10 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     document_.reset();  // its volume gives way before the next takes memory
     std::string device_said;
     std::unique_ptr<HapticDevice> device = find_device(device_said);
-    auto document = std::make_unique<Document>(*renderer_, std::move(opened), path, std::move(device), "haptic device");
+    View::Options view_options;
+    view_options.swap_red_blue = window_.swaps_red_and_blue();
+    auto document = std::make_unique<Document>(*renderer_, std::move(opened), path, std::move(device), "haptic device",
+                                               view_options);
     document_ = std::move(document);
     window_.set_title("SHVR");  // until it can be seen
     look_again();

@@ -39,14 +39,15 @@ void load(Renderer& renderer, const VolumeSource& source, const OpenedSession& o
 }  // namespace
 
 Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                   std::unique_ptr<HapticDevice> device, const std::string& device_name)
+                   std::unique_ptr<HapticDevice> device, const std::string& device_name,
+                   const View::Options& view_options)
     : session_path(session_path_of(input)),
       session(opened.session),
       source((load(renderer, *opened.source, opened), std::move(opened.source))),
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),
-      view(renderer),
+      view(renderer, view_options),
       touch(renderer, std::move(device), device_name)
 {
     if (session.mask_path.empty()) {

@@ -30,7 +30,7 @@ struct Document {
     /// Loads the volume and, where there is one, the mask onto the device.
     /// `device`: what moves the probe; null for the mouse.
     Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-             std::unique_ptr<HapticDevice> device, const std::string& device_name);
+             std::unique_ptr<HapticDevice> device, const std::string& device_name, const View::Options& view_options);
 
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }

@@ -68,9 +68,9 @@ void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags2 after, VkAcc
     vkCmdPipelineBarrier2(commands, &info);
 }
 
-VkOffset3D offset(const glm::ivec2& at, int32_t z)
+VkOffset3D offset(const glm::ivec2& at)
 {
-    return {at.x, at.y, z};
+    return {at.x, at.y, 0};
 }
 
 }  // namespace
@@ -204,14 +204,13 @@ void Window::Vulkan::choose_format()
     const auto formats = enumerate<VkSurfaceFormatKHR>([&](uint32_t* count, VkSurfaceFormatKHR* items) {
         vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical(), surface, count, items);
     });
-    if (formats.empty()) fail("the window's surface has no format");
-    // What is shown is encoded already, so the image must not encode again.
-    format = formats.front();
+    // What is shown is encoded already, so the image must not encode again; and it is copied byte by byte.
     for (const VkSurfaceFormatKHR& candidate : formats)
         if (candidate.format == VK_FORMAT_B8G8R8A8_UNORM || candidate.format == VK_FORMAT_R8G8B8A8_UNORM) {
             format = candidate;
-            break;
+            return;
         }
+    fail("the window's surface has no format of 8 bits a channel; expected B8G8R8A8_UNORM or R8G8B8A8_UNORM");
 }
 
 void Window::Vulkan::create_render_pass()
@@ -387,29 +386,30 @@ void Window::Vulkan::draw_layers(VkCommandBuffer commands, VkImage target, const
                                  const glm::uvec2& origin) const
 {
     const glm::ivec2 window_size(extent.width, extent.height);
+    const VkImageSubresourceLayers color{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     for (size_t first = 0; first < layers.size();) {
         const VkImage source = memory.object(layers[first].image.id).image;
-        std::vector<VkImageBlit> regions;
-        bool is_stretched = false;
+        std::vector<VkImageCopy> regions;
         size_t last = first;
         for (; last < layers.size() && layers[last].image.id == layers[first].image.id; ++last) {
             const View::Layer& layer = layers[last];
-            const glm::ivec2 begin(layer.target.begin + origin), end(layer.target.end + origin);
+            const glm::ivec2 begin(layer.target.begin + origin);
+            const glm::uvec2 size = layer.target.end - layer.target.begin;
             // The window may have shrunk since the layers were drawn.
-            if (glm::any(glm::greaterThan(end, window_size))) continue;
-            is_stretched |= layer.source.end - layer.source.begin != layer.target.end - layer.target.begin;
-            regions.push_back({.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                               .srcOffsets = {offset(layer.source.begin, 0), offset(layer.source.end, 1)},
-                               .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                               .dstOffsets = {offset(begin, 0), offset(end, 1)}});
+            if (glm::any(glm::greaterThan(begin + glm::ivec2(size), window_size))) continue;
+            regions.push_back({.srcSubresource = color,
+                               .srcOffset = offset(layer.source.begin),
+                               .dstSubresource = color,
+                               .dstOffset = offset(begin),
+                               .extent = {size.x, size.y, 1}});
         }
         if (!regions.empty()) {
             if (first > 0)  // over what is there
                 memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            vkCmdBlitImage(commands, source, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                           uint32_t(regions.size()), regions.data(),
-                           is_stretched ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+            // A copy, not a blit: on a software device a blit of the whole view takes longer than all of the interface.
+            vkCmdCopyImage(commands, source, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           uint32_t(regions.size()), regions.data());
         }
         first = last;
     }
@@ -614,6 +614,11 @@ bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& o
 {
     ImGui::Render();
     return vulkan_->present(layers, origin);
+}
+
+bool Window::swaps_red_and_blue() const
+{
+    return vulkan_->format.format == VK_FORMAT_B8G8R8A8_UNORM;
 }
 
 uint64_t Window::frames_presented() const

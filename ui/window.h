@@ -80,6 +80,9 @@ public:
     /// Whether a key is held down.
     bool is_down(int key) const;
 
+    /// Layers must have blue first (View::Options).
+    bool swaps_red_and_blue() const;
+
     void begin_ui();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
     /// where there is nothing to draw on (minimised).

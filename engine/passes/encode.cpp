@@ -6,6 +6,7 @@ Resource encode(FrameGraph& graph, Resource color, Resource display, const gpu::
 {
     Pass pass = graph.compute("encode");
     pass.read("color", color);
+    pass.constant("ENLARGED", params.step != glm::vec2(1.0f));
     pass.push(params);
     pass.dispatch({params.size.x, params.size.y, 1});
     return pass.write("display", display);

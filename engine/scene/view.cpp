@@ -95,14 +95,7 @@ bool View::patch_is_due() const
 bool View::submit_next()
 {
     if (!scene_) return false;
-    if (base_.job && base_.next_row < base_.job->part.end.y) {
-        if (!submit_preparation(*base_.job->scene)) submit_rows(base_, Purpose::base);
-        return true;
-    }
-    if (patch_.job && patch_.next_row < patch_.job->part.end.y) {
-        if (!submit_preparation(*patch_.job->scene)) submit_rows(patch_, Purpose::patch);
-        return true;
-    }
+    if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
     if (base_.job || patch_.job) return false;  // on their way
     if (scene_ != shown_scene_) {
         pass_times_.clear();
@@ -130,12 +123,7 @@ bool View::submit_preparation(const Scene& scene)
 {
     std::optional<FrameGraph> graph = renderer_.next_preparation(scene.session);
     if (!graph) return false;
-    if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
-    running_.push_back({.submission = renderer_.executor().submit(std::move(*graph)),
-                        .purpose = Purpose::preparation,
-                        .estimate_ms = PREPARATION_MS});
-    in_flight_ms_ += PREPARATION_MS;
-    ++submissions_;
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
     return true;
 }
 
@@ -148,13 +136,30 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
     const uint32_t scale = scale_for(double(part.area()) * average_ms_per_pixel_, target_ms);
     sketch_ms_ = 0.0;
     Sketch::Content content{.scene = scene, .probe = probe, .scale = scale, .pixels = divided(scene->pixels, scale)};
-    if (!part.empty()) content.part = {part.begin / scale, glm::min(divided(part.end, scale), content.pixels)};
-    sketch.next_row = content.part.begin.y;
-    sketch.rows_done = 0;
-    if (!content.part.empty())
+    if (!part.empty()) {
+        content.part = {part.begin / scale, glm::min(divided(part.end, scale), content.pixels)};
+        content.target = {content.part.begin * scene->pixels / content.pixels,
+                          content.part.end * scene->pixels / content.pixels};
         reserve(sketch.images[1 - sketch.front], is_patch ? "probe's pixels" : "sketch", Format::rgba8_unorm,
-                content.part.end - content.part.begin);
+                content.target.end - content.target.begin);
+        reserve(work_, "light", Format::rgba32_float, content.part.end - content.part.begin);
+    }
+    sketch.next_row = content.part.begin.y;
+    sketch.next_encoded = content.target.begin.y;
     sketch.job = std::move(content);
+}
+
+/// The next graph of a sketch; false where all of them are on their way.
+bool View::submit_sketch(Sketch& sketch, Purpose purpose)
+{
+    if (!sketch.job) return false;
+    if (sketch.next_row < sketch.job->part.end.y) {
+        if (!submit_preparation(*sketch.job->scene)) submit_rows(sketch, purpose);
+        return true;
+    }
+    if (sketch.next_encoded >= sketch.job->target.end.y) return false;
+    submit_encoding(sketch, purpose);
+    return true;
 }
 
 void View::submit_rows(Sketch& sketch, Purpose purpose)
@@ -166,11 +171,56 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     const PicturePart part{.pixels = job.pixels,
                            .begin = {job.part.begin.x, sketch.next_row},
                            .end = {job.part.end.x, sketch.next_row + rows},
+                           .target = {0, sketch.next_row - job.part.begin.y},
                            .probe = job.probe};
-    const glm::uvec2 target(0, sketch.next_row - job.part.begin.y);
+    FrameGraph graph;
+    const Resource light =
+        renderer_.draw(graph, job.scene->session, job.scene->camera, part, graph.import("light", work_.import()));
     sketch.next_row += rows;
-    submit_part(*job.scene, part, sketch.images[1 - sketch.front], target,
-                {.purpose = purpose, .pixels = uint64_t(width) * rows, .rows = rows, .scene = job.scene});
+    if (job.scale == 1) {  // otherwise rows are enlarged together with their neighbours, when all are there
+        encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
+        sketch.next_encoded = sketch.next_row;
+    }
+    ++sketch.running;
+    submit(std::move(graph), {.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene});
+}
+
+void View::submit_encoding(Sketch& sketch, Purpose purpose)
+{
+    constexpr double ENLARGING_MS = 2e-5;  ///< a pixel, on two cores of a server; a GPU does not notice
+    const uint32_t width = sketch.job->target.end.x - sketch.job->target.begin.x;
+    const auto affordable = std::max(uint32_t(options_.step_ms / (ENLARGING_MS * width)), 8u);
+    const uint32_t end = std::min(sketch.next_encoded + affordable, sketch.job->target.end.y);
+    FrameGraph graph;
+    encode_rows(graph, graph.import("light", work_.import()), sketch, sketch.next_encoded, end);
+    const double estimate_ms = ENLARGING_MS * width * (end - sketch.next_encoded);
+    sketch.next_encoded = end;
+    ++sketch.running;
+    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .scene = sketch.job->scene});
+}
+
+gpu::EncodeParams View::encoding() const
+{
+    gpu::EncodeParams params{};
+    params.step = glm::vec2(1.0f);
+    params.behind = BEHIND;
+    params.swap_red_blue = options_.swap_red_blue;
+    return params;
+}
+
+/// Rows of the sketch's target, from the light that starts at the sketch's part.
+void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end)
+{
+    const Sketch::Content& job = *sketch.job;
+    const glm::dvec2 step = glm::dvec2(job.pixels) / glm::dvec2(job.scene->pixels);
+    const glm::uvec2 from(job.target.begin.x, begin);
+    gpu::EncodeParams params = encoding();
+    params.target = from - job.target.begin;
+    params.size = {job.target.end.x - job.target.begin.x, end - begin};
+    params.first = (glm::dvec2(from) + 0.5) * step - glm::dvec2(job.part.begin);
+    params.step = step;
+    params.last = job.part.end - job.part.begin - 1u;
+    static_cast<void>(encode(graph, light, graph.import("display", sketch.images[1 - sketch.front].import()), params));
 }
 
 bool View::submit_tiles()
@@ -208,21 +258,24 @@ bool View::submit_tiles()
     PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
     part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
     running.pixels = PixelBox{part.begin, part.end}.area();
-    submit_part(*shown_scene_, part, sharp_, part.begin, std::move(running));
-    return true;
-}
-
-void View::submit_part(const Scene& scene, const PicturePart& part, const gpu::Storage& display,
-                       const glm::uvec2& target, Running running)
-{
     const glm::uvec2 size = part.end - part.begin;
     reserve(work_, "light", Format::rgba32_float, size);
     FrameGraph graph;
     const Resource light =
-        renderer_.draw(graph, scene.session, scene.camera, part, graph.import("light", work_.import()));
-    static_cast<void>(encode(graph, light, graph.import("display", display.import()),
-                             {.source = glm::uvec2(0), .target = target, .size = size, .behind = BEHIND}));
-    running.estimate_ms = cost_ms(running.pixels);
+        renderer_.draw(graph, shown_scene_->session, shown_scene_->camera, part, graph.import("light", work_.import()));
+    gpu::EncodeParams params = encoding();
+    params.target = part.begin;
+    params.size = size;
+    params.first = glm::vec2(0.5f);
+    params.last = size - 1u;
+    static_cast<void>(encode(graph, light, graph.import("display", sharp_.import()), params));
+    submit(std::move(graph), std::move(running));
+    return true;
+}
+
+void View::submit(FrameGraph graph, Running running)
+{
+    if (running.pixels > 0) running.estimate_ms = cost_ms(running.pixels);
     if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
     running.submission = renderer_.executor().submit(std::move(graph));
     in_flight_ms_ += running.estimate_ms;
@@ -285,8 +338,8 @@ void View::reap()
         account(done.submission.finish(), done.pixels);
         switch (done.purpose) {
             case Purpose::preparation: break;
-            case Purpose::base: base_.rows_done += done.rows; break;
-            case Purpose::patch: patch_.rows_done += done.rows; break;
+            case Purpose::base: --base_.running; break;
+            case Purpose::patch: --patch_.running; break;
             case Purpose::tiles:
                 if (done.scene != shown_scene_) break;
                 for (uint32_t tile : done.tiles) tiles_[tile].is_shown = true;
@@ -307,10 +360,7 @@ void View::flip(Sketch& sketch)
 
 void View::finish_sketches()
 {
-    const auto is_drawn = [](const Sketch& sketch) {
-        return !sketch.job || sketch.rows_done == sketch.job->part.end.y - sketch.job->part.begin.y;
-    };
-    if (!is_drawn(base_) || !is_drawn(patch_)) return;
+    if (!base_.is_drawn() || !patch_.is_drawn()) return;
     // A picture and the probe in it are shown together.
     if (patch_.job) flip(patch_);
     if (!base_.job) return;
@@ -337,10 +387,9 @@ std::vector<View::Layer> View::layers() const
     const auto add_sketch = [&](const Sketch& sketch) {
         const Sketch::Content& shown = sketch.shown;
         if (shown.scene != shown_scene_ || shown.part.empty()) return;
-        layers.push_back(
-            {.image = sketch.images[sketch.front].import(),
-             .source = {glm::uvec2(0), shown.part.end - shown.part.begin},
-             .target = {shown.part.begin * pixels / shown.pixels, shown.part.end * pixels / shown.pixels}});
+        layers.push_back({.image = sketch.images[sketch.front].import(),
+                          .source = {glm::uvec2(0), shown.target.end - shown.target.begin},
+                          .target = shown.target});
     };
     const bool is_sharp = std::ranges::all_of(tiles_, &Tile::is_shown);
     if (!is_sharp) add_sketch(base_);
@@ -366,7 +415,6 @@ Image8 View::read_back()
     Image8 picture{int(pixels.x), int(pixels.y), std::vector<uint8_t>(size_t(pixels.x) * pixels.y * 4)};
     for (const Layer& layer : layers()) {
         const glm::uvec2 size = layer.target.end - layer.target.begin;
-        if (layer.source.end - layer.source.begin != size) continue;
         FrameGraph graph;
         graph.read_back(graph.import("layer", layer.image));
         const gpu::FrameResult result = renderer_.executor().run(std::move(graph), {.timestamps = false});
@@ -376,6 +424,9 @@ Image8 View::read_back()
                         &result.read_backs[0][4 * ((layer.source.begin.y + y) * source_width + layer.source.begin.x)],
                         4 * size_t(size.x));
     }
+    if (options_.swap_red_blue)
+        for (size_t pixel = 0; pixel < picture.rgba.size(); pixel += 4)
+            std::swap(picture.rgba[pixel], picture.rgba[pixel + 2]);
     return picture;
 }
 

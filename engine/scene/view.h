@@ -16,6 +16,7 @@
 
 #include "engine/scene/camera_motion.h"
 #include "engine/scene/renderer.h"
+#include "shaders/encode.h"
 
 namespace shvr {
 
@@ -24,10 +25,11 @@ public:
     static constexpr uint32_t TILE = 32;  ///< pixels a side
 
     struct Options {
-        double step_ms = 3.0;       ///< of the device, for one graph
-        double in_flight_ms = 5.0;  ///< of graphs on their way
-        double motion_ms = 40.0;    ///< for the sketch of a picture
-        double probe_ms = 20.0;     ///< for the sketch of the pixels that the probe may cover
+        double step_ms = 2.0;        ///< of the device, for one graph
+        double in_flight_ms = 3.5;   ///< of graphs on their way
+        double motion_ms = 40.0;     ///< for the sketch of a picture
+        double probe_ms = 20.0;      ///< for the sketch of the pixels that the probe may cover
+        bool swap_red_blue = false;  ///< in what is shown
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
@@ -49,14 +51,14 @@ public:
     /// Counts what changed in layers(): who shows them compares.
     uint64_t revision() const { return revision_; }
 
-    /// Images to be drawn over each other, back to front. Each is an rgba8_unorm image; sources are stretched to targets.
+    /// Images to be copied over each other, back to front. Each is an rgba8_unorm image (red and blue swapped where the
+    /// options say so); source and target are equally large.
     struct Layer {
         Import image;
         PixelBox source, target;
     };
     std::vector<Layer> layers() const;
-    /// What the layers show together, as a screen would; waits for the device. Layers that have to be stretched are left
-    /// out: ask when the view is complete.
+    /// What the layers show together, as a screen would; waits for the device.
     Image8 read_back();
 
     /// Device time of the picture that is being made or was made last, by pass.
@@ -85,13 +87,19 @@ private:
             uint32_t scale = 1;    ///< screen pixels per pixel, along each axis
             glm::uvec2 pixels{0};  ///< of the whole picture, scaled
             PixelBox part;         ///< scaled pixels; may be empty
+            PixelBox target;       ///< screen pixels that it covers
         };
         std::array<gpu::Storage, 2> images;
         uint32_t front = 0;
         Content shown;               ///< in images[front]; scene is null where there is nothing
         std::optional<Content> job;  ///< goes to the other image
-        uint32_t next_row = 0;       ///< of the job, from part.begin.y
-        uint32_t rows_done = 0;
+        uint32_t next_row = 0;       ///< of the job, that is to be drawn next
+        uint32_t next_encoded = 0;   ///< row of the target, that is to be encoded next
+        uint32_t running = 0;        ///< graphs on their way
+        bool is_drawn() const
+        {
+            return !job || (running == 0 && next_row >= job->part.end.y && next_encoded >= job->target.end.y);
+        }
     };
     struct Tile {
         bool is_shown = false;
@@ -103,7 +111,6 @@ private:
         Purpose purpose = Purpose::preparation;
         double estimate_ms = 0.0;
         uint64_t pixels = 0;
-        uint32_t rows = 0;            ///< of a sketch
         std::vector<uint32_t> tiles;  ///< indices
         SceneRef scene;
     };
@@ -111,10 +118,13 @@ private:
     bool submit_next();
     bool submit_preparation(const Scene& scene);
     void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
+    bool submit_sketch(Sketch& sketch, Purpose purpose);
     void submit_rows(Sketch& sketch, Purpose purpose);
+    void submit_encoding(Sketch& sketch, Purpose purpose);
     bool submit_tiles();
-    void submit_part(const Scene& scene, const PicturePart& part, const gpu::Storage& display, const glm::uvec2& target,
-                     Running running);
+    void encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end);
+    gpu::EncodeParams encoding() const;
+    void submit(FrameGraph graph, Running running);
     void reap();
     void account(const gpu::FrameResult& result, uint64_t pixels);
     void note(const std::string& pass, double ms);

@@ -16,7 +16,7 @@ class Display:
 
     def __init__(self):
         read_end, write_end = os.pipe()
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1000x700x24"],
+        self.server = subprocess.Popen(["Xvfb", "-noreset", "-displayfd", str(write_end), "-screen", "0", "1000x700x24"],
                                        pass_fds=[write_end], stderr=subprocess.DEVNULL)
         os.close(write_end)
         with os.fdopen(read_end) as told:
@@ -139,9 +139,9 @@ class View(CliTest):
         self.wait_for_window("sphere.* - SHVR")
         before = json.loads(session.read_text())["transfer_function"]
         # The widget's upper edge holds the points of opacity 1; the last lies in its right corner.
-        for y in range(340, 420, 4):
-            self.do("mousemove", WINDOW[0] - 22, y, "mousedown", 1, "mousemove", WINDOW[0] - 60, y + 10, "mouseup", 1,
-                    pause_s=0.05)
+        for y in range(298, 360, 6):
+            self.do("mousemove", WINDOW[0] - 31, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove",
+                    WINDOW[0] - 60, y + 10, "sleep", 0.1, "mouseup", 1, pause_s=0.05)
         self.do("key", "ctrl+s", pause_s=0.5)
         self.finish()
         self.assertNotEqual(json.loads(session.read_text())["transfer_function"], before)

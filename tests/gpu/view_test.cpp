@@ -51,9 +51,14 @@ public:
         const Resource light =
             renderer().draw(graph, session, camera, {.pixels = size, .end = size, .probe = probe},
                             graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))));
+        gpu::EncodeParams params{};
+        params.size = size;
+        params.first = glm::vec2(0.5f);
+        params.step = glm::vec2(1.0f);
+        params.last = size - 1u;
+        params.behind = glm::vec3(0.05f);
         graph.read_back(encode(graph, light,
-                               graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))),
-                               {.source = {}, .target = {}, .size = size, .behind = glm::vec3(0.05f)}));
+                               graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))), params));
         const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
         Screen texels(bytes.size() / 4);
         std::memcpy(texels.data(), bytes.data(), bytes.size());
@@ -67,7 +72,9 @@ public:
 TEST_CASE_FIXTURE(Seen, "a view comes to rest on the direct picture, bit for bit, fast device or slow")
 {
     probe = ProbeLook{.center = {20, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
-    for (const View::Options& options : {View::Options{}, CRAWLING}) {
+    View::Options swapped;
+    swapped.swap_red_blue = true;
+    for (const View::Options& options : {View::Options{}, CRAWLING, swapped}) {
         View view(renderer(), options);
         view.show_probe(probe);
         for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 0.2, 0)}) {
