@@ -64,7 +64,7 @@ std::unique_ptr<VolumeSource> open_source(const Session& session)
 {
     if (session.procedural) return open_procedural(*session.procedural);
     if (session.raw_layout) return open_raw(session.volume_path, *session.raw_layout);
-    return open_volume(session.volume_path);
+    return open_volume(session.volume_path, session.open_options);
 }
 
 OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)

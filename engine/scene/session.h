@@ -73,6 +73,7 @@ struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;        ///< for bare voxels
+    OpenOptions open_options;                   ///< what to take from files that hold more than one volume
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
     TransferFunction transfer_function;

@@ -77,7 +77,8 @@ void read_volume(const JsonNode& node, const std::filesystem::path& folder, Sess
         node.expect_object({"path", "raw", "spacing", "unit"});
         session.raw_layout = read_raw_layout(node);
     } else {
-        node.expect_object({"path", "raw", "procedural"});
+        node.expect_object({"path", "raw", "procedural", "channel", "frame"});
+        session.open_options = {.channel = node["channel"].text(""), .frame = node["frame"].text("")};
     }
     session.volume_path = read_path(node.required("path", "the path of a volume file"), folder);
 }

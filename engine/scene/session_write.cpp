@@ -49,6 +49,8 @@ json write_volume(const Session& session, const std::filesystem::path& folder)
         volume["spacing"] = array_of(layout->spacing);
         volume["unit"] = layout->unit;
     }
+    if (!session.open_options.channel.empty()) volume["channel"] = session.open_options.channel;
+    if (!session.open_options.frame.empty()) volume["frame"] = session.open_options.frame;
     return volume;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 struct Reader {
     const char* name;
-    std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path);
+    std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
 };
 
 /// In this order: a header is asked before the bare voxels that it may describe.
@@ -75,11 +75,11 @@ RawLayout parse_raw_layout(const std::string& text)
     return layout;
 }
 
-std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path)
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)
 {
     std::string tried;
     for (const Reader& reader : READERS) {
-        if (std::unique_ptr<VolumeSource> source = reader.open(path)) return source;
+        if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) return source;
         tried += tried.empty() ? "" : ", ";
         tried += reader.name;
     }

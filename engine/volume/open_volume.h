@@ -18,7 +18,7 @@ struct RawLayout {
 RawLayout parse_raw_layout(const std::string& text);
 
 /// Fails where no reader knows the file (naming the formats tried), or where the reader that knows it finds it broken.
-std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path);
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
 std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace shvr

@@ -114,8 +114,26 @@ VolumeStatistics measure_floats(const VolumeSource& source)
 
 }  // namespace
 
+void VolumeSource::read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const
+{
+    SHVR_CHECK(level == 0, "level ", level, " of ", info_.name);
+    read(box, voxels);
+}
+
+std::optional<ValueRange> VolumeSource::brick_range(int /*level*/, const Size3& /*brick*/) const
+{
+    return std::nullopt;
+}
+
+Size3 size_of_level(const Size3& size, int level)
+{
+    const int64_t side = int64_t{1} << level;
+    return (size + (side - 1)) / side;
+}
+
 VolumeStatistics measure(const VolumeSource& source)
 {
+    if (std::optional<VolumeStatistics> known = source.statistics()) return *std::move(known);
     static_cast<void>(voxel_count(source.info()));
     switch (source.info().type) {
         case VoxelType::uint8: return measure_integers<uint8_t>(source);

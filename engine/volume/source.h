@@ -1,16 +1,36 @@
 #pragma once
 // Where voxels come from. A source knows one volume and hands out boxes of it in the file's own type; it knows nothing
-// of bricks, windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine,
+// of windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine,
 // but broken". `open_volume` (open_volume.h) tries them in a listed order.
+//
+// Levels. Level 0 is the volume. A voxel of level l stands for 2^l voxels of level 0 along each axis and lies on them
+// exactly: voxel i covers [2^l i, 2^l (i + 1)), so that position p of level 0 is position p / 2^l of level l. A level has
+// ceil(size / 2^l) voxels along each axis; the last ones may stand for fewer. Most files have level 0 alone.
 
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "engine/volume/volume.h"
 
 namespace shvr {
+
+/// What a person chooses where a file holds more than one volume. A reader of a format that can hold several refuses a
+/// file that does, in words that name the choices, unless one is chosen here; other readers need not look.
+struct OpenOptions {
+    std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
+    std::string frame{};    ///< a number from 1, where there is more than one point in time
+    bool operator==(const OpenOptions&) const = default;
+};
+
+/// Smallest and largest finite value; `lower > upper` where there is none.
+struct ValueRange {
+    double lower = 0.0;
+    double upper = 0.0;
+    bool operator==(const ValueRange&) const = default;
+};
 
 class VolumeSource {
 public:
@@ -22,6 +42,17 @@ public:
     /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
+    /// How many levels there are, at least 1.
+    virtual int levels() const { return 1; }
+    /// As `read`, of a level.
+    virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
+    /// What is known, without reading voxels, of the values of level 0 that brick `brick` of `level` stands for, and of
+    /// those of all levels below it: the bricks of gpu::BRICK_SIZE voxels a side that start at voxel 0, and one voxel of
+    /// `level` around. Nothing where the source does not know.
+    virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
+    /// The statistics of level 0 where the source knows them; `measure` goes through the voxels.
+    virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
+
 protected:
     explicit VolumeSource(VolumeInfo info) : info_(std::move(info)) {}
 
@@ -31,6 +62,10 @@ private:
 
 /// One pass over the whole volume (float32: a second one for the histogram, whose range the first one finds) in slabs
 /// of bounded size: at most 32 MiB, at least one row. A volume without a finite voxel has minimum = maximum = mean = 0.
+/// What the source knows itself is taken from it.
 VolumeStatistics measure(const VolumeSource& source);
+
+/// ceil(size / 2^level).
+Size3 size_of_level(const Size3& size, int level);
 
 }  // namespace shvr

@@ -109,7 +109,7 @@ RawVoxels place_voxels(const Header& header, VolumeInfo& info)
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path)
+std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const OpenOptions& /*options*/)
 {
     const std::string extension = lower_case(path.extension().string());
     const std::string start = read_head(path, 10);

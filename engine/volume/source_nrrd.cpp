@@ -221,7 +221,7 @@ RawVoxels place_voxels(const Header& header, VoxelType type)
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path)
+std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const OpenOptions& /*options*/)
 {
     const std::string extension = lower_case(path.extension().string());
     if (!read_head(path, 4).starts_with("NRRD") && extension != ".nrrd" && extension != ".nhdr") return nullptr;

@@ -61,7 +61,7 @@ bool is_same_file(const fs::path& a, const fs::path& b)
 
 /// A header beside bare voxels counts only where it leads to them.
 Source open_by_header(const fs::path& header, const char* data_field, const fs::path& raw,
-                      Source (*open)(const fs::path&))
+                      Source (*open)(const fs::path&, const OpenOptions&))
 {
     if (!is_file(header)) return nullptr;
     std::string_view text;
@@ -72,7 +72,7 @@ Source open_by_header(const fs::path& header, const char* data_field, const fs::
         if (separator == std::string_view::npos || lower_case(trimmed(line.substr(0, separator))) != data_field)
             continue;
         const fs::path stated = header.parent_path() / std::string(trimmed(line.substr(separator + 1)));
-        return is_same_file(stated, raw) ? open(header) : nullptr;
+        return is_same_file(stated, raw) ? open(header, {}) : nullptr;
     }
     return nullptr;
 }
@@ -98,7 +98,7 @@ Source open_bare(const fs::path& raw)
 
 }  // namespace
 
-Source open_raw_with_side_car(const fs::path& path)
+Source open_raw_with_side_car(const fs::path& path, const OpenOptions& /*options*/)
 {
     const std::string extension = lower_case(path.extension().string());
     if (extension == ".json") {

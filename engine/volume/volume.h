@@ -39,6 +39,13 @@ struct VolumeInfo {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
     std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" where the file states none
+    /// Where the file says the volume lies: in frame `frame` ("RAS", "LPS", or "" where it says nothing), the centre of
+    /// voxel 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
+    /// stated, not drawn: volume space is voxel * spacing. It is right-handed, so a reader that finds left-handed axes
+    /// hands the voxels out in reverse order along one of them, and says so here and in a warning.
+    glm::dmat3 directions{1.0};
+    glm::dvec3 origin{0.0};
+    std::string frame{};
     /// What a reader had to assume or leave out, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };

@@ -155,14 +155,18 @@ TEST_CASE("what is written reads back the same")
 {
     const std::string procedural = R"({"shvr_session": 1, "volume": {"procedural": "speckles", "size": [3, 4, 5],
         "seed": 4294967295, "type": "int16", "spacing": [1, 2, 0.1], "unit": "um"}, "camera": "top"})";
-    for (const std::string& text : {EVERYTHING, procedural, with(""), with(R"("camera": {"side": "back", "zoom": 2})"),
-                                    with(R"("transfer_function": {"points": []})")}) {
+    const std::string channel = R"({"shvr_session": 1, "volume": {"path": "a.tif", "channel": "2", "frame": "red"}})";
+    CHECK(parse(channel).open_options == OpenOptions{.channel = "2", .frame = "red"});
+    for (const std::string& text :
+         {EVERYTHING, procedural, channel, with(""), with(R"("camera": {"side": "back", "zoom": 2})"),
+          with(R"("transfer_function": {"points": []})")}) {
         const Session first = parse(text);
         const std::string written = to_text(first, "/data/scans");
         CAPTURE(written);
         const Session second = parse_session(written, "/data/scans", "written");
         CHECK(to_text(second, "/data/scans") == written);
         CHECK(second.volume_path == first.volume_path);
+        CHECK(second.open_options == first.open_options);
         CHECK(second.cameras == first.cameras);
         CHECK(second.camera_name == first.camera_name);
         CHECK(std::ranges::equal(second.transfer_function.points(), first.transfer_function.points()));

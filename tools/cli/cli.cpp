@@ -28,6 +28,20 @@ void add_input_options(CLI::App& command, Common& common)
             ->type_name(form);
     };
     shorthand("--raw", "volume.raw", "WxHxD:TYPE[:big|little][:OFFSET]", "How a file of bare voxels is laid out");
+    // Text, also where it looks like a number.
+    const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
+        command
+            .add_option_function<std::string>(
+                option,
+                [&common, key](const std::string& value) {
+                    common.settings.push_back(sentence(key, "=", Json(value).dump()));
+                },
+                help)
+            ->type_name(form);
+    };
+    text("--channel", "volume.channel", "NAME|N",
+         "What to take from a file with channels: red, green, ... or 1, 2, ...");
+    text("--frame", "volume.frame", "N", "Which point in time to take from a file with several: 1, 2, ...");
     shorthand("--unit", "volume.unit", "UNIT", "Unit of --spacing, as in um");
     command
         .add_option_function<std::string>(
