@@ -262,7 +262,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
         CHECK(refusal(with(wrong.keys)).starts_with("s.json: unknown key " + wrong.name + "; expected one of: "));
     }
     CHECK(volume_refusal(R"({"path": "a", "spacing": [1, 1, 1]})") ==
-          "s.json: unknown key volume.spacing; expected one of: path, raw, procedural");
+          "s.json: unknown key volume.spacing; expected one of: path, raw, procedural, channel, frame");
     CHECK(volume_refusal(R"({"path": "a", "procedural": "tubes"})").starts_with("s.json: unknown key volume.path;"));
 }
 
