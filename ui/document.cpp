@@ -31,9 +31,9 @@ double middle_of(const TransferFunction& function, const VolumeStatistics& stati
     return std::clamp(0.5 * (middle + function.lower()), statistics.minimum, statistics.maximum);
 }
 
-void load(Renderer& renderer, const VolumeSource& source, const OpenedSession& opened)
+void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
-    renderer.load(source, opened.statistics, opened.session.render.sampling);
+    renderer.load(source, opened.statistics, opened.session.render);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
                    const View::Options& view_options)
     : session_path(session_path_of(input)),
       session(opened.session),
-      source((load(renderer, *opened.source, opened), std::move(opened.source))),
+      source((load(renderer, opened.source, opened), std::move(opened.source))),
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),

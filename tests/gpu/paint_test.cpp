@@ -86,7 +86,7 @@ MemorySource source_of(const Voxels& voxels)
 void load(Renderer& renderer, const Voxels& voxels, Sampling sampling = Sampling::automatic)
 {
     const MemorySource source = source_of(voxels);
-    renderer.load(source, measure(source), sampling);
+    renderer.load(std::make_shared<MemorySource>(source), measure(source), {.sampling = sampling});
 }
 
 bool filters_in_hardware(Renderer& renderer)

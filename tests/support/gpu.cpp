@@ -217,7 +217,7 @@ void OnDevice::load(TestVolume volume, Sampling sampling)
     VolumeStatistics statistics;
     statistics.minimum = volume_.minimum;
     statistics.maximum = volume_.maximum;
-    renderer_.load(*source_of(volume_), statistics, sampling);
+    renderer_.load(source_of(volume_), statistics, {.sampling = sampling});
 }
 
 ImageF OnDevice::draw(const Session& session, const Camera& camera)
