@@ -125,6 +125,32 @@ std::optional<ValueRange> VolumeSource::brick_range(int /*level*/, const Size3& 
     return std::nullopt;
 }
 
+namespace {
+
+/// One level as if it were all there is.
+class OneLevel final : public VolumeSource {
+public:
+    OneLevel(const VolumeSource& source, int level) : VolumeSource(info_of(source, level)), source_(source), level_(level) {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { source_.read_level(level_, box, voxels); }
+
+private:
+    static VolumeInfo info_of(const VolumeSource& source, int level)
+    {
+        VolumeInfo info = source.info();
+        info.size = size_of_level(info.size, level);
+        return info;
+    }
+    const VolumeSource& source_;
+    int level_;
+};
+
+}  // namespace
+
+VolumeStatistics measure_level(const VolumeSource& source, int level)
+{
+    return measure(OneLevel(source, level));
+}
+
 Size3 size_of_level(const Size3& size, int level)
 {
     const int64_t side = int64_t{1} << level;

@@ -65,6 +65,9 @@ private:
 /// What the source knows itself is taken from it.
 VolumeStatistics measure(const VolumeSource& source);
 
+/// The same of a level, always by going through its voxels.
+VolumeStatistics measure_level(const VolumeSource& source, int level);
+
 /// ceil(size / 2^level).
 Size3 size_of_level(const Size3& size, int level);
 
