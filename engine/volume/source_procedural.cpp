@@ -87,7 +87,10 @@ void store(VoxelType type, std::span<const double> values, std::byte* voxels)
         case VoxelType::int8: return store<int8_t>(values, voxels);
         case VoxelType::uint16: return store<uint16_t>(values, voxels);
         case VoxelType::int16: return store<int16_t>(values, voxels);
+        case VoxelType::uint32: return store<uint32_t>(values, voxels);
+        case VoxelType::int32: return store<int32_t>(values, voxels);
         case VoxelType::float32: return store<float>(values, voxels);
+        case VoxelType::float64: return store<double>(values, voxels);
     }
 }
 
@@ -126,8 +129,8 @@ public:
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
                 for (int64_t x = 0; x < extent.x; ++x)
-                    values[static_cast<size_t>(x)] =
-                        kind_->value(glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
+                    values[static_cast<size_t>(x)] = kind_->value(
+                        glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
                 store(info().type, values, row);
                 row += values.size() * bytes_of(info().type);
             }
