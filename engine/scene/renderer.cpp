@@ -74,7 +74,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     const VolumeInfo& info = volume.info();
     const RayPlanes planes = ray_planes(camera, part.pixels, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
-    const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit;
+    const double codes_range = (statistics.range().upper - statistics.range().lower) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -182,7 +182,7 @@ bool Renderer::pages(const VolumeSource& source, Paging paging) const
 void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                     const RenderSettings& settings)
 {
-    const IntensityWindow window = window_for(source->info().type, statistics.minimum, statistics.maximum);
+    const IntensityWindow window = window_for(source->info().type, statistics.range().lower, statistics.range().upper);
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;

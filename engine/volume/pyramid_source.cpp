@@ -113,7 +113,10 @@ std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSour
         case VoxelType::int8: pyramid->build<int8_t>(levels); break;
         case VoxelType::uint16: pyramid->build<uint16_t>(levels); break;
         case VoxelType::int16: pyramid->build<int16_t>(levels); break;
+        case VoxelType::uint32: pyramid->build<uint32_t>(levels); break;
+        case VoxelType::int32: pyramid->build<int32_t>(levels); break;
         case VoxelType::float32: pyramid->build<float>(levels); break;
+        case VoxelType::float64: pyramid->build<double>(levels); break;
     }
     return pyramid;
 }
