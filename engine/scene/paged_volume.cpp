@@ -198,7 +198,8 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, con
                       .reached = {},
                       .feedback = feedback,
                       .counts = tree_->counts,
-                      .cell_shift = uint32_t(tree_->cell_shift)};
+                      .cell_shift = uint32_t(tree_->cell_shift),
+                      .depth = uint32_t(tree_->depth)};
     volume.pages = pages;
     if (!leap_jobs_.empty()) {
         std::vector<gpu::BrickLeapJob> jobs;

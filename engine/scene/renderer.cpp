@@ -99,6 +99,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     if (binding.pages) {
         params.page_counts = binding.pages->counts;
         params.page_shift = binding.pages->cell_shift;
+        params.page_depth = binding.pages->depth;
     }
     params.step = float(step_voxels);
     params.opacity_limit = float(session.render.opacity_limit);

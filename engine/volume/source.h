@@ -64,6 +64,9 @@ VolumeStatistics measure_level(const VolumeSource& source, int level);
 /// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
+/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
+std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
+
 /// ceil(size / 2^level).
 Size3 size_of_level(const Size3& size, int level);
 

@@ -1,20 +1,46 @@
 #!/usr/bin/env python3
-"""Writes the chirality phantom in every format that holds bare voxels:  tests/data/make_chirality.py
+"""Writes the chirality phantom in every format whose voxels lie one after the other:  tests/data/make_chirality.py
 
 5 x 4 x 3 voxels of int16 (the XML side-car: uint8). Voxel x, y, z holds x + 10 y + 100 z - 99, so that any mirrored or
 exchanged axis shows. Nothing of the engine is used: the bytes are packed here, from the formats' own descriptions.
 """
 import struct
+import zlib
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent / "chirality"
 VALUES = [x + 10 * y + 100 * z - 99 for z in range(3) for y in range(4) for x in range(5)]
 LITTLE = struct.pack("<60h", *VALUES)
 BIG = struct.pack(">60h", *VALUES)
+SLICES = [LITTLE[40 * z:40 * z + 40] for z in range(3)]
+
+
+def reversed_along(axis):
+    """The voxels as a file holds them whose axis runs the other way."""
+    size = (5, 4, 3)
+    order = [[range(n), range(n - 1, -1, -1)][i == axis] for i, n in enumerate(size)]
+    return struct.pack("<60h", *(VALUES[x + 5 * (y + 4 * z)] for z in order[2] for y in order[1] for x in order[0]))
+
+
+def deflated(data, wrapping):
+    """Behind zlib (15) or gzip (31); the same bytes in every year."""
+    packer = zlib.compressobj(9, zlib.DEFLATED, wrapping)
+    return packer.compress(data) + packer.flush()
+
+
+def gzip(data):
+    return deflated(data, 31)
+
 
 NRRD = "NRRD0004\n# chirality phantom\ntype: short\ndimension: 3\nsizes: 5 4 3\n{}encoding: raw\n"
 DIRECTIONS = "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,1.25)\n"
 UNITS = 'space units: "mm" "mm" "mm"\n'
+PLAIN = 'endian: little\nspacings: 0.5 0.5 1.25\nunits: "mm" "mm" "mm"\n'
+GZIP = NRRD.replace("encoding: raw", "encoding: gzip")
+# The first voxel of the phantom lies at 10, 20, 30 in each of these.
+FLIPPED_Y = ("endian: little\nspace: LPS\nspace directions: (0.5,0,0) (0,-0.5,0) (0,0,1.25)\nspace origin: (10,21.5,30)\n")
+LEFT = ("endian: little\nspace: left-anterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,1.25)\n"
+        "space origin: (-12,20,30)\n")
 META = """ObjectType = Image
 NDims = 3
 BinaryData = True
@@ -46,6 +72,25 @@ FILES = {
     "nsi.raw": LITTLE,
     "nsi.dat": NSI.encode(),
     "named_5x4x3_int16le.raw": LITTLE,
+    "gzip.nrrd": GZIP.format("endian: big\n" + DIRECTIONS + UNITS).encode() + b"\n" + gzip(BIG),
+    "gzip.nhdr": GZIP.format(PLAIN).encode() + b"line skip: 1\nbyte skip: 3\ndata file: gzip.voxels\n",
+    "gzip.voxels": b"one line\n" + gzip(b"..." + LITTLE),
+    "zlib.mha": META.replace("Data = False", "Data = True").format("True", "LOCAL").encode() + deflated(BIG, 15),
+    "zlib.mhd": META.replace("Data = False", "Data = True").format("False", "zlib.zraw").encode(),
+    "zlib.zraw": deflated(LITTLE, 15),
+    **{f"slice{z + 1:02}.voxels": b"head" + SLICES[z] for z in range(3)},
+    **{f"slice.{z + 9}.gz": gzip(SLICES[z]) for z in range(3)},
+    "pattern.nhdr": NRRD.format(PLAIN).encode() + b"byte skip: 4\ndata file: slice%02d.voxels 1 3 1\n",
+    "list.nhdr": NRRD.format(PLAIN).encode() + b"byte skip: -1\ndata file: LIST 2\n"
+    + b"".join(b"slice%02d.voxels\n" % z for z in (1, 2, 3)),
+    "pattern_gzip.nhdr": GZIP.format(PLAIN).encode() + b"data file: slice.%d.gz 9 11 1 2\n",
+    "pattern.mhd": META.format("False", "slice%02d.voxels 1 3 1").replace("DimSize", "HeaderSize = 4\nDimSize").encode(),
+    "list.mhd": META.format("False", "LIST\nslice01.voxels\nslice02.voxels\nslice03.voxels")
+    .replace("DimSize", "HeaderSize = -1\nDimSize").encode(),
+    "flipped_y.nrrd": NRRD.format(FLIPPED_Y + UNITS).encode() + b"\n" + reversed_along(1),
+    "left_handed.nrrd": NRRD.format(LEFT + UNITS).encode() + b"\n" + reversed_along(0),
+    "flipped_z.mha": META.format("False", "LOCAL").replace("0 0 1\nOffset = 0 0 0", "0 0 -1\nOffset = 10 20 32.5")
+    .encode() + reversed_along(2),
 }
 
 if __name__ == "__main__":

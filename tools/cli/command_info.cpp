@@ -24,7 +24,9 @@ struct Described {
 Described describe(const Options& options)
 {
     const std::filesystem::path path = options.input;
-    const bool is_bare = std::filesystem::is_regular_file(path) && path.extension() != ".json";
+    std::error_code ignored;
+    const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
+    const bool is_bare = std::filesystem::exists(path, ignored) && !is_project && path.extension() != ".json";
     OpenedSession opened;
     // A session would make a transfer function for a bare volume, and say so: nobody asked.
     if (is_bare && options.common.settings.empty()) {
@@ -48,6 +50,11 @@ Json to_json(const Described& described, const std::string& input)
     const VolumeStatistics& statistics = described.statistics;
     const IntensityWindow window = window_for(info.type, statistics.range().lower, statistics.range().upper);
     const int64_t voxels = voxel_count(info);
+    Json directions = Json::array();  // of x, of y, of z
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3& direction = info.directions[axis];
+        directions.push_back({direction.x, direction.y, direction.z});
+    }
     return {{"input", input},
             {"name", info.name},
             {"format", info.format},
@@ -55,6 +62,9 @@ Json to_json(const Described& described, const std::string& input)
             {"type", name_of(info.type)},
             {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
             {"unit", info.unit},
+            {"frame", info.frame},
+            {"directions", directions},
+            {"origin", {info.origin.x, info.origin.y, info.origin.z}},
             {"min", statistics.minimum},
             {"max", statistics.maximum},
             {"mean", statistics.mean},
