@@ -27,8 +27,9 @@ double middle_of(const TransferFunction& function, const VolumeStatistics& stati
         weight += point.opacity;
         sum += point.opacity * point.intensity;
     }
-    const double middle = weight > 0.0 ? sum / weight : 0.5 * (statistics.minimum + statistics.maximum);
-    return std::clamp(0.5 * (middle + function.lower()), statistics.minimum, statistics.maximum);
+    const auto [lower, upper] = statistics.range();
+    const double middle = weight > 0.0 ? sum / weight : 0.5 * (lower + upper);
+    return std::clamp(0.5 * (middle + function.lower()), lower, upper);
 }
 
 void load(Renderer& renderer, const VolumeSource& source, const OpenedSession& opened)

@@ -69,7 +69,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     const VolumeInfo& info = volume.info();
     const RayPlanes planes = ray_planes(camera, part.pixels, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
-    const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit;
+    const double codes_range = (statistics.range().upper - statistics.range().lower) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -149,7 +149,7 @@ bool Renderer::filters(Sampling sampling) const
 
 void Renderer::load(const VolumeSource& source, const VolumeStatistics& statistics, Sampling sampling)
 {
-    const IntensityWindow window = window_for(source.info().type, statistics.minimum, statistics.maximum);
+    const IntensityWindow window = window_for(source.info().type, statistics.range().lower, statistics.range().upper);
     volume_.reset();
     leap_state_.reset();
     mask_.clear();  // paint belongs to the volume it was painted on

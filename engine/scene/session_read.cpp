@@ -48,11 +48,9 @@ ProceduralSpec read_procedural(const JsonNode& node)
     spec.kind = node["procedural"].choice(spec.kind, kinds);
     spec.size = node["size"].size(spec.size);
     spec.seed = static_cast<uint32_t>(node["seed"].whole(spec.seed, 0, std::numeric_limits<uint32_t>::max()));
-    spec.type = node["type"].choice(spec.type, {{"uint8", VoxelType::uint8},
-                                                {"int8", VoxelType::int8},
-                                                {"uint16", VoxelType::uint16},
-                                                {"int16", VoxelType::int16},
-                                                {"float32", VoxelType::float32}});
+    std::map<std::string, VoxelType> types;
+    for (const VoxelType type : VOXEL_TYPES) types[name_of(type)] = type;
+    spec.type = node["type"].choice(spec.type, types);
     spec.spacing = read_spacing(node["spacing"], spec.spacing);
     spec.unit = node["unit"].text(spec.unit);
     return spec;

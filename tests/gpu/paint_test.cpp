@@ -78,7 +78,10 @@ MemorySource source_of(const Voxels& voxels)
         case VoxelType::int8: return source_as<int8_t>(voxels);
         case VoxelType::uint16: return source_as<uint16_t>(voxels);
         case VoxelType::int16: return source_as<int16_t>(voxels);
+        case VoxelType::uint32: return source_as<uint32_t>(voxels);
+        case VoxelType::int32: return source_as<int32_t>(voxels);
         case VoxelType::float32: return source_as<float>(voxels);
+        case VoxelType::float64: return source_as<double>(voxels);
     }
     return source_as<uint8_t>(voxels);
 }
