@@ -19,6 +19,7 @@ struct Described {
     VolumeStatistics statistics;
     std::vector<std::string> warnings;
     std::string mask;  ///< empty: none
+    int levels = 1;
 };
 
 Described describe(const Options& options)
@@ -39,7 +40,8 @@ Described describe(const Options& options)
     Described described{.info = opened.source->info(),
                         .statistics = opened.statistics,
                         .warnings = std::move(opened.warnings),
-                        .mask = opened.session.mask_path.string()};
+                        .mask = opened.session.mask_path.string(),
+                        .levels = opened.source->levels()};
     for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
     return described;
 }
@@ -71,7 +73,7 @@ Json to_json(const Described& described, const std::string& input)
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
             {"bytes", voxels * int64_t(bytes_of(info.type))},
-            {"levels", 1},
+            {"levels", described.levels},
             {"histogram", statistics.histogram},
             {"window", {{"lower", window.lower}, {"upper", window.upper()}, {"codes_per_unit", window.codes_per_unit}}},
             {"mask", described.mask.empty() ? Json(nullptr) : Json(described.mask)},
@@ -116,6 +118,7 @@ void print_text(const Described& described)
     print_line("whole volume", sentence(extent.x, " x ", extent.y, " x ", extent.z, " ", plural(info.unit)));
     print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(voxels * int64_t(bytes_of(info.type)))));
     print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean));
+    if (described.levels > 1) print_line("levels", sentence(described.levels, ", each half as fine as the one before"));
     if (!described.mask.empty()) print_line("mask", described.mask);
     std::cout.flush();
     if (!std::cout) fail("standard output: cannot be written");
