@@ -14,6 +14,7 @@ struct Reader {
 
 /// In this order: a header is asked before the bare voxels that it may describe.
 constexpr Reader READERS[] = {
+    {"TIFF", open_tiff},
     {"NRRD", open_nrrd},
     {"MetaImage", open_mhd},
     {"RAW with a side-car", open_raw_with_side_car},

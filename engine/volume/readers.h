@@ -6,6 +6,9 @@
 
 namespace shvr {
 
+/// TIFF and BigTIFF, by their first bytes or their extension, and folders of TIFFs.
+std::unique_ptr<VolumeSource> open_tiff(const std::filesystem::path& path, const OpenOptions& options);
+
 /// NRRD and NHDR, encoding raw, by their first bytes or their extension.
 std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const OpenOptions& options);
 
