@@ -98,6 +98,7 @@ public:
         const uint32_t first = pages_to_show(directories_).front();
         description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
                                         layout_of_page(first).samples, TiffRole::whole);
+        take_many_channels_as_slices();
         if (description_.writer == TiffDescription::Writer::ome) {
             check_planes();
         } else {
@@ -136,6 +137,17 @@ private:
         return *layout;
     }
     const TiffLayout& layout_of_page(uint32_t page) { return layout_of_kind(directories_.pages[page].kind); }
+
+    /// What scripts make of slices by mistake. ImageJ composes at most 7 channels.
+    void take_many_channels_as_slices()
+    {
+        if (description_.writer != TiffDescription::Writer::imagej || description_.channels <= 7 ||
+            description_.slices > 1 || description_.frames > 1 || !options_.channel.empty())
+            return;
+        volume_.info.warnings.push_back(sentence("the description counts ", description_.channels,
+                                                 " channels of one slice each; they were taken as slices"));
+        std::swap(description_.channels, description_.slices);
+    }
 
     /// Pages may show the same and be stored in different ways.
     void check_kinds()

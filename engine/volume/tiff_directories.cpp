@@ -28,8 +28,14 @@ enum Tag : uint16_t {
 
 /// Fields in which pages of one kind agree: subfile types, size, bits, compression, meaning, order of bits, orientation,
 /// samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format, sub-sampling.
-constexpr uint16_t KIND_TAGS[] = {254, 255, 256, 257, 258, 259, 262, 266, 274, 277,
-                                  278, 284, 292, 293, 317, 322, 323, 338, 339, 530};
+constexpr std::array<bool, 531> TELLS_KIND = [] {
+    std::array<bool, 531> tells{};
+    for (const int tag :
+         {254, 255, 256, 257, 258, 259, 262, 266, 274, 277, 278, 284, 292, 293, 317, 322, 323, 338, 339, 530}) {
+        tells[static_cast<size_t>(tag)] = true;
+    }
+    return tells;
+}();
 
 size_t bytes_of_type(uint16_t type)
 {
@@ -118,7 +124,7 @@ public:
     }
     bool is_inside(const Field& field) const
     {
-        return field.count <= offset_bytes_ / std::max<size_t>(1, bytes_of_type(field.type));
+        return field.count <= offset_bytes_ && field.count * bytes_of_type(field.type) <= offset_bytes_;
     }
     /// The value itself where there is one and it fits into the field, or where in the file it is.
     uint64_t value(const Field& field) const
@@ -200,11 +206,10 @@ class KindFinder {
 public:
     void look_at(const Field& field, const Reader& reader)
     {
-        if (std::find(std::begin(KIND_TAGS), std::end(KIND_TAGS), field.tag) == std::end(KIND_TAGS)) return;
+        if (field.tag >= TELLS_KIND.size() || !TELLS_KIND[field.tag]) return;
         const uint64_t value = reader.is_inside(field) ? reader.value(field) : ~uint64_t{0};
-        for (const uint64_t part : {uint64_t{field.tag}, field.count, value}) {
-            fields_.append(reinterpret_cast<const char*>(&part), sizeof(part));
-        }
+        const uint64_t parts[] = {field.tag, field.count, value};
+        fields_.append(reinterpret_cast<const char*>(parts), sizeof(parts));
         if (field.tag == NEW_SUBFILE_TYPE) is_reduced_ |= (value & 1) != 0 || (value & 4) != 0;
         if (field.tag == SUBFILE_TYPE) is_reduced_ |= value == 2;
         has_width_ |= field.tag == IMAGE_WIDTH;

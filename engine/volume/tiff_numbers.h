@@ -11,16 +11,6 @@ namespace shvr {
 
 static_assert(std::endian::native == std::endian::little, "what is not big-endian is taken as it is");
 
-/// 1 to 8 bytes.
-inline uint64_t tiff_number(const std::byte* bytes, size_t count, bool is_big_endian)
-{
-    uint64_t number = 0;
-    for (size_t i = 0; i < count; ++i) {
-        number |= std::to_integer<uint64_t>(bytes[i]) << 8 * (is_big_endian ? count - 1 - i : i);
-    }
-    return number;
-}
-
 inline uint8_t swapped(uint8_t bits)
 {
     return bits;
@@ -36,6 +26,22 @@ inline uint32_t swapped(uint32_t bits)
 inline uint64_t swapped(uint64_t bits)
 {
     return __builtin_bswap64(bits);
+}
+
+template <class Bits>
+Bits tiff_number(const std::byte* bytes, bool is_big_endian)
+{
+    Bits bits;
+    std::memcpy(&bits, bytes, sizeof(bits));
+    return is_big_endian ? swapped(bits) : bits;
+}
+/// Of 1, 2, 4 or 8 bytes.
+inline uint64_t tiff_number(const std::byte* bytes, size_t count, bool is_big_endian)
+{
+    if (count == 1) return std::to_integer<uint8_t>(*bytes);
+    if (count == 2) return tiff_number<uint16_t>(bytes, is_big_endian);
+    if (count == 4) return tiff_number<uint32_t>(bytes, is_big_endian);
+    return tiff_number<uint64_t>(bytes, is_big_endian);
 }
 
 /// Calls `change` on each number of type `Bits`, wherever it lies.

@@ -92,8 +92,8 @@ TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Access::ignore, nullptr);
     // "m": without mapping, so that a file cut short while it is open is a failed read, not a signal. "O": places of
     // strips are read as they are needed.
-    handle_ = TIFFClientOpenExt(file.path().c_str(), "rmO", access_.get(), Access::read, Access::write, Access::seek,
-                                Access::close, Access::size, nullptr, nullptr, options.get());
+    handle_ = TIFFClientOpenExt("TIFF", "rmO", access_.get(), Access::read, Access::write, Access::seek, Access::close,
+                                Access::size, nullptr, nullptr, options.get());
     if (handle_ == nullptr) fail(subject(), " cannot be read: ", complaint(), "; expected a TIFF that is whole");
 }
 
@@ -110,7 +110,9 @@ std::string TiffPage::subject() const
 std::string TiffPage::complaint() const
 {
     if (access_->complaint.empty()) return "libtiff gives no reason";
-    return "libtiff says " + in_quotes(access_->complaint);
+    std::string words = access_->complaint;
+    std::replace(words.begin(), words.end(), '"', '\'');
+    return "libtiff says " + in_quotes(words);
 }
 
 uint16_t TiffPage::number16(uint32_t tag, uint16_t fallback) const
