@@ -91,10 +91,7 @@ void CodeRows::convert(std::span<const std::byte> voxels, std::span<uint16_t> co
         case VoxelType::int8: return convert_integers<int8_t>(voxels, codes, window_, is_whole_);
         case VoxelType::uint16: return convert_integers<uint16_t>(voxels, codes, window_, is_whole_);
         case VoxelType::int16: return convert_integers<int16_t>(voxels, codes, window_, is_whole_);
-        case VoxelType::uint32: return convert_any<uint32_t>(voxels, codes, window_);
-        case VoxelType::int32: return convert_any<int32_t>(voxels, codes, window_);
         case VoxelType::float32: return convert_any<float>(voxels, codes, window_);
-        case VoxelType::float64: return convert_any<double>(voxels, codes, window_);
     }
 }
 

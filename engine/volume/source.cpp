@@ -141,12 +141,9 @@ VolumeStatistics measure(const VolumeSource& source)
         case VoxelType::uint16: return measure_integers<uint16_t>(source);
         case VoxelType::int16: return measure_integers<int16_t>(source);
         case VoxelType::float32: return measure_floats(source);
-        case VoxelType::uint32:
-        case VoxelType::int32:
-        case VoxelType::float64: break;
     }
-    fail(source.info().name, ": has voxels of ", name_of(source.info().type),
-         "; expected uint8, int8, uint16, int16 or float32");
+    SHVR_CHECK(false, "voxel type ", static_cast<int>(source.info().type));
+    return {};
 }
 
 }  // namespace shvr

@@ -86,10 +86,7 @@ void store(VoxelType type, std::span<const double> values, std::byte* voxels)
         case VoxelType::int8: return store<int8_t>(values, voxels);
         case VoxelType::uint16: return store<uint16_t>(values, voxels);
         case VoxelType::int16: return store<int16_t>(values, voxels);
-        case VoxelType::uint32: return store<uint32_t>(values, voxels);
-        case VoxelType::int32: return store<int32_t>(values, voxels);
         case VoxelType::float32: return store<float>(values, voxels);
-        case VoxelType::float64: return store<double>(values, voxels);
     }
 }
 

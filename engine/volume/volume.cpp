@@ -64,10 +64,7 @@ size_t bytes_of(VoxelType type)
         case VoxelType::int8: return 1;
         case VoxelType::uint16:
         case VoxelType::int16: return 2;
-        case VoxelType::uint32:
-        case VoxelType::int32:
         case VoxelType::float32: return 4;
-        case VoxelType::float64: return 8;
     }
     SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
     return 0;
@@ -80,10 +77,7 @@ const char* name_of(VoxelType type)
         case VoxelType::int8: return "int8";
         case VoxelType::uint16: return "uint16";
         case VoxelType::int16: return "int16";
-        case VoxelType::uint32: return "uint32";
-        case VoxelType::int32: return "int32";
         case VoxelType::float32: return "float32";
-        case VoxelType::float64: return "float64";
     }
     SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
     return "";
@@ -141,10 +135,7 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
             const double range = std::clamp(std::ceil(maximum) - lower, 1.0, LARGEST_CODE);
             return {lower, std::floor(LARGEST_CODE / range)};
         }
-        case VoxelType::uint32:
-        case VoxelType::int32:
-        case VoxelType::float32:
-        case VoxelType::float64: break;
+        case VoxelType::float32: break;
     }
     const double range = maximum - minimum;
     return {minimum, range > 0.0 ? LARGEST_CODE / range : LARGEST_CODE};

@@ -17,7 +17,7 @@ namespace shvr {
 
 using Size3 = glm::vec<3, int64_t>;
 
-enum class VoxelType { uint8, int8, uint16, int16, uint32, int32, float32, float64 };
+enum class VoxelType { uint8, int8, uint16, int16, float32 };
 
 size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
