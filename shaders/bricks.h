@@ -40,5 +40,20 @@ SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
     return BRICK_TEXELS * unpack_slot(packed_slot);
 }
 
+/// First voxel of a brick of the mask in its atlas, which holds bricks without aprons; slots count from 1.
+SHARED_FUNCTION uvec3 mask_slot_origin(uint slot, uvec3 slots)
+{
+    return BRICK_SIZE *
+           uvec3((slot - 1u) % slots.x, (slot - 1u) / slots.x % slots.y, (slot - 1u) / (slots.x * slots.y));
+}
+
+/// Where the search for a painted brick begins in a hashed table (Teschner and others 2003), and the uints of its entries:
+/// x | y << 16, z, slot.
+SHARED_FUNCTION uint mask_hash(uvec3 brick)
+{
+    return brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u;
+}
+SHARED_CONST uint MASK_ENTRY = 3u;
+
 SHARED_END
 #endif

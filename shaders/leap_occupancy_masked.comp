@@ -19,7 +19,7 @@ layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visib
 
 bool paint_shows(uvec3 cell, uint mask_slot)
 {
-    const uvec3 base = mask_origin(mask_slot, params.mask_slots) + CELL_SIZE * (cell % BRICK_CELLS);
+    const uvec3 base = mask_slot_origin(mask_slot, params.mask_slots) + CELL_SIZE * (cell % BRICK_CELLS);
     uint seen = 0u;
     for (uint i = 0u; i < CELL_SIZE * CELL_SIZE * CELL_SIZE; ++i) {
         const uvec3 voxel = base + uvec3(i % CELL_SIZE, (i / CELL_SIZE) % CELL_SIZE, i / (CELL_SIZE * CELL_SIZE));
@@ -35,7 +35,7 @@ void main()
     if (any(greaterThanEqual(cell, params.cell_end))) return;
     const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
     bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
-    const uint mask_slot = mask_table.slots[brick];
+    const uint mask_slot = mask_slot_of(cell / BRICK_CELLS, params.brick_counts);
     if (!occupied && mask_slot != 0u) occupied = paint_shows(cell, mask_slot);
     imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : LEAP_LIMIT << LEAP_DISTANCE_SHIFT) | page_table.slots[brick]));
 }

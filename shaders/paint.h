@@ -27,6 +27,7 @@ struct RegionParams {
     uint threshold_code;  ///< 0 ... 65536
     uint connectivity;    ///< 6 or 26
     uint seed;            ///< index of the seed's bit; flood fill
+    uvec3 brick_begin;    ///< the bricks that the region lies in
     uvec3 brick_counts;
 };
 

@@ -1,11 +1,15 @@
 // The ray caster's body. Its kernels differ in their bindings, and define first what they bind:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
+//   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
 //
 // Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
 // bits with skipping on or off. There is no cap on the number of steps.
 #include "raycast.h"
+#ifdef PAGED
+#include "pages.h"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint SHADED = 1u;
@@ -17,9 +21,13 @@ layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 4) const uint PROBE = 0u;
 // Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
 layout(constant_id = 5) const uint PICK = 0u;
+// Notes which bricks rays reach. A picture that is complete does without.
+layout(constant_id = 6) const uint FEEDBACK = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+#ifndef PAGED
 layout(binding = 1, r32ui) uniform readonly uimage3D leap;
+#endif
 #ifdef FILTERED
 layout(binding = 2) uniform sampler3D atlas;
 #else
@@ -35,6 +43,9 @@ layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups
 
 #include "counters.glsl"
 #ifdef MASKED
+#ifdef PAGED
+#define MASK_TABLE_HASHED
+#endif
 #include "mask.glsl"
 #endif
 #ifdef FILTERED
@@ -43,6 +54,22 @@ layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups
 #include "density_exact.glsl"
 #endif
 #include "shade.glsl"
+
+#ifdef PAGED
+#include "pages.glsl"
+#else
+// Where a position is: in nothing visible (distance > 0), or in a brick.
+struct Place {
+    uint distance;   // in cells
+    uint slot;
+};
+
+Place place_at(const RaycastParams params, vec3 position)
+{
+    const uint entry = imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
+    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK);
+}
+#endif
 
 struct Ray {
     vec3 origin;      // voxel space, at length 0
@@ -55,6 +82,7 @@ struct Ray {
 struct Work {
     uint samples, shaded, leaps, bricks;
     uint last_slot;
+    uint last_entry;
 };
 
 // An image, not a buffer: one load for four components.
@@ -79,23 +107,28 @@ vec4 classify(const RaycastParams params, float density)
 vec4 painted(const RaycastParams params, vec3 position, vec4 look)
 {
     const uvec3 voxel = uvec3(position);
-    const uint slot = mask_table.slots[grid_index(voxel / BRICK_SIZE, params.brick_counts)];
+    const uint slot = mask_slot_of(voxel / BRICK_SIZE, params.brick_counts);
     if (slot == 0u) return look;
-    const uint group = imageLoad(mask, ivec3(mask_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
+    const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
     return vec4(groups.looks[group].color, groups.looks[group].opacity);
 }
 #endif
 
-// Colour (shaded) and opacity of a full step at a position in the brick of `slot`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, uint slot, inout Work work)
+// Colour (shaded) and opacity of a full step at a position in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const Place place, inout Work work)
 {
     // Cell and fraction come from the global position, and only the whole number moves into the brick: a bricked volume
     // gives the same bits as one in a single texture.
+#ifdef PAGED
+    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
+    const uvec3 brick = uvec3(position) >> place.level + 5u;
+#else
     const vec3 lattice = position - 0.5;
-    const vec3 corner = floor(lattice);
     const uvec3 brick = uvec3(position) / BRICK_SIZE;
-    const ivec3 to_atlas = ivec3(slot_origin(slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
+#endif
+    const vec3 corner = floor(lattice);
+    const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
     vec4 look = classify(params, value_of(density));
 #ifdef MASKED
@@ -103,19 +136,14 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, uint 
 #endif
     if (COUNT_WORK != 0u) {
         ++work.samples;
-        work.bricks += uint(slot != work.last_slot);
-        work.last_slot = slot;
+        work.bricks += uint(place.slot != work.last_slot);
+        work.last_slot = place.slot;
     }
     if (SHADED != 0u) {
         if (COUNT_WORK != 0u) ++work.shaded;
         look.rgb = shade(params, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
     return look;
-}
-
-uint leap_entry(const RaycastParams params, vec3 position)
-{
-    return imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
 }
 
 // Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is held.
@@ -125,15 +153,34 @@ vec3 position_at(const RaycastParams params, const Ray ray, float s)
 }
 
 // How many whole steps a ray may go from `position` without leaving the empty cube around its cell.
-uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, uint distance)
+uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
+    const float reach = float(place.distance);
+#ifdef PAGED
+    const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
+    const vec3 box = vec3(uvec3(position) >> place.box_shift);
+    const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
+    // What is known of a brick ends with it.
+    const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
+                             box_size * (box + 1.0));
+#else
     const vec3 cell = vec3(uvec3(position) / CELL_SIZE);
-    const float reach = float(distance);
     const vec3 bound = float(CELL_SIZE) * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead));
+#endif
     const vec3 lengths = (bound - position) * ray.inverse;
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
     // The guard keeps a sample that rounding puts on the border from being leapt over.
     return 1u + uint(max(exit / params.step - 0.01, 0.0));
+}
+
+void note(const Place place, inout Work work)
+{
+#ifdef PAGED
+    if (FEEDBACK != 0u && place.entry != work.last_entry) {
+        note_reached(place);
+        work.last_entry = place.entry;
+    }
+#endif
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -206,26 +253,25 @@ void main()
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(extent / params.step);
     vec4 sum = vec4(0.0);
-    Work work = Work(0u, 0u, 0u, 0u, 0u);
+    Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // loop of its own, and lanes meet again at the costly sample.
     uint i = 0u;
     while (i < steps && sum.a < params.opacity_limit) {
         vec3 position;
-        uint leap_here;
-        uint distance;
+        Place place;
         do {
             position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
-            leap_here = leap_entry(params, position);
-            distance = leap_here >> LEAP_DISTANCE_SHIFT;
-            if (distance > 0u) {
-                i += steps_to_leave(params, ray, position, distance);
+            place = place_at(params, position);
+            note(place, work);
+            if (place.distance > 0u) {
+                i += steps_to_leave(params, ray, position, place);
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
-        } while (distance > 0u && i < steps);
-        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last `distance`.
-        if (distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work));
+        } while (place.distance > 0u && i < steps);
+        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
+        if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
         ++i;
     }
 
@@ -233,9 +279,10 @@ void main()
     const float rest = extent - float(steps) * params.step;
     if (rest > 0.0 && sum.a < params.opacity_limit) {
         const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
-        const uint leap_here = leap_entry(params, position);
-        if (leap_here >> LEAP_DISTANCE_SHIFT == 0u) {
-            vec4 look = sample_look(params, ray, position, leap_here & LEAP_SLOT_MASK, work);
+        const Place place = place_at(params, position);
+        note(place, work);
+        if (place.distance == 0u) {
+            vec4 look = sample_look(params, ray, position, place, work);
             look.a = opacity_of_part(look.a, rest / params.step);
             accumulate(sum, look);
         }

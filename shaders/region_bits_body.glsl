@@ -9,7 +9,7 @@ layout(binding = 0) uniform sampler3D atlas;
 #else
 layout(binding = 0, r32ui) uniform readonly uimage3D atlas;
 #endif
-layout(binding = 1, scalar) readonly buffer PageTable { uint slots[]; } page_table;
+layout(binding = 1, scalar) readonly buffer RegionBricks { uint slots[]; } region_bricks;
 layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) writeonly buffer Bits { uint words[]; } bits;
 layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
@@ -18,7 +18,7 @@ layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
 uint code_at(uvec3 voxel)
 {
-    const uint slot = page_table.slots[grid_index(voxel / BRICK_SIZE, params.brick_counts)];
+    const uint slot = region_bricks.slots[grid_index(voxel / BRICK_SIZE - params.brick_begin, params.brick_counts)];
     const uvec3 texel = slot_origin(slot) + voxel % BRICK_SIZE + BRICK_APRON;
 #ifdef FILTERED
     return uint(texelFetch(atlas, ivec3(texel), 0).x * 65535.0 + 0.5);

@@ -27,13 +27,14 @@ double middle_of(const TransferFunction& function, const VolumeStatistics& stati
         weight += point.opacity;
         sum += point.opacity * point.intensity;
     }
-    const double middle = weight > 0.0 ? sum / weight : 0.5 * (statistics.minimum + statistics.maximum);
-    return std::clamp(0.5 * (middle + function.lower()), statistics.minimum, statistics.maximum);
+    const auto [lower, upper] = statistics.range();
+    const double middle = weight > 0.0 ? sum / weight : 0.5 * (lower + upper);
+    return std::clamp(0.5 * (middle + function.lower()), lower, upper);
 }
 
-void load(Renderer& renderer, const VolumeSource& source, const OpenedSession& opened)
+void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
-    renderer.load(source, opened.statistics, opened.session.render.sampling);
+    renderer.load(source, opened.statistics, opened.session.render);
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
                    const View::Options& view_options)
     : session_path(session_path_of(input)),
       session(opened.session),
-      source((load(renderer, *opened.source, opened), std::move(opened.source))),
+      source((load(renderer, opened.source, opened), std::move(opened.source))),
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),

@@ -14,7 +14,7 @@ namespace shvr::ui {
 struct Document {
     std::filesystem::path session_path;  ///< where the session is saved
     Session session;
-    std::unique_ptr<VolumeSource> source;
+    std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;
     PaintOp brush;  ///< but for its path

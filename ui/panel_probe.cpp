@@ -40,12 +40,12 @@ const char* spelled(const std::string& unit)
 /// Intensities of whole numbers need no decimals.
 const char* format_of(VoxelType type)
 {
-    return type == VoxelType::float32 ? "%.4g" : "%.0f";
+    return is_float(type) ? "%.4g" : "%.0f";
 }
 
 bool intensity_slider(const char* id, const Model& model, double& intensity)
 {
-    const double lower = model.statistics.minimum, upper = model.statistics.maximum;
+    const auto [lower, upper] = model.statistics.range();
     ImGui::SetNextItemWidth(-1.0f);
     return ImGui::SliderScalar(id, ImGuiDataType_Double, &intensity, &lower, &upper, format_of(model.volume.type),
                                ImGuiSliderFlags_AlwaysClamp);

@@ -93,8 +93,8 @@ void send(Points points, Actions& actions)
 void choose_axis(const Model& model, WidgetState& state)
 {
     const TransferFunction& function = model.session.transfer_function;
-    state.lower = std::min(model.statistics.minimum, function.lower());
-    state.upper = std::max(model.statistics.maximum, function.upper());
+    state.lower = std::min(model.statistics.range().lower, function.lower());
+    state.upper = std::max(model.statistics.range().upper, function.upper());
     if (!(state.upper > state.lower)) state.upper = state.lower + std::max(1.0, std::abs(state.lower));
 }
 
@@ -105,10 +105,11 @@ void draw_histogram(const Canvas& canvas, const VolumeStatistics& statistics, Im
     const auto& counts = statistics.histogram;
     if (counts.empty()) return;
     const double most = std::log1p(double(*std::max_element(counts.begin(), counts.end())));
-    const double width = (statistics.maximum - statistics.minimum) / double(counts.size());
+    const ValueRange range = statistics.range();
+    const double width = (range.upper - range.lower) / double(counts.size());
     for (size_t bin = 0; bin < counts.size() && most > 0.0; ++bin) {
         const float height = float(std::log1p(double(counts[bin])) / most) * (canvas.end.y - canvas.begin.y);
-        const double lower = statistics.minimum + double(bin) * width;
+        const double lower = range.lower + double(bin) * width;
         const float left = canvas.x_of(lower), right = std::max(canvas.x_of(lower + width), left + 1.0f);
         list.AddRectFilled({left, canvas.end.y - height}, {right, canvas.end.y}, BARS);
     }
@@ -252,8 +253,8 @@ void move_point(const Canvas& canvas, const ImVec2& mouse, Points points, size_t
 void move_all(const Model& model, double shift, Actions& actions)
 {
     Points points = points_of(model);
-    const double least = model.statistics.minimum - points.back().intensity;
-    const double most = model.statistics.maximum - points.front().intensity;
+    const double least = model.statistics.range().lower - points.back().intensity;
+    const double most = model.statistics.range().upper - points.front().intensity;
     const double held = std::clamp(shift, std::min(least, 0.0), std::max(most, 0.0));
     if (held == 0.0) return;
     for (ControlPoint& point : points) point.intensity += held;
@@ -275,8 +276,8 @@ void begin_drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, W
 void drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetState& state, Actions& actions)
 {
     const double now = canvas.intensity_at(mouse.x);
-    const double held = std::clamp(now, model.statistics.minimum, model.statistics.maximum);
-    const double threshold = model.volume.type == VoxelType::float32 ? held : std::round(held);
+    const double held = std::clamp(now, model.statistics.range().lower, model.statistics.range().upper);
+    const double threshold = is_float(model.volume.type) ? held : std::round(held);
     PaintOp brush = model.brush;
     switch (state.grip) {
         case Grip::nothing: return;
@@ -346,11 +347,11 @@ void edit_point(const Model& model, size_t index, Actions& actions)
 {
     Points points = points_of(model);
     ControlPoint& point = points[index];
-    const float speed = float((model.statistics.maximum - model.statistics.minimum) / 500.0);
+    const float speed = float((model.statistics.range().upper - model.statistics.range().lower) / 500.0);
     const double least = held_between_neighbors(points, index, -DBL_MAX);
     const double most = held_between_neighbors(points, index, DBL_MAX);
     const double clear = 0.0, solid = 1.0;
-    const char* format = model.volume.type == VoxelType::float32 ? "%.5g" : "%.1f";
+    const char* format = is_float(model.volume.type) ? "%.5g" : "%.1f";
     ImGui::PushItemWidth(-5.5f * ImGui::GetFontSize());
     bool changed = ImGui::DragScalar("Intensity", ImGuiDataType_Double, &point.intensity, std::max(speed, 1e-6f),
                                      &least, &most, format, ImGuiSliderFlags_AlwaysClamp);

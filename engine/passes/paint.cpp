@@ -23,9 +23,12 @@ Labelled region_bits(FrameGraph& graph, const VolumeBinding& volume, const Regio
 {
     Pass pass = graph.compute(volume.filtered ? "region_bits_filtered" : "region_bits", "region_bits");
     pass.read("atlas", volume.atlas);
-    pass.read("page_table", volume.page_table);
+    pass.block("region_bricks", std::span<const uint32_t>(input.bricks.slots));
     pass.block("rows", input.rows);
-    pass.push(input.params);
+    gpu::RegionParams params = input.params;
+    params.brick_begin = input.bricks.begin;
+    params.brick_counts = input.bricks.counts;
+    pass.push(params);
     pass.dispatch(words_of(input.params));
     return {pass.write("bits", graph.create("region bits", buffer_desc(word_bytes(input.params)))),
             pass.write("parents", graph.create("region parents", buffer_desc(word_bytes(input.params) * 32)))};

@@ -10,7 +10,8 @@
 namespace shvr {
 
 struct RegionInput {
-    gpu::RegionParams params;
+    gpu::RegionParams params;            ///< but for the bricks
+    const RegionBricks& bricks;          ///< those that the region lies in
     std::span<const gpu::RowSpan> rows;  ///< params.size.y * params.size.z, y fastest
 };
 

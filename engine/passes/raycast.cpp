@@ -15,14 +15,22 @@ uint32_t squarings(float shininess)
 
 }  // namespace
 
-Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input, Resource target)
+Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    Pass pass = graph.compute(
-        std::string("raycast") + (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""), "raycast");
+    Pass pass = graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") +
+                                  (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""),
+                              "raycast");
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
-    pass.read("leap", volume.leap);
+    if (volume.pages) {
+        pass.read("directory", volume.pages->directory);
+        pass.read("cell_leap", volume.pages->cell_leap);
+        pass.constant("FEEDBACK", volume.pages->feedback);
+        volume.pages->reached = pass.modify("reached", volume.pages->reached);
+    } else {
+        pass.read("leap", volume.leap);
+    }
     pass.read("atlas", volume.atlas);
     if (input.mask) {
         pass.read("mask", input.mask->mask);

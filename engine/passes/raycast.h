@@ -24,7 +24,7 @@ struct RaycastInput {
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied, over
-/// the background. Returns its new version.
-Resource raycast(FrameGraph& graph, const VolumeBinding& volume, const RaycastInput& input, Resource target);
+/// the background. Returns its new version, and renews `volume.pages->reached`.
+Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

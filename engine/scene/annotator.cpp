@@ -17,6 +17,8 @@ namespace {
 /// has buffers of its own.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MOST_REGIONS = 64;
+/// Bricks of a frame's regions together, unless one region needs more.
+constexpr uint32_t MOST_BRICKS = 48;
 
 Size3 voxel_at(const glm::dvec3& position)
 {
@@ -28,8 +30,8 @@ bool is_inside(const Size3& voxel, const Size3& size)
     return glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size));
 }
 
-gpu::RegionParams region_params(const BrushRegion& region, const VolumeBinding& volume, const PaintOp& op,
-                                uint32_t threshold_code, const Size3& seed)
+gpu::RegionParams region_params(const BrushRegion& region, const PaintOp& op, uint32_t threshold_code,
+                                const Size3& seed)
 {
     const Size3 at = seed - region.box.lower;
     const auto words = uint32_t(region.words_per_row());
@@ -40,8 +42,7 @@ gpu::RegionParams region_params(const BrushRegion& region, const VolumeBinding& 
             .words_per_row = words,
             .threshold_code = threshold_code,
             .connectivity = uint32_t(op.connectivity),
-            .seed = seeded ? uint32_t(at.x + 32 * words * (at.y + size.y * at.z)) : gpu::NO_SEED,
-            .brick_counts = volume.brick_counts};
+            .seed = seeded ? uint32_t(at.x + 32 * words * (at.y + size.y * at.z)) : gpu::NO_SEED};
 }
 
 Resource add_brush(FrameGraph& graph, const VolumeBinding& volume, Brush brush, const RegionInput& input)
@@ -94,24 +95,40 @@ void add_answers(VoxelSelection& selection, std::span<const BrushRegion> regions
 
 Annotator::Annotator(Renderer& renderer) : renderer_(renderer), document_{Mask(renderer.volume().info().size)} {}
 
-Annotator::Batch Annotator::make_batch(const PaintOp& op, std::span<const glm::dvec3> positions, size_t& next)
+std::optional<Annotator::Batch> Annotator::make_batch(const PaintOp& op, std::span<const glm::dvec3> positions,
+                                                      size_t& next, bool wait)
 {
-    const VolumeInfo& info = renderer_.volume().info();
-    const uint32_t threshold_code = renderer_.volume().window().threshold_code(op.threshold);
+    DeviceVolume& volume = renderer_.volume();
+    const VolumeInfo& info = volume.info();
+    const uint32_t threshold_code = volume.window().threshold_code(op.threshold);
     Batch batch;
-    const VolumeBinding volume = renderer_.volume().import(batch.graph);
-    batch.regions.reserve(
-        std::min(positions.size() - next, MOST_REGIONS));  // spans of earlier ones stay where they are
+    std::vector<gpu::RegionParams> params;
+    VoxelBox around;
     uint64_t labels = 0;
-    for (; next < positions.size() && labels < LABEL_BYTES && batch.regions.size() < MOST_REGIONS; ++next) {
-        BrushRegion region = make_region(op.region, positions[next], op.radius_voxels, info.spacing, info.size);
+    size_t end = next;
+    for (; end < positions.size() && labels < LABEL_BYTES && batch.regions.size() < MOST_REGIONS; ++end) {
+        BrushRegion region = make_region(op.region, positions[end], op.radius_voxels, info.spacing, info.size);
         if (region.rows.empty() || region.words_per_row() == 0) continue;
+        const VoxelBox both = batch.regions.empty() ? region.box
+                                                    : VoxelBox{glm::min(around.lower, region.box.lower),
+                                                               glm::max(around.upper, region.box.upper)};
+        // All of them look into the same bricks, so those must find room at once.
+        const glm::uvec3 bricks = bricks_around(both).counts;
+        if (!batch.regions.empty() && both != around && bricks.x * bricks.y * bricks.z > MOST_BRICKS) break;
+        around = both;
         labels += uint64_t(region.words_per_row()) * 32 * region.rows.size() * sizeof(uint32_t);
-        const gpu::RegionParams params = region_params(region, volume, op, threshold_code, voxel_at(positions[next]));
+        params.push_back(region_params(region, op, threshold_code, voxel_at(positions[end])));
         batch.regions.push_back(std::move(region));
-        batch.read_backs.push_back(
-            batch.graph.read_back(add_brush(batch.graph, volume, op.brush, {params, batch.regions.back().rows})));
     }
+    if (!batch.regions.empty()) {
+        const std::optional<RegionBricks> bricks = volume.region(around, wait);
+        if (!bricks) return std::nullopt;
+        const VolumeBinding atlas = volume.atlas(batch.graph);
+        for (size_t i = 0; i < batch.regions.size(); ++i)
+            batch.read_backs.push_back(batch.graph.read_back(
+                add_brush(batch.graph, atlas, op.brush, {params[i], *bricks, batch.regions[i].rows})));
+    }
+    next = end;
     return batch;
 }
 
@@ -120,7 +137,7 @@ VoxelSelection Annotator::select(const PaintOp& op)
     const std::vector<glm::dvec3> positions = stroke_positions(op.path);
     VoxelSelection selection(renderer_.volume().info().size);
     for (size_t next = 0; next < positions.size();) {
-        Batch batch = make_batch(op, positions, next);
+        Batch batch = make_batch(op, positions, next, true).value();
         if (batch.regions.empty()) break;
         add_answers(selection, batch.regions, batch.read_backs,
                     renderer_.executor().run(std::move(batch.graph), {.timestamps = false}));
@@ -173,11 +190,12 @@ std::optional<VoxelBox> Annotator::advance()
         changed = paint_answer();
     }
     if (stroke.next < stroke.waiting.size()) {
-        Batch batch = make_batch(stroke.brush, stroke.waiting, stroke.next);
-        stroke.asked = std::move(batch.regions);
-        stroke.read_backs = std::move(batch.read_backs);
+        std::optional<Batch> batch = make_batch(stroke.brush, stroke.waiting, stroke.next, false);
+        if (!batch) return changed;  // its bricks are on their way
+        stroke.asked = std::move(batch->regions);
+        stroke.read_backs = std::move(batch->read_backs);
         if (!stroke.asked.empty())
-            stroke.answer = renderer_.executor().submit(std::move(batch.graph), {.timestamps = false});
+            stroke.answer = renderer_.executor().submit(std::move(batch->graph), {.timestamps = false});
     } else if (stroke.has_ended) {
         last_stroke_voxels_ = stroke.voxels;
         stroke_.reset();

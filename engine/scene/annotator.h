@@ -70,7 +70,8 @@ private:
         bool is_recorded = false;  ///< a command of the history is this stroke's
         int64_t voxels = 0;
     };
-    Batch make_batch(const PaintOp& op, std::span<const glm::dvec3> positions, size_t& next);
+    /// From position `next` on, which it moves. Null where bricks are on their way to the device and `wait` is not set.
+    std::optional<Batch> make_batch(const PaintOp& op, std::span<const glm::dvec3> positions, size_t& next, bool wait);
     std::optional<VoxelBox> paint_answer();
     void bring_to_device(const Command& command);
     Renderer& renderer_;

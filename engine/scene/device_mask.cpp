@@ -1,6 +1,7 @@
 #include "engine/scene/device_mask.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "engine/scene/device_volume.h"
@@ -10,12 +11,6 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t BATCH = 128;  // bricks per upload: 4 MiB of staging
-
-glm::uvec3 slot_voxel(uint32_t slot, const glm::uvec3& slots)
-{
-    const uint32_t s = slot - 1;
-    return gpu::BRICK_SIZE * glm::uvec3(s % slots.x, (s / slots.x) % slots.y, s / (slots.x * slots.y));
-}
 
 }  // namespace
 
@@ -29,6 +24,18 @@ void DeviceMask::grow(uint64_t slots)
     slots_.clear();
     for (uint32_t slot = atlas_slots_.x * atlas_slots_.y * atlas_slots_.z; slot > 0; --slot)
         free_slots_.push_back(slot);
+}
+
+void DeviceMask::clear(bool hashed)
+{
+    clear();
+    hashed_ = hashed;
+}
+
+uint32_t DeviceMask::slot_of(int64_t brick) const
+{
+    const auto found = slots_.find(brick);
+    return found == slots_.end() ? 0 : found->second;
 }
 
 void DeviceMask::clear()
@@ -74,7 +81,8 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
         for (size_t i = 0; i < count; ++i) {
             const MaskBrick& brick = *mask.brick(changed[first + i]);
             voxels.insert(voxels.end(), brick.begin(), brick.end());
-            regions.push_back({i * MASK_BRICK_VOXELS, slot_voxel(slots_.at(changed[first + i]), atlas_slots_),
+            regions.push_back({i * MASK_BRICK_VOXELS,
+                               gpu::mask_slot_origin(slots_.at(changed[first + i]), atlas_slots_),
                                glm::uvec3(gpu::BRICK_SIZE)});
         }
         FrameGraph graph;
@@ -84,16 +92,44 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
         submit(std::move(graph));
     }
 
-    const glm::i64vec3 counts = mask.brick_counts();
-    std::vector<uint32_t> entries(size_t(counts.x * counts.y * counts.z));
-    for (const auto& [brick, slot] : slots_) entries[size_t(brick)] = slot;
+    const std::vector<uint32_t> entries = hashed_ ? hashed_table(mask) : dense_table(mask);
     const ResourceDesc table = buffer_desc(entries.size() * sizeof(uint32_t));
-    if (!table_) table_ = memory_.create("mask table", table);
+    if (!table_ || table_.desc().bytes != table.bytes) {
+        table_.reset();
+        table_ = memory_.create("mask table", table);
+    }
     FrameGraph graph;
     static_cast<void>(graph.copy(graph.upload<uint32_t>("mask table entries", entries),
                                  graph.import("mask table", table_.import()), {{0, 0, table.bytes}},
                                  "upload mask table"));
     submit(std::move(graph));
+}
+
+std::vector<uint32_t> DeviceMask::dense_table(const Mask& mask) const
+{
+    const glm::i64vec3 counts = mask.brick_counts();
+    std::vector<uint32_t> entries(size_t(counts.x * counts.y * counts.z));
+    for (const auto& [brick, slot] : slots_) entries[size_t(brick)] = slot;
+    return entries;
+}
+
+/// The index of the last place, a power of two less one, then the places; at most half of them are taken.
+std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
+{
+    const glm::i64vec3 counts = mask.brick_counts();
+    const auto places = uint32_t(std::bit_ceil(2 * slots_.size() + 16));
+    std::vector<uint32_t> table(1 + size_t(places) * gpu::MASK_ENTRY);
+    table[0] = places - 1;
+    for (const auto& [brick, slot] : slots_) {
+        const glm::uvec3 at(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+        uint32_t place = gpu::mask_hash(at) & (places - 1);
+        while (table[1 + size_t(place) * gpu::MASK_ENTRY + 2] != 0) place = (place + 1) & (places - 1);
+        uint32_t* entry = &table[1 + size_t(place) * gpu::MASK_ENTRY];
+        entry[0] = at.x | at.y << 16;
+        entry[1] = at.z;
+        entry[2] = slot;
+    }
+    return table;
 }
 
 void DeviceMask::submit(FrameGraph graph)

@@ -2,65 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <utility>
+
+#include "engine/base/error.h"
 
 namespace shvr {
 
-namespace {
-
-constexpr uint64_t TEXELS = uint64_t(gpu::BRICK_TEXELS) * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
-constexpr uint64_t CELLS = uint64_t(gpu::BRICK_CELLS) * gpu::BRICK_CELLS * gpu::BRICK_CELLS;
-constexpr uint64_t TEXEL_BYTES = TEXELS * sizeof(uint16_t);
-constexpr uint64_t CELL_BYTES = CELLS * sizeof(BrickTexels::Range);
-constexpr glm::uvec3 BRICK_EXTENT(gpu::BRICK_TEXELS);
-constexpr uint32_t BATCH = 64;  // bricks per upload: 5 MiB of staging
-
-/// Collects bricks in a staging buffer and copies a batch of them at a time.
-class Uploader {
-public:
-    Uploader(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, uint32_t codes_per_texel)
-        : executor_(executor),
-          codes_per_texel_(codes_per_texel, 1, 1),
-          capacity_(uint32_t(std::min<uint64_t>(BATCH, bricks))),
-          staging_(
-              memory.create("staging", buffer_desc(capacity_ * (TEXEL_BYTES + CELL_BYTES)), gpu::Placement::upload))
-    {}
-
-    void add(const glm::uvec3& brick, uint32_t packed_slot, const BrickTexels& texels)
-    {
-        const auto count = uint32_t(atlas_regions_.size());
-        std::byte* staged = staging_.mapped().data();
-        std::memcpy(staged + count * TEXEL_BYTES, texels.codes.data(), TEXEL_BYTES);
-        std::memcpy(staged + capacity_ * TEXEL_BYTES + count * CELL_BYTES, texels.cell_ranges.data(), CELL_BYTES);
-        atlas_regions_.push_back(
-            {count * TEXEL_BYTES, gpu::slot_origin(packed_slot) / codes_per_texel_, BRICK_EXTENT / codes_per_texel_});
-        cell_regions_.push_back(
-            {capacity_ * TEXEL_BYTES + count * CELL_BYTES, brick * gpu::BRICK_CELLS, glm::uvec3(gpu::BRICK_CELLS)});
-    }
-    bool full() const { return atlas_regions_.size() == capacity_; }
-
-    void flush(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
-    {
-        if (atlas_regions_.empty()) return;
-        FrameGraph graph;
-        const Resource staging = graph.import("staging", staging_.import());
-        static_cast<void>(graph.copy_to_image(staging, graph.import("atlas", atlas.import()),
-                                              std::exchange(atlas_regions_, {}), "upload bricks"));
-        static_cast<void>(graph.copy_to_image(staging, graph.import("cell ranges", cell_ranges.import()),
-                                              std::exchange(cell_regions_, {}), "upload cell ranges"));
-        executor_.run(graph, {.timestamps = false});
-    }
-
-private:
-    gpu::Executor& executor_;
-    glm::uvec3 codes_per_texel_;
-    uint32_t capacity_;
-    gpu::Storage staging_;
-    std::vector<ImageRegion> atlas_regions_, cell_regions_;
-};
-
-}  // namespace
+RegionBricks bricks_around(const VoxelBox& voxels)
+{
+    constexpr int64_t SIZE = gpu::BRICK_SIZE;
+    const Size3 first = voxels.lower / SIZE, end = (voxels.upper - int64_t{1}) / SIZE + int64_t{1};
+    return {.begin = glm::uvec3(first), .counts = glm::uvec3(end - first), .slots = {}};
+}
 
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots)
 {
@@ -79,61 +31,6 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
     const uint64_t z = ceil_div(rows, y);
     if (z > most) fail("the volume needs ", slots, " bricks on the device; its textures hold ", most * most * most);
     return {uint32_t(x), uint32_t(y), uint32_t(z)};
-}
-
-DeviceVolume::DeviceVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
-                           const IntensityWindow& window, bool filtered, int threads)
-    : info_(source.info()), window_(window), filtered_(filtered), brick_counts_(brick_counts(source.info().size))
-{
-    cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
-    const gpu::DeviceTraits& traits = memory.device().traits();
-    const uint64_t bricks = brick_count();
-    // Slot 0 stays unused: it is what the page table says of a brick that is not there.
-    atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
-    const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
-    const uint32_t codes_per_texel = filtered ? 1 : 2;
-    atlas_ = memory.create("atlas", image_desc(filtered ? Format::r16_unorm : Format::r32_uint,
-                                               codes / glm::uvec3(codes_per_texel, 1, 1)));
-    page_table_ = memory.create("page table", buffer_desc(bricks * sizeof(uint32_t)));
-    cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
-    leap_ = memory.create("leap grid", image_desc(Format::r32_uint, cell_counts_));
-    for (gpu::Storage& scratch : leap_scratch_)
-        scratch = memory.create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
-
-    Uploader uploader(executor, memory, bricks, codes_per_texel);
-    std::vector<uint32_t> slots;  // bricks come in the order of their index
-    build_bricks(source, window_, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
-        slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
-        uploader.add(glm::uvec3(brick), slots.back(), texels);
-        if (uploader.full()) uploader.flush(atlas_, cell_ranges_);
-    });
-    uploader.flush(atlas_, cell_ranges_);
-
-    gpu::Storage staging = memory.create("staging", page_table_.desc(), gpu::Placement::upload);
-    std::memcpy(staging.mapped().data(), slots.data(), staging.mapped().size());
-    FrameGraph graph;
-    static_cast<void>(graph.copy(graph.import("staging", staging.import()),
-                                 graph.import("page table", page_table_.import()), {{0, 0, page_table_.desc().bytes}},
-                                 "upload page table"));
-    executor.run(graph, {.timestamps = false});
-}
-
-uint64_t DeviceVolume::brick_count() const
-{
-    return uint64_t(brick_counts_.x) * brick_counts_.y * brick_counts_.z;
-}
-
-VolumeBinding DeviceVolume::import(FrameGraph& graph) const
-{
-    return {.atlas = graph.import("atlas", atlas_.import()),
-            .page_table = graph.import("page table", page_table_.import()),
-            .cell_ranges = graph.import("cell ranges", cell_ranges_.import()),
-            .leap = graph.import("leap grid", leap_.import()),
-            .leap_scratch = {graph.import("leap scratch 0", leap_scratch_[0].import()),
-                             graph.import("leap scratch 1", leap_scratch_[1].import())},
-            .brick_counts = brick_counts_,
-            .cell_counts = cell_counts_,
-            .filtered = filtered_};
 }
 
 }  // namespace shvr

@@ -1,11 +1,11 @@
 #pragma once
-// A volume on the device: its bricks in the atlas, the page table, the value range of every cell and the leap grid.
-// Everything is resident; a volume whose bricks do not fit the device budget is refused in words before any is read.
+// A volume on the device: wholly there (resident_volume.h), or as bricks that come and go (paged_volume.h).
 //
 // One thread, the one that owns the executor.
 
-#include "engine/gpu/executor.h"
-#include "engine/passes/leap_grid.h"
+#include <optional>
+
+#include "engine/passes/volume_binding.h"
 #include "engine/volume/brick_builder.h"
 
 namespace shvr {
@@ -17,25 +17,30 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
 /// The packed address of the slot of that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
+/// The bricks of level 0 that hold a box of voxels, without their slots.
+RegionBricks bricks_around(const VoxelBox& voxels);
+
 class DeviceVolume {
 public:
-    /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
-    DeviceVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
-                 const IntensityWindow& window, bool filtered, int threads);
+    virtual ~DeviceVolume() = default;
+    DeviceVolume(const DeviceVolume&) = delete;
+    DeviceVolume& operator=(const DeviceVolume&) = delete;
 
-    const IntensityWindow& window() const { return window_; }
     const VolumeInfo& info() const { return info_; }
-    uint64_t brick_count() const;
-    /// Handles for a new frame graph.
-    VolumeBinding import(FrameGraph& graph) const;
+    const IntensityWindow& window() const { return window_; }
+
+    /// What kernels bind that work on a region of level 0.
+    virtual VolumeBinding atlas(FrameGraph& graph) const = 0;
+    /// The bricks of a box of voxels, which stay where they are until the next call. Null where some are not there yet;
+    /// they are wanted before all others. `wait`: reads them now, and fails where that cannot be.
+    virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
+
+protected:
+    DeviceVolume(VolumeInfo info, const IntensityWindow& window) : info_(std::move(info)), window_(window) {}
 
 private:
     VolumeInfo info_;
     IntensityWindow window_;
-    bool filtered_;
-    glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
-    gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
-    std::array<gpu::Storage, 2> leap_scratch_;
 };
 
 }  // namespace shvr

@@ -28,18 +28,20 @@ BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 
 void Relevance::ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns)
 {
-    region_ = cube_around(voxel, renderer_.volume().info().size);
+    BrushRegion region = cube_around(voxel, renderer_.volume().info().size);
+    const std::optional<RegionBricks> bricks = renderer_.volume().region(region.box, false);
+    if (!bricks) return;  // on their way; whoever feels fades out with the old answer's age
+    region_ = std::move(region);
     asked_ns_ = now_ns;
     FrameGraph graph;
-    const VolumeBinding volume = renderer_.volume().import(graph);
+    const VolumeBinding volume = renderer_.volume().atlas(graph);
     const gpu::RegionParams params{.origin = glm::uvec3(region_.box.lower),
                                    .size = glm::uvec3(region_.box.size()),
                                    .words_per_row = uint32_t(region_.words_per_row()),
                                    .threshold_code = renderer_.volume().window().threshold_code(threshold),
                                    .connectivity = 6,
-                                   .seed = gpu::NO_SEED,
-                                   .brick_counts = volume.brick_counts};
-    graph.read_back(select_fill(graph, volume, {params, region_.rows}), "mirror relevance");
+                                   .seed = gpu::NO_SEED};
+    graph.read_back(select_fill(graph, volume, {params, *bricks, region_.rows}), "mirror relevance");
     answer_ = renderer_.executor().submit(std::move(graph));
 }
 

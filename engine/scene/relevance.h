@@ -27,8 +27,8 @@ public:
 
     explicit Relevance(Renderer& renderer) : renderer_(renderer) {}
 
-    /// Asks for the cube around a point (voxels), cut at the volume's border. Drops an answer not yet taken. Fails where
-    /// the point is not a number.
+    /// Asks for the cube around a point (voxels), cut at the volume's border. Drops an answer not yet taken. Asks
+    /// nothing while bricks of the cube are on their way to the device. Fails where the point is not a number.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
     bool is_asking() const { return bool(answer_); }
     /// Nothing while the device is at it.

@@ -7,12 +7,16 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/volume/pyramid_source.h"
+
 namespace shvr {
 
 namespace {
 
 /// Pixels of one dispatch: bounds what a single submission costs on a slow device.
 constexpr glm::uvec2 TILE{128, 128};
+/// More bricks than any view of a common screen needs: 27 000 of them.
+constexpr uint64_t MOST_ATLAS_BYTES = uint64_t{2} << 30;
 
 double reference_length(const VolumeInfo& info)
 {
@@ -51,25 +55,26 @@ std::array<uint32_t, 8> visible_groups(const Session& session)
     return bits;
 }
 
-std::vector<gpu::GroupLook> group_looks(const Session& session)
+std::vector<gpu::GroupLook> group_looks(const Session& session, double step_voxels)
 {
     std::vector<gpu::GroupLook> looks(256);
     for (uint32_t group = 1; group < 256; ++group) {
         const ColorGroup look = group_of(session, uint8_t(group));
-        const double opacity = look.visible ? opacity_of_step(look.opacity, session.render.step_voxels) : 0.0;
+        const double opacity = look.visible ? opacity_of_step(look.opacity, step_voxels) : 0.0;
         looks[group] = {glm::vec3(look.color), float(opacity)};
     }
     return looks;
 }
 
+/// `step_voxels`: between samples, in reference lengths.
 gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
                                   const VolumeBinding& binding, const VolumeStatistics& statistics,
-                                  const PicturePart& part)
+                                  const PicturePart& part, double step_voxels)
 {
     const VolumeInfo& info = volume.info();
     const RayPlanes planes = ray_planes(camera, part.pixels, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
-    const double codes_range = (statistics.maximum - statistics.minimum) * volume.window().codes_per_unit;
+    const double codes_range = (statistics.range().upper - statistics.range().lower) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -91,7 +96,11 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.inverse_spacing = reference_length(info) / info.spacing;
     params.cell_counts = binding.cell_counts;
     params.brick_counts = binding.brick_counts;
-    params.step = float(session.render.step_voxels);
+    if (binding.pages) {
+        params.page_counts = binding.pages->counts;
+        params.page_shift = binding.pages->cell_shift;
+    }
+    params.step = float(step_voxels);
     params.opacity_limit = float(session.render.opacity_limit);
     params.table_lower = map.lower;
     params.table_upper = map.upper;
@@ -110,6 +119,21 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
         params.probe_color = part.probe->color;
     }
     return params;
+}
+
+/// Adds up what the parts of a picture cost, pass by pass.
+void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> passes)
+{
+    for (gpu::PassReport& pass : passes) {
+        const auto known = std::ranges::find(sum, pass.name, &gpu::PassReport::name);
+        if (known == sum.end()) {
+            sum.push_back(std::move(pass));
+            continue;
+        }
+        known->gpu_ms += pass.gpu_ms;
+        known->dispatches += pass.dispatches;
+        for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];
+    }
 }
 
 int worker_count(int wanted)
@@ -147,25 +171,52 @@ bool Renderer::filters(Sampling sampling) const
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
-void Renderer::load(const VolumeSource& source, const VolumeStatistics& statistics, Sampling sampling)
+bool Renderer::pages(const VolumeSource& source, Paging paging) const
 {
-    const IntensityWindow window = window_for(source.info().type, statistics.minimum, statistics.maximum);
-    volume_.reset();
-    leap_state_.reset();
-    mask_.clear();  // paint belongs to the volume it was painted on
-    statistics_ = statistics;
-    volume_.emplace(executor_, memory_, source, window, filters(sampling), threads_);
+    if (paging != Paging::automatic) return paging == Paging::always;
+    if (source.levels() > 1) return true;
+    // What pictures need beside the volume must find room, too.
+    return ResidentVolume::bytes_for(source.info()) > memory_.device_bytes_left() / 16 * 15;
 }
 
-const DeviceVolume& Renderer::volume() const
+void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
+                    const RenderSettings& settings)
 {
-    SHVR_CHECK(volume_.has_value());
+    const IntensityWindow window = window_for(source->info().type, statistics.range().lower, statistics.range().upper);
+    volume_.reset();
+    resident_ = nullptr;
+    paged_ = nullptr;
+    leap_state_.reset();
+    statistics_ = statistics;
+    const bool filtered = filters(settings.sampling);
+    const bool comes_and_goes = pages(*source, settings.paging);
+    mask_.clear(comes_and_goes);  // paint belongs to the volume it was painted on
+    if (!comes_and_goes) {
+        auto volume = std::make_unique<ResidentVolume>(executor_, memory_, *source, window, filtered, threads_);
+        resident_ = volume.get();
+        volume_ = std::move(volume);
+        return;
+    }
+    const PagedVolume::Options options{.filtered = filtered,
+                                       .threads = threads_,
+                                       .host_bytes = memory_.host_budget() / 2,
+                                       .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * 3)};
+    auto volume = std::make_unique<PagedVolume>(executor_, memory_, with_levels(std::move(source), options.host_bytes),
+                                                window, options);
+    paged_ = volume.get();
+    volume_ = std::move(volume);
+}
+
+DeviceVolume& Renderer::volume() const
+{
+    SHVR_CHECK(volume_ != nullptr);
     return *volume_;
 }
 
 void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
 {
     mask_.update(mask, bricks);
+    if (paged_) paged_->note_painted(mask, bricks);
     if (bricks.empty() || !leap_state_) return;
     CellBox changed = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
     const glm::i64vec3 counts = mask.brick_counts();
@@ -178,14 +229,13 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
     leap_stage_ = 0;
 }
 
-const Renderer::Table& Renderer::table_of(const Session& session)
+const Renderer::Table& Renderer::table_of(const Session& session, double step_voxels)
 {
     const std::span<const ControlPoint> points = session.transfer_function.points();
-    if (baked_ && baked_->step_voxels == session.render.step_voxels && std::ranges::equal(baked_->points, points))
-        return *baked_;
+    if (baked_ && baked_->step_voxels == step_voxels && std::ranges::equal(baked_->points, points)) return *baked_;
     baked_ = {.points = {points.begin(), points.end()},
-              .step_voxels = session.render.step_voxels,
-              .entries = bake_table(session.transfer_function, session.render.step_voxels, TABLE_ENTRIES),
+              .step_voxels = step_voxels,
+              .entries = bake_table(session.transfer_function, step_voxels, TABLE_ENTRIES),
               .visible_intervals = {}};
     baked_->visible_intervals = visible_intervals(baked_->entries);
     table_is_on_device_ = false;
@@ -204,7 +254,7 @@ Resource Renderer::upload_table(FrameGraph& graph, const Table& table)
 
 LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session)
 {
-    const Table& table = table_of(session);
+    const Table& table = table_of(session, session.render.step_voxels);
     const TableMap map = table_map(session.transfer_function, volume_->window());
     LeapGridInput input;
     input.params = {.brick_counts = volume.brick_counts,
@@ -230,62 +280,150 @@ LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& v
     return input;
 }
 
+/// What may be seen does not depend on the length of a step.
+Visibility Renderer::visibility_of(const Session& session)
+{
+    const TableMap map = table_map(session.transfer_function, volume_->window());
+    const Table& table = table_of(session, baked_ ? baked_->step_voxels : session.render.step_voxels);
+    return {.params = {.table_lower = map.lower,
+                       .table_upper = map.upper,
+                       .table_scale = map.scale,
+                       .table_entries = TABLE_ENTRIES,
+                       .skipping = session.render.skip_empty_space,
+                       .mask_slots = glm::uvec3(0)},
+            .visible_intervals = table.visible_intervals,
+            .visible_groups = visible_groups(session)};
+}
+
+/// Tells the volume what is looked at. The distance between samples, in reference lengths: samples of coarse bricks may
+/// lie farther apart.
+double Renderer::look(const Session& session, const Camera& camera, const glm::uvec2& pixels)
+{
+    if (!paged_) return session.render.step_voxels;
+    check_camera(camera);
+    paged_->look({camera, pixels, session.render.detail, session.cut}, visibility_of(session));
+    return std::ldexp(session.render.step_voxels, paged_->tree()->finest_level);
+}
+
 std::optional<FrameGraph> Renderer::next_preparation(const Session& session)
 {
+    if (!resident_) return std::nullopt;  // what a view needs depends on the view: `draw` brings it
     FrameGraph graph;
-    VolumeBinding volume = volume_.value().import(graph);
+    VolumeBinding volume = resident_->import(graph);
     const LeapGridInput leap = want_leap_grid(graph, volume, session);
     if (leap_stage_ == LEAP_STAGES) return std::nullopt;
     leap_grid_stage(graph, volume, leap, leap_stage_++);
     return graph;
 }
 
-RaycastInput Renderer::prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
-                               const PicturePart& part)
+Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Camera& camera,
+                                     const PicturePart& part, bool feedback)
 {
-    RaycastInput input;
-    input.params = raycast_params(session, camera, *volume_, volume, statistics_, part);
-    const Table& table = table_of(session);
-    input.table = upload_table(graph, table);
+    const glm::uvec2 detail_pixels = part.detail_pixels.x > 0 ? part.detail_pixels : part.pixels;
+    const double step_voxels = look(session, camera, detail_pixels);
+    Prepared prepared;
+    RaycastInput& input = prepared.input;
+    if (paged_) {
+        prepared.volume = paged_->import(graph, mask_, feedback);
+        if (!mask_.empty()) input.mask = mask_.import(graph);
+    } else {
+        prepared.volume = resident_->import(graph);
+        const LeapGridInput leap = want_leap_grid(graph, prepared.volume, session);
+        while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, prepared.volume, leap, leap_stage_++);
+        input.mask = leap.mask;
+    }
+    input.params = raycast_params(session, camera, *volume_, prepared.volume, statistics_, part, step_voxels);
+    input.table = upload_table(graph, table_of(session, step_voxels));
     input.shaded = session.light.shaded;
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
     input.probe = part.probe.has_value();
-
-    const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, volume, leap, leap_stage_++);
-    if (leap.mask) {
-        input.mask = leap.mask;
-        input.params.mask_slots = leap.mask->slots;
-        input.groups = group_looks(session);
+    if (input.mask) {
+        input.params.mask_slots = input.mask->slots;
+        input.groups = group_looks(session, step_voxels);
     }
-    return input;
+    return prepared;
 }
 
-Resource Renderer::draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
-                        Resource target, bool count_work)
+Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+                               Resource target, bool count_work)
 {
-    VolumeBinding volume = volume_.value().import(graph);
-    RaycastInput input = prepare(graph, volume, session, camera, part);
-    input.count_work = count_work;
-    return raycast(graph, volume, input, target);
+    Prepared prepared = prepare(graph, session, camera, part, true);
+    prepared.input.count_work = count_work;
+    Drawn drawn;
+    drawn.target = raycast(graph, prepared.volume, prepared.input, target);
+    if (paged_) {
+        drawn.reached = graph.read_back(prepared.volume.pages->reached, "what rays came by");
+        drawn.tree = paged_->tree();
+    }
+    return drawn;
+}
+
+/// One part of a picture, with the bricks that are there. Its pixels go to `picture`; the read-back to the volume.
+void Renderer::render_part(Picture& picture, const Session& session, const Camera& camera, const PicturePart& part,
+                           const RenderOptions& options)
+{
+    picture.graph = FrameGraph();
+    const glm::uvec2 size = part.end - part.begin;
+    const Resource color = picture.graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
+    const Drawn drawn = draw(picture.graph, session, camera, part, color, options.count_work);
+    const uint32_t pixels = picture.graph.read_back(drawn.target);
+    gpu::FrameResult result =
+        executor_.run(picture.graph, {.timestamps = options.timestamps, .serialize = options.serialize});
+    if (drawn.reached) paged_->note_reached(drawn.tree, result.read_backs[*drawn.reached]);
+    const std::byte* row = result.read_backs[pixels].data();
+    const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
+    for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
+        std::memcpy(&picture.image.rgba[4 * (part.begin.x + size_t(part.pixels.x) * (part.begin.y + y))], row,
+                    row_bytes);
+    picture.wall_ms += result.wall_ms;
+    picture.passes = std::move(result.passes);
 }
 
 Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
 {
     Picture picture;
     const glm::uvec2 size = session.render.size;
-    const Resource color = picture.graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
-    const PicturePart whole{.pixels = size, .end = size, .probe = options.probe};
-    const uint32_t pixels =
-        picture.graph.read_back(draw(picture.graph, session, camera, whole, color, options.count_work));
-    gpu::FrameResult result =
-        executor_.run(picture.graph, {.timestamps = options.timestamps, .serialize = options.serialize});
     picture.image = {int(size.x), int(size.y), {}};
-    picture.image.rgba.resize(result.read_backs[pixels].size() / sizeof(float));
-    std::memcpy(picture.image.rgba.data(), result.read_backs[pixels].data(), result.read_backs[pixels].size());
-    picture.passes = std::move(result.passes);
-    picture.wall_ms = result.wall_ms;
+    picture.image.rgba.resize(size_t(size.x) * size.y * 4);
+    const PicturePart whole{.pixels = size, .end = size, .probe = options.probe};
+    if (!paged_) {
+        render_part(picture, session, camera, whole, options);
+        return picture;
+    }
+    // Draw, load what rays came by, and draw again, until they come by nothing that is not there. What needs more bricks
+    // at once than there is room for is drawn in quarters.
+    std::vector<gpu::PassReport> passes;
+    std::vector<PicturePart> parts{whole};
+    while (!parts.empty()) {
+        const PicturePart part = parts.back();
+        parts.pop_back();
+        look(session, camera, size);
+        if (parts.size() > 0 || part.end - part.begin != size) paged_->forget_reached();
+        for (;;) {
+            render_part(picture, session, camera, part, options);
+            static_cast<void>(paged_->advance(true));
+            if (paged_->state() == PagedVolume::State::complete && !paged_->is_stale()) break;
+            if (paged_->state() == PagedVolume::State::limited) break;
+        }
+        const glm::uvec2 extent = part.end - part.begin;
+        if (paged_->state() == PagedVolume::State::limited && extent.x * extent.y > 1) {
+            const glm::uvec2 middle = part.begin + (extent + 1u) / 2u;
+            for (const bool below : {true, false})
+                for (const bool right : {true, false}) {
+                    PicturePart quarter = part;
+                    (right ? quarter.begin.x : quarter.end.x) = middle.x;
+                    (below ? quarter.begin.y : quarter.end.y) = middle.y;
+                    if (quarter.begin.x < quarter.end.x && quarter.begin.y < quarter.end.y) parts.push_back(quarter);
+                }
+            continue;
+        }
+        picture.complete =
+            picture.complete && paged_->state() == PagedVolume::State::complete && paged_->missing() == 0;
+        append(passes, std::move(picture.passes));
+    }
+    picture.passes = std::move(passes);
+    picture.warnings = paged_->take_messages();
     return picture;
 }
 
@@ -293,13 +431,12 @@ std::optional<glm::dvec3> Renderer::pick(const Session& session, const Camera& c
                                          const glm::uvec2& pixel)
 {
     FrameGraph graph;
-    VolumeBinding volume = volume_.value().import(graph);
-    RaycastInput input = prepare(graph, volume, session, camera, {.pixels = pixels, .begin = pixel, .end = pixel + 1u});
-    input.pick = true;
-    input.shaded = false;
-    input.params.opacity_limit = std::min(input.params.opacity_limit, 0.5f);
-    const Resource reached = graph.create("reached", image_desc(Format::rgba32_float, glm::uvec3(1)));
-    const uint32_t index = graph.read_back(raycast(graph, volume, input, reached));
+    Prepared prepared = prepare(graph, session, camera, {.pixels = pixels, .begin = pixel, .end = pixel + 1u}, false);
+    prepared.input.pick = true;
+    prepared.input.shaded = false;
+    prepared.input.params.opacity_limit = std::min(prepared.input.params.opacity_limit, 0.5f);
+    const Resource reached = graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1)));
+    const uint32_t index = graph.read_back(raycast(graph, prepared.volume, prepared.input, reached));
     const gpu::FrameResult result = executor_.run(std::move(graph), {.timestamps = false});
     glm::vec4 voxel_and_hit;
     std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);

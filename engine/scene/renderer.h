@@ -14,7 +14,8 @@
 #include "engine/base/image.h"
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
-#include "engine/scene/device_volume.h"
+#include "engine/scene/paged_volume.h"
+#include "engine/scene/resident_volume.h"
 #include "engine/scene/session.h"
 #include "shaders/raycast.h"
 
@@ -33,6 +34,7 @@ struct PicturePart {
     glm::uvec2 pixels{0};         ///< of the whole picture
     glm::uvec2 begin{0}, end{0};  ///< the pixels that are drawn
     glm::uvec2 target{0};         ///< texel that `begin` goes to
+    glm::uvec2 detail_pixels{0};  ///< of the picture that decides how fine the bricks are; 0: this one
     std::optional<ProbeLook> probe;
 };
 
@@ -44,8 +46,9 @@ struct RenderOptions {
 };
 
 struct Picture {
-    ImageF image;          ///< linear light, premultiplied, over the background
-    bool complete = true;  ///< every brick was there at its wanted level
+    ImageF image;                       ///< linear light, premultiplied, over the background
+    bool complete = true;               ///< every brick that rays came by was there, as fine as wanted
+    std::vector<std::string> warnings;  ///< what was not
     std::vector<gpu::PassReport> passes;
     double wall_ms = 0.0;
     FrameGraph graph;  ///< what was run, for `profile --graph`
@@ -64,10 +67,15 @@ public:
     gpu::Memory& memory() { return memory_; }
     gpu::Executor& executor() { return executor_; }
 
-    /// Replaces the volume. The statistics give the intensity window and the scale of gradients; `sampling` decides how
-    /// the device holds the bricks.
-    void load(const VolumeSource& source, const VolumeStatistics& statistics, Sampling sampling = Sampling::automatic);
-    const DeviceVolume& volume() const;
+    /// Replaces the volume. The statistics give the intensity window and the scale of gradients; of `settings` sampling
+    /// and paging decide how the device holds the bricks.
+    void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
+              const RenderSettings& settings = {});
+    DeviceVolume& volume() const;
+    /// Null where bricks come and go.
+    ResidentVolume* resident() const { return resident_; }
+    /// Null where all bricks are on the device.
+    PagedVolume* paged() const { return paged_; }
     const VolumeStatistics& statistics() const { return statistics_; }
 
     /// Brings changed bricks of the mask to the device.
@@ -80,10 +88,17 @@ public:
     /// Whoever does not ask gets it all in the first `draw`. The graph must be submitted before the next call.
     std::optional<FrameGraph> next_preparation(const Session& session);
 
-    /// Adds the passes that draw a part of `session` from `camera` into `target`, an rgba32_float image, and returns its
-    /// new version. The graph must be submitted, and before any other that was made later.
-    Resource draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
-                  Resource target, bool count_work = false);
+    /// What was added to a graph: the target's new version, and where bricks come and go the read-back that
+    /// `note_reached` wants once the graph is done.
+    struct Drawn {
+        Resource target;
+        std::optional<uint32_t> reached;
+        PagedVolume::TreeRef tree;
+    };
+    /// Adds the passes that draw a part of `session` from `camera` into `target`, an rgba32_float image. The graph must be
+    /// submitted, and before any other that was made later.
+    Drawn draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+               Resource target, bool count_work = false);
 
     /// What is seen at a pixel: where its ray becomes half opaque, in volume space. Waits for the device.
     std::optional<glm::dvec3> pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
@@ -98,18 +113,29 @@ private:
         std::vector<uint32_t> visible_intervals;
     };
     bool filters(Sampling sampling) const;
-    const Table& table_of(const Session& session);
+    bool pages(const VolumeSource& source, Paging paging) const;
+    const Table& table_of(const Session& session, double step_voxels);
+    Visibility visibility_of(const Session& session);
+    double look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
+    void render_part(Picture& picture, const Session& session, const Camera& camera, const PicturePart& part,
+                     const RenderOptions& options);
     Resource upload_table(FrameGraph& graph, const Table& table);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
-    RaycastInput prepare(FrameGraph& graph, VolumeBinding& volume, const Session& session, const Camera& camera,
-                         const PicturePart& part);
+    struct Prepared {
+        VolumeBinding volume;
+        RaycastInput input;
+    };
+    Prepared prepare(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+                     bool feedback);
 
     gpu::Device device_;
     gpu::Memory memory_;
     gpu::Executor executor_;
     int threads_;
     VolumeStatistics statistics_;
-    std::optional<DeviceVolume> volume_;
+    std::unique_ptr<DeviceVolume> volume_;
+    ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
+    PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
     DeviceMask mask_;
     std::optional<Table> baked_;
     gpu::Storage table_;

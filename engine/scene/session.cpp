@@ -78,6 +78,7 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
     opened.source = open_source(opened.session);
     opened.statistics = measure(*opened.source);
+    opened.warnings = warnings_of(opened.statistics);
     if (!document.contains("transfer_function")) {
         TransferFunction& function = opened.session.transfer_function;
         function = automatic_transfer_function(opened.statistics);

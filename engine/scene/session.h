@@ -39,12 +39,17 @@ struct Light {
 
 enum class Sampling { automatic, exact, hardware };
 
+/// Whether bricks come and go on the device. Automatic: where there are levels to choose from, or the budget asks for it.
+enum class Paging { automatic, always, never };
+
 struct RenderSettings {
     glm::uvec2 size{512, 512};                  ///< pixels
     double step_voxels = 0.5;                   ///< reference lengths (voxels along the finest axis)
     double opacity_limit = 1.0 - 1.0 / 1024;    ///< a ray stops once its opacity reaches this
     glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
     Sampling sampling = Sampling::automatic;
+    Paging paging = Paging::automatic;
+    double detail = 1.0;  ///< voxels per pixel at least, where there are levels to choose from; 0: the finest always
     bool skip_empty_space = true;
     bool operator==(const RenderSettings&) const = default;
 };
@@ -96,7 +101,7 @@ ColorGroup group_of(const Session& session, uint8_t group);
 /// automatic one as a volume file. Session files hold at most 16 MiB.
 struct OpenedSession {
     Session session;
-    std::unique_ptr<VolumeSource> source;
+    std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };

@@ -58,8 +58,8 @@ size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, doubl
 
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 {
-    const double minimum = statistics.minimum;
-    const double maximum = statistics.maximum;
+    const double minimum = statistics.range().lower;
+    const double maximum = statistics.range().upper;
     const std::vector<int64_t>& histogram = statistics.histogram;
     const auto bins = static_cast<double>(histogram.size());
     // Nothing tells voxels apart: a thin haze shows that there is a volume.

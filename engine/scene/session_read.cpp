@@ -48,11 +48,9 @@ ProceduralSpec read_procedural(const JsonNode& node)
     spec.kind = node["procedural"].choice(spec.kind, kinds);
     spec.size = node["size"].size(spec.size);
     spec.seed = static_cast<uint32_t>(node["seed"].whole(spec.seed, 0, std::numeric_limits<uint32_t>::max()));
-    spec.type = node["type"].choice(spec.type, {{"uint8", VoxelType::uint8},
-                                                {"int8", VoxelType::int8},
-                                                {"uint16", VoxelType::uint16},
-                                                {"int16", VoxelType::int16},
-                                                {"float32", VoxelType::float32}});
+    std::map<std::string, VoxelType> types;
+    for (const VoxelType type : VOXEL_TYPES) types[name_of(type)] = type;
+    spec.type = node["type"].choice(spec.type, types);
     spec.spacing = read_spacing(node["spacing"], spec.spacing);
     spec.unit = node["unit"].text(spec.unit);
     return spec;
@@ -169,7 +167,8 @@ RenderSettings read_render(const JsonNode& node)
 {
     RenderSettings render;
     if (!node.exists()) return render;
-    node.expect_object({"size", "step_voxels", "opacity_limit", "background", "sampling", "skip_empty_space"});
+    node.expect_object(
+        {"size", "step_voxels", "opacity_limit", "background", "sampling", "paging", "detail", "skip_empty_space"});
     render.size = read_picture_size(node["size"], render.size);
     render.step_voxels = node["step_voxels"].number(render.step_voxels, above_zero(1e-4, 1024.0));
     render.opacity_limit = node["opacity_limit"].number(render.opacity_limit, above_zero(1e-6, 1.0));
@@ -177,6 +176,9 @@ RenderSettings read_render(const JsonNode& node)
     render.sampling = node["sampling"].choice(
         render.sampling,
         {{"automatic", Sampling::automatic}, {"exact", Sampling::exact}, {"hardware", Sampling::hardware}});
+    render.paging = node["paging"].choice(
+        render.paging, {{"automatic", Paging::automatic}, {"always", Paging::always}, {"never", Paging::never}});
+    render.detail = node["detail"].number(render.detail, range(0.0, 16.0));
     render.skip_empty_space = node["skip_empty_space"].flag(render.skip_empty_space);
     return render;
 }

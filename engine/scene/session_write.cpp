@@ -116,6 +116,17 @@ json write_light(const Light& light)
             {"gradient_fade", light.gradient_fade}};
 }
 
+const char* name_of(Paging paging)
+{
+    switch (paging) {
+        case Paging::automatic: return "automatic";
+        case Paging::always: return "always";
+        case Paging::never: return "never";
+    }
+    SHVR_CHECK(false, "paging ", int(paging));
+    return "";
+}
+
 const char* name_of(Sampling sampling)
 {
     switch (sampling) {
@@ -128,9 +139,14 @@ const char* name_of(Sampling sampling)
 
 json write_render(const RenderSettings& render)
 {
-    return {{"size", {render.size.x, render.size.y}}, {"step_voxels", render.step_voxels},
-            {"opacity_limit", render.opacity_limit},  {"background", text_of_color(render.background)},
-            {"sampling", name_of(render.sampling)},   {"skip_empty_space", render.skip_empty_space}};
+    return {{"size", {render.size.x, render.size.y}},
+            {"step_voxels", render.step_voxels},
+            {"opacity_limit", render.opacity_limit},
+            {"background", text_of_color(render.background)},
+            {"sampling", name_of(render.sampling)},
+            {"paging", name_of(render.paging)},
+            {"detail", render.detail},
+            {"skip_empty_space", render.skip_empty_space}};
 }
 
 json write_probe(const ProbeSettings& probe)

@@ -83,6 +83,8 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
 void View::advance()
 {
     reap();
+    if (renderer_.paged())
+        for (const VoxelBox& voxels : renderer_.paged()->advance()) changed(voxels);
     while (in_flight_ms_ < options_.in_flight_ms && submit_next()) {
     }
 }
@@ -172,17 +174,28 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
                            .begin = {job.part.begin.x, sketch.next_row},
                            .end = {job.part.end.x, sketch.next_row + rows},
                            .target = {0, sketch.next_row - job.part.begin.y},
+                           .detail_pixels = job.scene->pixels,
                            .probe = job.probe};
     FrameGraph graph;
-    const Resource light =
-        renderer_.draw(graph, job.scene->session, job.scene->camera, part, graph.import("light", work_.import()));
+    Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene};
+    const Resource light = draw(graph, part, running);
     sketch.next_row += rows;
     if (job.scale == 1) {  // otherwise rows are enlarged together with their neighbours, when all are there
         encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
         sketch.next_encoded = sketch.next_row;
     }
     ++sketch.running;
-    submit(std::move(graph), {.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene});
+    submit(std::move(graph), std::move(running));
+}
+
+Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running)
+{
+    const Scene& scene = *running.scene;
+    Renderer::Drawn drawn =
+        renderer_.draw(graph, scene.session, scene.camera, part, graph.import("light", work_.import()));
+    running.reached = drawn.reached;
+    running.tree = std::move(drawn.tree);
+    return drawn.target;
 }
 
 void View::submit_encoding(Sketch& sketch, Purpose purpose)
@@ -261,8 +274,7 @@ bool View::submit_tiles()
     const glm::uvec2 size = part.end - part.begin;
     reserve(work_, "light", Format::rgba32_float, size);
     FrameGraph graph;
-    const Resource light =
-        renderer_.draw(graph, shown_scene_->session, shown_scene_->camera, part, graph.import("light", work_.import()));
+    const Resource light = draw(graph, part, running);
     gpu::EncodeParams params = encoding();
     params.target = part.begin;
     params.size = size;
@@ -335,7 +347,10 @@ void View::reap()
         Running done = std::move(running_.front());
         running_.pop_front();
         in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
-        account(done.submission.finish(), done.pixels);
+        const gpu::FrameResult result = done.submission.finish();
+        account(result, done.pixels);
+        if (done.reached && renderer_.paged())
+            renderer_.paged()->note_reached(done.tree, result.read_backs[*done.reached]);
         switch (done.purpose) {
             case Purpose::preparation: break;
             case Purpose::base: --base_.running; break;
@@ -374,6 +389,7 @@ void View::finish_sketches()
 bool View::complete() const
 {
     if (!scene_) return true;
+    if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
     if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
     return (patch_.shown.scale == 1 || patch_.shown.part.empty()) &&
            std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });

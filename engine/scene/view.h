@@ -37,14 +37,14 @@ public:
     /// What is to be seen: all of it is drawn anew. Not to be called where nothing changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
     void show_probe(const std::optional<ProbeLook>& probe);
-    /// These voxels have been painted.
+    /// These voxels have been painted, or have come to the device.
     void changed(const VoxelBox& voxels);
 
     /// Takes what the device has finished, and submits what is due next.
     void advance();
     /// Waits for what is on its way; `in_flight_ms` or so.
     void wait();
-    /// The picture is sharp, and nothing is due or on its way.
+    /// The picture is as sharp as the budget lets it be, and nothing is due or on its way.
     bool complete() const;
     /// The camera of what layers() show; null before there is anything.
     const Camera* shown_camera() const { return shown_scene_ ? &shown_scene_->camera : nullptr; }
@@ -113,10 +113,13 @@ private:
         uint64_t pixels = 0;
         std::vector<uint32_t> tiles;  ///< indices
         SceneRef scene;
+        std::optional<uint32_t> reached;  ///< Renderer::Drawn
+        PagedVolume::TreeRef tree;
     };
 
     bool submit_next();
     bool submit_preparation(const Scene& scene);
+    Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
     void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
     bool submit_sketch(Sketch& sketch, Purpose purpose);
     void submit_rows(Sketch& sketch, Purpose purpose);

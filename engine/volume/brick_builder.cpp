@@ -324,6 +324,33 @@ glm::ivec3 brick_counts(const Size3& size)
     return glm::ivec3((size + (SIZE - 1)) / SIZE);
 }
 
+void BrickMaker::make(const BrickKey& key, BrickTexels& texels)
+{
+    const Size3 size = size_of_level(source_.info().size, key.level);
+    const Size3 begin = SIZE * Size3(key.brick) - APRON;
+    const VoxelBox box{glm::max(begin, Size3(0)), glm::min(begin + TEXELS, size)};
+    const Size3 extent = box.size();
+    const auto row_bytes = static_cast<size_t>(extent.x) * bytes_of(source_.info().type);
+    voxels_.resize(row_bytes * static_cast<size_t>(extent.y * extent.z));
+    source_.read_level(key.level, box, voxels_);
+
+    const int64_t inside_begin = box.lower.x - begin.x;
+    for (int64_t z = 0; z < TEXELS; ++z) {
+        const int64_t slice = std::clamp<int64_t>(begin.z + z, box.lower.z, box.upper.z - 1) - box.lower.z;
+        for (int64_t y = 0; y < TEXELS; ++y) {
+            const int64_t line = std::clamp<int64_t>(begin.y + y, box.lower.y, box.upper.y - 1) - box.lower.y;
+            const std::span<uint16_t> row(texels.codes.data() + TEXELS * (y + TEXELS * z), TEXELS);
+            const auto inside = row.subspan(static_cast<size_t>(inside_begin), static_cast<size_t>(extent.x));
+            code_rows_.convert(
+                std::span(voxels_).subspan(row_bytes * static_cast<size_t>(line + extent.y * slice), row_bytes),
+                inside);
+            std::fill(row.begin(), inside.begin(), inside.front());
+            std::fill(inside.end(), row.end(), inside.back());
+        }
+    }
+    find_ranges(texels);
+}
+
 void build_bricks(const VolumeSource& source, const IntensityWindow& window, int threads,
                   const std::function<void(const glm::ivec3& brick, const BrickTexels& texels)>& take)
 {

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "engine/volume/brick_key.h"
+#include "engine/volume/code_rows.h"
 #include "engine/volume/source.h"
 #include "shaders/bricks.h"
 
@@ -25,7 +27,22 @@ struct BrickTexels {
 /// Number of bricks along each axis: ceil(size / BRICK_SIZE).
 glm::ivec3 brick_counts(const Size3& size);
 
-/// Builds every brick of the volume, in order of their index (x fastest), reading the source slab by slab, each slice
+/// Makes single bricks, of any level. Each thread has one of its own.
+class BrickMaker {
+public:
+    BrickMaker(const VolumeSource& source, const IntensityWindow& window)
+        : source_(source), code_rows_(source.info().type, window)
+    {}
+
+    void make(const BrickKey& key, BrickTexels& texels);
+
+private:
+    const VolumeSource& source_;
+    CodeRows code_rows_;
+    std::vector<std::byte> voxels_;
+};
+
+/// Builds every brick of level 0, in order of their index (x fastest), reading the source slab by slab, each slice
 /// once: two slabs of 34 slices are held at a time, as the source gives them, and a few rows of bricks. `take` is
 /// called once per brick, on the calling thread and in order, while the next bricks are built on `threads` workers,
 /// which also read. An exception of the source or of `take` ends the work and is thrown on.

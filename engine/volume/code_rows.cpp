@@ -27,19 +27,21 @@ void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes
     }
 }
 
-/// Exact in 32 bits: voxels within the window give codes up to 65535, others are clamped to it first.
+/// Exact: voxels are clamped to those of the window that have a code of their own, whose differences from its lower
+/// end need 32 bits without a sign.
 template <class T>
 void convert_whole(std::span<const std::byte> voxels, std::span<uint16_t> codes, const IntensityWindow& window)
 {
-    const auto lower = static_cast<int32_t>(window.lower);
+    const auto lower = static_cast<int64_t>(window.lower);
     const auto factor = static_cast<uint32_t>(window.codes_per_unit);
-    const int32_t upper = lower + static_cast<int32_t>(65535u / factor);
-    const auto lowest = static_cast<T>(std::max<int32_t>(lower, std::numeric_limits<T>::min()));
-    const auto highest = static_cast<T>(std::min<int32_t>(upper, std::numeric_limits<T>::max()));
+    const int64_t upper = lower + static_cast<int64_t>(65535u / factor);
+    const auto lowest = static_cast<T>(std::max<int64_t>(lower, std::numeric_limits<T>::min()));
+    const auto highest = static_cast<T>(std::min<int64_t>(upper, std::numeric_limits<T>::max()));
+    const auto lower_bits = static_cast<uint32_t>(lower);
     for_each_block<T>(voxels, codes, [=](const T* __restrict in, uint16_t* __restrict out) {
         for (size_t i = 0; i < BLOCK; ++i) {
             const T voxel = std::min(std::max(in[i], lowest), highest);
-            out[i] = static_cast<uint16_t>(static_cast<uint32_t>(voxel - lower) * factor);
+            out[i] = static_cast<uint16_t>((static_cast<uint32_t>(voxel) - lower_bits) * factor);
         }
     });
 }
@@ -71,16 +73,21 @@ void convert_integers(std::span<const std::byte> voxels, std::span<uint16_t> cod
 CodeRows::CodeRows(VoxelType type, const IntensityWindow& window)
     : type_(type),
       window_(window),
-      is_whole_(window.lower == std::floor(window.lower) && window.lower >= -32768.0 && window.lower <= 65535.0 &&
+      is_whole_(window.lower == std::floor(window.lower) && std::abs(window.lower) <= 4294967295.0 &&
                 window.codes_per_unit == std::floor(window.codes_per_unit) && window.codes_per_unit >= 1.0 &&
                 window.codes_per_unit <= 65535.0)
 {
     // Where the window begins above or ends below every voxel, clamping to it would leave the type.
-    const auto ends_within = [&](double least, double most) { return window.lower <= most && window.upper() >= least; };
-    if (type == VoxelType::uint8) is_whole_ = is_whole_ && ends_within(0.0, 255.0);
-    if (type == VoxelType::int8) is_whole_ = is_whole_ && ends_within(-128.0, 127.0);
-    if (type == VoxelType::uint16) is_whole_ = is_whole_ && ends_within(0.0, 65535.0);
-    if (type == VoxelType::int16) is_whole_ = is_whole_ && ends_within(-32768.0, 32767.0);
+    const auto ends_within = [&]<class T>(T) {
+        return window.lower <= double{std::numeric_limits<T>::max()} &&
+               window.upper() >= double{std::numeric_limits<T>::min()};
+    };
+    if (type == VoxelType::uint8) is_whole_ = is_whole_ && ends_within(uint8_t{});
+    if (type == VoxelType::int8) is_whole_ = is_whole_ && ends_within(int8_t{});
+    if (type == VoxelType::uint16) is_whole_ = is_whole_ && ends_within(uint16_t{});
+    if (type == VoxelType::int16) is_whole_ = is_whole_ && ends_within(int16_t{});
+    if (type == VoxelType::uint32) is_whole_ = is_whole_ && ends_within(uint32_t{});
+    if (type == VoxelType::int32) is_whole_ = is_whole_ && ends_within(int32_t{});
 }
 
 void CodeRows::convert(std::span<const std::byte> voxels, std::span<uint16_t> codes) const
@@ -91,7 +98,10 @@ void CodeRows::convert(std::span<const std::byte> voxels, std::span<uint16_t> co
         case VoxelType::int8: return convert_integers<int8_t>(voxels, codes, window_, is_whole_);
         case VoxelType::uint16: return convert_integers<uint16_t>(voxels, codes, window_, is_whole_);
         case VoxelType::int16: return convert_integers<int16_t>(voxels, codes, window_, is_whole_);
+        case VoxelType::uint32: return convert_integers<uint32_t>(voxels, codes, window_, is_whole_);
+        case VoxelType::int32: return convert_integers<int32_t>(voxels, codes, window_, is_whole_);
         case VoxelType::float32: return convert_any<float>(voxels, codes, window_);
+        case VoxelType::float64: return convert_any<double>(voxels, codes, window_);
     }
 }
 

@@ -200,7 +200,7 @@ Size3 HeaderFields::size(const char* name) const
 
 VoxelType HeaderFields::type(const char* name) const
 {
-    constexpr const char* EXPECTED = "8 or 16 bit integers, signed or unsigned, or 32 bit floats";
+    constexpr const char* EXPECTED = "integers of 8, 16 or 32 bits, signed or unsigned, or floats of 32 or 64 bits";
     const std::optional<VoxelType> type = voxel_type_of(required(name, EXPECTED));
     if (!type) refuse(name, EXPECTED);
     return *type;

@@ -23,8 +23,8 @@ constexpr Reader READERS[] = {
 [[noreturn]] void refuse_layout(const std::string& text)
 {
     throw UsageError(sentence("raw layout is ", in_quotes(text),
-                              "; expected WxHxD:TYPE[:big|little][:OFFSET] with TYPE uint8, ",
-                              "int8, uint16, int16 or float32, as in 256x256x108:int16:big:512"));
+                              "; expected WxHxD:TYPE[:big|little][:OFFSET] with TYPE ", VOXEL_TYPE_NAMES,
+                              ", as in 256x256x108:int16:big:512"));
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator)

@@ -68,9 +68,8 @@ SideCar read_json_side_car(const fs::path& path, const Json& document, const fs:
         if (key == "size") {
             found.info.size = json_size(path, value);
         } else if (key == "type") {
-            constexpr const char* EXPECTED = "\"uint8\", \"int8\", \"uint16\", \"int16\" or \"float32\"";
-            const std::optional<VoxelType> type = voxel_type_of(json_text(path, "type", value, EXPECTED));
-            if (!type) refuse_key(path, "type", value, EXPECTED);
+            const std::optional<VoxelType> type = voxel_type_of(json_text(path, "type", value, VOXEL_TYPE_NAMES));
+            if (!type) refuse_key(path, "type", value, VOXEL_TYPE_NAMES);
             found.info.type = *type;
         } else if (key == "endian") {
             constexpr const char* EXPECTED = "\"little\" or \"big\"";

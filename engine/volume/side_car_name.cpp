@@ -40,8 +40,9 @@ void type_in_name(std::string word, std::optional<VoxelType>& type, std::optiona
     if (word == "8bit") type = VoxelType::uint8;
     if (word == "16bit") type = VoxelType::uint16;
     if (word == "32bit") type = VoxelType::float32;
+    if (word == "64bit") type = VoxelType::float64;
     // Bare words of everyday language ("short_root.raw") are no types.
-    if (!word.empty() && (is_digit(word.back()) || word == "uchar" || word == "ushort")) {
+    if (!word.empty() && (is_digit(word.back()) || word == "uchar" || word == "ushort" || word == "uint")) {
         if (const auto known = voxel_type_of(word)) type = known;
     }
 }
@@ -52,10 +53,10 @@ VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
     const int64_t count = voxel_count(info);
     std::error_code error;
     const auto bytes = static_cast<int64_t>(fs::file_size(path, error));
-    for (const VoxelType type : {VoxelType::uint8, VoxelType::uint16, VoxelType::float32}) {
+    for (const VoxelType type : {VoxelType::uint8, VoxelType::uint16, VoxelType::float32, VoxelType::float64}) {
         if (!error && bytes % count == 0 && static_cast<size_t>(bytes / count) == bytes_of(type)) return type;
     }
-    fail(path.string(), ": holds ", bytes, " bytes, which is not 1, 2 or 4 for each of the ", count,
+    fail(path.string(), ": holds ", bytes, " bytes, which is not 1, 2, 4 or 8 for each of the ", count,
          " voxels in its name; expected --raw WxHxD:TYPE to say what they are");
 }
 

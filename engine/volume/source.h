@@ -25,13 +25,6 @@ struct OpenOptions {
     bool operator==(const OpenOptions&) const = default;
 };
 
-/// Smallest and largest finite value; `lower > upper` where there is none.
-struct ValueRange {
-    double lower = 0.0;
-    double upper = 0.0;
-    bool operator==(const ValueRange&) const = default;
-};
-
 class VolumeSource {
 public:
     virtual ~VolumeSource() = default;
@@ -60,10 +53,17 @@ private:
     VolumeInfo info_;
 };
 
-/// One pass over the whole volume (float32: a second one for the histogram, whose range the first one finds) in slabs
-/// of bounded size: at most 32 MiB, at least one row. A volume without a finite voxel has minimum = maximum = mean = 0.
-/// What the source knows itself is taken from it.
+/// One pass over the whole volume (types of 32 and 64 bits: a second one for the histogram, whose range the first one
+/// finds, and a third one where a few voxels are left out of that range) in slabs of bounded size: at most 32 MiB, at
+/// least one row. A volume without a finite voxel has minimum = maximum = mean = 0. What the source knows itself is
+/// taken from it.
 VolumeStatistics measure(const VolumeSource& source);
+
+/// The same of a level, always by going through its voxels.
+VolumeStatistics measure_level(const VolumeSource& source, int level);
+
+/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
+std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).
 Size3 size_of_level(const Size3& size, int level);

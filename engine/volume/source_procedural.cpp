@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/volume/procedural_kind.h"
+#include "shaders/bricks.h"
 
 namespace shvr {
 namespace {
@@ -86,22 +87,60 @@ void store(VoxelType type, std::span<const double> values, std::byte* voxels)
         case VoxelType::int8: return store<int8_t>(values, voxels);
         case VoxelType::uint16: return store<uint16_t>(values, voxels);
         case VoxelType::int16: return store<int16_t>(values, voxels);
+        case VoxelType::uint32: return store<uint32_t>(values, voxels);
+        case VoxelType::int32: return store<int32_t>(values, voxels);
         case VoxelType::float32: return store<float>(values, voxels);
+        case VoxelType::float64: return store<double>(values, voxels);
     }
 }
 
 class ProceduralSource final : public VolumeSource {
 public:
-    explicit ProceduralSource(const ProceduralSpec& spec) : VolumeSource(info_of(spec)), kind_(make_kind(spec)) {}
+    explicit ProceduralSource(const ProceduralSpec& spec)
+        : VolumeSource(info_of(spec)), kind_(make_kind(spec)), levels_(spec.levels)
+    {
+        if (levels_ > 0) return;
+        levels_ = 1;
+        if (voxel_count(info()) <= int64_t{1} << 33) return;
+        const int64_t longest = std::max({info().size.x, info().size.y, info().size.z});
+        while ((longest - 1) >> (levels_ - 1) >= int64_t{gpu::BRICK_SIZE}) ++levels_;
+    }
+
+    int levels() const override { return levels_; }
+
+    /// Every voxel of a volume without end cannot be asked; those of a coarse level are voxels, too.
+    std::optional<VolumeStatistics> statistics() const override
+    {
+        if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;
+        VolumeStatistics statistics = measure_level(*this, std::max(0, levels_ - 3));
+        statistics.minimum = shift_of(info().type);
+        statistics.maximum = 250.0 + shift_of(info().type);
+        return statistics;
+    }
+
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        if (level == 0) return read(box, voxels);
+        check_box(level, box, voxels);
+        const double side = std::ldexp(1.0, level);
+        const Size3 extent = box.size();
+        std::vector<double> values(static_cast<size_t>(extent.x));
+        std::byte* row = voxels.data();
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
+                for (int64_t x = 0; x < extent.x; ++x)
+                    values[static_cast<size_t>(x)] =
+                        kind_->value(glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
+                store(info().type, values, row);
+                row += values.size() * bytes_of(info().type);
+            }
+    }
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
+        check_box(0, box, voxels);
         const Size3 extent = box.size();
         const auto row_bytes = extent.x * static_cast<int64_t>(bytes_of(info().type));
-        SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
-                   glm::all(glm::lessThanEqual(box.upper, info().size)) &&
-                   glm::all(glm::greaterThan(extent, Size3(0))));
-        SHVR_CHECK(static_cast<int64_t>(voxels.size()) == extent.y * extent.z * row_bytes, voxels.size());
         const std::unique_ptr<ProceduralKind::Rows> rows = kind_->rows(box);
         std::vector<double> values(static_cast<size_t>(extent.x));
         for (int64_t y = 0; y < extent.y; ++y) {
@@ -113,7 +152,19 @@ public:
     }
 
 private:
+    void check_box(int level, const VoxelBox& box, std::span<std::byte> voxels) const
+    {
+        const Size3 extent = box.size();
+        SHVR_CHECK(level >= 0 && level < levels_, level);
+        SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
+                   glm::all(glm::lessThanEqual(box.upper, size_of_level(info().size, level))) &&
+                   glm::all(glm::greaterThan(extent, Size3(0))));
+        SHVR_CHECK(voxels.size() == static_cast<size_t>(extent.x * extent.y * extent.z) * bytes_of(info().type),
+                   voxels.size());
+    }
+
     std::unique_ptr<ProceduralKind> kind_;
+    int levels_;
 };
 
 /// For kinds whose values are cheap: one by one.

@@ -24,6 +24,9 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
+    /// Levels, each the same function at the centres of larger voxels. 0: one, or for more than 2^33 voxels as many as leave
+    /// one brick.
+    int levels = 0;
 };
 
 /// Voxels are the field at their centres, rounded half up; in int8 every intensity is lower by 128, so that none is

@@ -38,6 +38,10 @@ uint32_t swapped32(uint32_t bits)
 {
     return __builtin_bswap32(bits);
 }
+uint64_t swapped64(uint64_t bits)
+{
+    return __builtin_bswap64(bits);
+}
 
 class RawSource final : public VolumeSource {
 public:
@@ -70,6 +74,7 @@ public:
         }
         if (voxels_.big_endian && voxel_bytes == 2) swap_each<uint16_t, swapped16>(voxels);
         if (voxels_.big_endian && voxel_bytes == 4) swap_each<uint32_t, swapped32>(voxels);
+        if (voxels_.big_endian && voxel_bytes == 8) swap_each<uint64_t, swapped64>(voxels);
     }
 
 private:

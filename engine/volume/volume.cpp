@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
 constexpr double LARGEST_CODE = 65535.0;
+constexpr double LARGEST_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
 
 /// Every spelling in lower case, words separated by one space, without MetaImage's "MET_".
 constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
@@ -36,8 +38,18 @@ constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
     {"short int", VoxelType::int16},
     {"signed short", VoxelType::int16},
     {"signed short int", VoxelType::int16},
+    {"uint32", VoxelType::uint32},
+    {"uint32_t", VoxelType::uint32},
+    {"uint", VoxelType::uint32},
+    {"unsigned int", VoxelType::uint32},
+    {"int32", VoxelType::int32},
+    {"int32_t", VoxelType::int32},
+    {"int", VoxelType::int32},
+    {"signed int", VoxelType::int32},
     {"float32", VoxelType::float32},
     {"float", VoxelType::float32},
+    {"float64", VoxelType::float64},
+    {"double", VoxelType::float64},
 };
 
 std::string plain_spelling(const std::string& name)
@@ -64,7 +76,10 @@ size_t bytes_of(VoxelType type)
         case VoxelType::int8: return 1;
         case VoxelType::uint16:
         case VoxelType::int16: return 2;
+        case VoxelType::uint32:
+        case VoxelType::int32:
         case VoxelType::float32: return 4;
+        case VoxelType::float64: return 8;
     }
     SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
     return 0;
@@ -77,10 +92,18 @@ const char* name_of(VoxelType type)
         case VoxelType::int8: return "int8";
         case VoxelType::uint16: return "uint16";
         case VoxelType::int16: return "int16";
+        case VoxelType::uint32: return "uint32";
+        case VoxelType::int32: return "int32";
         case VoxelType::float32: return "float32";
+        case VoxelType::float64: return "float64";
     }
     SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
     return "";
+}
+
+bool is_float(VoxelType type)
+{
+    return type == VoxelType::float32 || type == VoxelType::float64;
 }
 
 std::optional<VoxelType> voxel_type_of(const std::string& name)
@@ -126,19 +149,18 @@ uint32_t IntensityWindow::threshold_code(double threshold) const
 
 IntensityWindow window_for(VoxelType type, double minimum, double maximum)
 {
-    switch (type) {
-        case VoxelType::uint8: return {0.0, 257.0};
-        case VoxelType::int8: return {-128.0, 257.0};
-        case VoxelType::uint16:
-        case VoxelType::int16: {
-            const double lower = std::floor(minimum);
-            const double range = std::clamp(std::ceil(maximum) - lower, 1.0, LARGEST_CODE);
-            return {lower, std::floor(LARGEST_CODE / range)};
-        }
-        case VoxelType::float32: break;
+    if (type == VoxelType::uint8) return {0.0, 257.0};
+    if (type == VoxelType::int8) return {-128.0, 257.0};
+    if (!is_float(type)) {
+        const double lower = std::floor(minimum);
+        const double range = std::ceil(maximum) - lower;
+        const bool is_exact = range <= LARGEST_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
+        if (is_exact) return {lower, std::floor(LARGEST_CODE / std::clamp(range, 1.0, LARGEST_CODE))};
     }
-    const double range = maximum - minimum;
-    return {minimum, range > 0.0 ? LARGEST_CODE / range : LARGEST_CODE};
+    // Doubles may lie so far apart that their difference is infinite, or so close that its inverse is.
+    const double lower = std::clamp(minimum, -LARGEST_END, LARGEST_END);
+    const double range = std::clamp(maximum, -LARGEST_END, LARGEST_END) - lower;
+    return {lower, range > 0.0 ? std::min(LARGEST_CODE / range, LARGEST_END) : LARGEST_CODE};
 }
 
 }  // namespace shvr

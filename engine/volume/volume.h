@@ -17,11 +17,19 @@ namespace shvr {
 
 using Size3 = glm::vec<3, int64_t>;
 
-enum class VoxelType { uint8, int8, uint16, int16, float32 };
+enum class VoxelType { uint8, int8, uint16, int16, uint32, int32, float32, float64 };
+/// For tables and choices.
+inline constexpr VoxelType VOXEL_TYPES[] = {VoxelType::uint8,   VoxelType::int8,   VoxelType::uint16,
+                                            VoxelType::int16,   VoxelType::uint32, VoxelType::int32,
+                                            VoxelType::float32, VoxelType::float64};
+/// For messages that say what was expected.
+inline constexpr const char* VOXEL_TYPE_NAMES = "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
 
 size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
-/// "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as the header formats spell them; nothing if unknown.
+bool is_float(VoxelType type);
+/// "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as the header formats spell them; nothing if unknown. Integers
+/// of 64 bits are unknown: doubles, in which intensities are computed, do not hold them.
 std::optional<VoxelType> voxel_type_of(const std::string& name);
 
 /// A half-open box of voxels, [lower, upper).
@@ -53,18 +61,33 @@ struct VolumeInfo {
 /// size.x * size.y * size.z; fails where the product leaves 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);
 
+/// Smallest and largest finite value; `lower > upper` where there is none.
+struct ValueRange {
+    double lower = 0.0;
+    double upper = 0.0;
+    bool operator==(const ValueRange&) const = default;
+};
+
 /// Minimum, maximum, mean and a 256-bin histogram of finite voxels, in the file's own intensity units.
 struct VolumeStatistics {
     double minimum = 0.0;
     double maximum = 0.0;
     double mean = 0.0;
     int64_t not_finite = 0;
-    std::vector<int64_t> histogram{};  ///< 256 bins over [minimum, maximum]
+    std::vector<int64_t> histogram{};  ///< 256 bins over range(); what lies beyond counts in the first or last bin
+    /// Where a few voxels lie so far from all others that codes over [minimum, maximum] would tell those others badly
+    /// apart: the extremes without those few. Never so where every integer has a code of its own.
+    std::optional<ValueRange> bulk{};
+    int64_t beyond_bulk = 0;  ///< those few
+
+    /// What pictures, thresholds and the histogram span.
+    ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
 };
 
 /// The affine map from intensities to 16-bit codes: code = round((intensity - lower) * codes_per_unit).
-/// For integer types `codes_per_unit` is a whole number and the map is exact, so that a threshold on codes is a
-/// threshold on intensities. For float32 the codes quantise [minimum, maximum] into 65535 steps.
+/// For integers whose range is at most 65535, `codes_per_unit` is a whole number and the map is exact, so that a
+/// threshold on codes is a threshold on intensities. Integers of 32 bits with a larger range, and floats, are quantised
+/// into 65535 steps of their range. Intensities outside the window get the code of its nearer end.
 struct IntensityWindow {
     double lower = 0.0;
     double codes_per_unit = 257.0;
@@ -76,6 +99,7 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
+/// The window over VolumeStatistics::range().
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 
 }  // namespace shvr

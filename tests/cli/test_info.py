@@ -63,6 +63,14 @@ class Info(CliTest):
         self.assertEqual(info["voxels_not_finite"], 2)
         self.assertTrue(any("NaN" in warning for warning in info["warnings"]))
 
+    def test_an_outlier_is_told_and_leaves_the_window_to_the_others(self):
+        values = [float(i % 100) for i in range(20 * 20 * 20)]
+        values[77] = 1e30
+        info = self.check_json("info", Volume((20, 20, 20), values, voxel_type="float").write(self.folder))
+        self.assertGreater(info["max"], 9e29)
+        self.assertEqual((info["window"]["lower"], round(info["window"]["upper"], 9)), (0.0, 99.0))
+        self.assertTrue(any(warning.startswith("1 voxels lie far outside 0 to 99,") for warning in info["warnings"]))
+
     def test_people_read_aligned_lines(self):
         header = Volume.noise((20, 17, 13), seed=1, spacing=(0.5, 0.5, 2.0)).write(self.folder)
         lines = self.check("info", header).stdout.splitlines()

@@ -20,7 +20,7 @@ class Phantom(CliTest):
 
     def test_every_kind_and_type(self):
         for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"):
-            for voxel_type in ("uint8", "int8", "uint16", "int16", "float32"):
+            for voxel_type in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
                 result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
                 self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
 

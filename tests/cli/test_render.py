@@ -97,7 +97,7 @@ class Render(CliTest):
 
     def test_a_budget_that_is_too_small_names_what_did_not_fit(self):
         session = self.write_session(volume={"procedural": "sphere", "size": [128, 128, 128]})
-        self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1", says=["atlas"])
+        self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1", says=["device memory", "bricks"])
 
 
 if __name__ == "__main__":

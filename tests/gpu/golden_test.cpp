@@ -98,7 +98,7 @@ struct Studio {
     /// Loads the volume and paints; `draw` may follow any number of times.
     void set_up(const Golden& golden)
     {
-        renderer.load(*golden.opened.source, golden.opened.statistics, golden.opened.session.render.sampling);
+        renderer.load(golden.opened.source, golden.opened.statistics, golden.opened.session.render);
         Annotator annotator(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {

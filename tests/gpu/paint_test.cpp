@@ -78,7 +78,10 @@ MemorySource source_of(const Voxels& voxels)
         case VoxelType::int8: return source_as<int8_t>(voxels);
         case VoxelType::uint16: return source_as<uint16_t>(voxels);
         case VoxelType::int16: return source_as<int16_t>(voxels);
+        case VoxelType::uint32: return source_as<uint32_t>(voxels);
+        case VoxelType::int32: return source_as<int32_t>(voxels);
         case VoxelType::float32: return source_as<float>(voxels);
+        case VoxelType::float64: return source_as<double>(voxels);
     }
     return source_as<uint8_t>(voxels);
 }
@@ -86,7 +89,7 @@ MemorySource source_of(const Voxels& voxels)
 void load(Renderer& renderer, const Voxels& voxels, Sampling sampling = Sampling::automatic)
 {
     const MemorySource source = source_of(voxels);
-    renderer.load(source, measure(source), sampling);
+    renderer.load(std::make_shared<MemorySource>(source), measure(source), {.sampling = sampling});
 }
 
 bool filters_in_hardware(Renderer& renderer)

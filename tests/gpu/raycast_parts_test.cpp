@@ -27,8 +27,10 @@ TEST_CASE_FIXTURE(OnDevice, "a picture drawn in parts has the bits of one drawn 
         FrameGraph graph;
         const glm::uvec2 extent = end - begin;
         const Resource target = graph.create("part", image_desc(Format::rgba32_float, glm::uvec3(extent, 1)));
-        graph.read_back(renderer().draw(graph, session, camera,
-                                        {.pixels = size, .begin = begin, .end = end, .probe = probe}, target));
+        graph.read_back(
+            renderer()
+                .draw(graph, session, camera, {.pixels = size, .begin = begin, .end = end, .probe = probe}, target)
+                .target);
         const gpu::FrameResult result = renderer().executor().run(std::move(graph));
         size_t different = 0;
         for (uint32_t y = 0; y < extent.y; ++y)

@@ -6,6 +6,7 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
+#include "shaders/pages.h"
 #include "shaders/paint.h"
 #include "shaders/raycast.h"
 
@@ -30,7 +31,8 @@ Members raycast_params()
             MEMBER(RaycastParams, box_upper),     MEMBER(RaycastParams, position_limit),
             MEMBER(RaycastParams, spacing),       MEMBER(RaycastParams, inverse_spacing),
             MEMBER(RaycastParams, cell_counts),   MEMBER(RaycastParams, brick_counts),
-            MEMBER(RaycastParams, mask_slots),    MEMBER(RaycastParams, step),
+            MEMBER(RaycastParams, mask_slots),    MEMBER(RaycastParams, page_counts),
+            MEMBER(RaycastParams, page_shift),    MEMBER(RaycastParams, step),
             MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
             MEMBER(RaycastParams, table_upper),   MEMBER(RaycastParams, table_scale),
             MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, background),
@@ -55,7 +57,20 @@ Members region_params()
     return {MEMBER(RegionParams, origin),        MEMBER(RegionParams, size),
             MEMBER(RegionParams, words_per_row), MEMBER(RegionParams, threshold_code),
             MEMBER(RegionParams, connectivity),  MEMBER(RegionParams, seed),
-            MEMBER(RegionParams, brick_counts)};
+            MEMBER(RegionParams, brick_begin),   MEMBER(RegionParams, brick_counts)};
+}
+
+Members brick_leap_params()
+{
+    return {MEMBER(BrickLeapParams, table_lower), MEMBER(BrickLeapParams, table_upper),
+            MEMBER(BrickLeapParams, table_scale), MEMBER(BrickLeapParams, table_entries),
+            MEMBER(BrickLeapParams, skipping),    MEMBER(BrickLeapParams, mask_slots)};
+}
+
+Members brick_leap_jobs()
+{
+    return {MEMBER(BrickLeapJob, brick), MEMBER(BrickLeapJob, level), MEMBER(BrickLeapJob, slot),
+            MEMBER(BrickLeapJob, mask_slot)};
 }
 
 gpu::KernelInterface interface_of(const std::string& name)
@@ -84,10 +99,16 @@ void check_members(const std::string& kernel, const std::string& block, const Me
 
 TEST_CASE("members of shared structs lie where C++ puts them")
 {
-    for (const char* kernel : {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked"})
+    for (const char* kernel :
+         {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked", "raycast_paged",
+          "raycast_paged_masked", "raycast_paged_filtered", "raycast_paged_filtered_masked"})
         check_members(kernel, "params_block", raycast_params());
     for (const char* kernel : {"raycast_masked", "raycast_filtered_masked"})
         check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
+    for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {
+        check_members(kernel, "push", brick_leap_params());
+        check_members(kernel, "jobs", brick_leap_jobs());
+    }
     for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
         check_members(kernel, "push", occupancy_params());
     check_members("leap_distance", "push",
@@ -102,6 +123,7 @@ TEST_CASE("members of shared structs lie where C++ puts them")
 TEST_CASE("push constants are as long as their structs, and fit where the smallest device has room")
 {
     CHECK(interface_of("leap_occupancy").push_bytes == sizeof(gpu::OccupancyParams));
+    CHECK(interface_of("brick_leap").push_bytes == sizeof(gpu::BrickLeapParams));
     CHECK(interface_of("leap_distance").push_bytes == sizeof(gpu::LeapDistanceParams));
     CHECK(interface_of("region_merge").push_bytes == sizeof(gpu::RegionParams));
     for (const gpu::EmbeddedKernel& kernel : gpu::embedded_kernels()) {

@@ -48,9 +48,10 @@ public:
     {
         const glm::uvec2 size = pixels();
         FrameGraph graph;
-        const Resource light =
-            renderer().draw(graph, session, camera, {.pixels = size, .end = size, .probe = probe},
-                            graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))));
+        const Resource light = renderer()
+                                   .draw(graph, session, camera, {.pixels = size, .end = size, .probe = probe},
+                                         graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))))
+                                   .target;
         gpu::EncodeParams params{};
         params.size = size;
         params.first = glm::vec2(0.5f);

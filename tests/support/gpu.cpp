@@ -89,7 +89,10 @@ std::unique_ptr<VolumeSource> source_of(const TestVolume& volume)
         case VoxelType::int8: return source_as<int8_t>(volume);
         case VoxelType::uint16: return source_as<uint16_t>(volume);
         case VoxelType::int16: return source_as<int16_t>(volume);
+        case VoxelType::uint32: return source_as<uint32_t>(volume);
+        case VoxelType::int32: return source_as<int32_t>(volume);
         case VoxelType::float32: return source_as<float>(volume);
+        case VoxelType::float64: return source_as<double>(volume);
     }
     return nullptr;
 }
@@ -217,7 +220,7 @@ void OnDevice::load(TestVolume volume, Sampling sampling)
     VolumeStatistics statistics;
     statistics.minimum = volume_.minimum;
     statistics.maximum = volume_.maximum;
-    renderer_.load(*source_of(volume_), statistics, sampling);
+    renderer_.load(source_of(volume_), statistics, {.sampling = sampling});
 }
 
 ImageF OnDevice::draw(const Session& session, const Camera& camera)

@@ -122,7 +122,7 @@ reference::Scene scene_of(const Session& session, const VolumeSource& source, co
 {
     const VolumeInfo& info = source.info();
     const VolumeStatistics statistics = measure(source);
-    const IntensityWindow window = window_for(info.type, statistics.minimum, statistics.maximum);
+    const IntensityWindow window = window_for(info.type, statistics.range().lower, statistics.range().upper);
     reference::Scene scene{.size = glm::ivec3(info.size),
                            .density = densities(source, window),
                            .spacing = info.spacing,
@@ -138,7 +138,7 @@ reference::Scene scene_of(const Session& session, const VolumeSource& source, co
         }
     }
     if (session.light.shaded) {
-        const double range = window.code_of(statistics.maximum) - window.code_of(statistics.minimum);
+        const double range = window.code_of(statistics.range().upper) - window.code_of(statistics.range().lower);
         scene.shading = {.ambient = session.light.ambient,
                          .diffuse = session.light.diffuse,
                          .specular = session.light.specular,

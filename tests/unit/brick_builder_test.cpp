@@ -27,7 +27,7 @@ std::vector<T> random_voxels(const Size3& size, uint32_t seed)
     std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
     for (T& voxel : voxels) {
         if constexpr (std::is_floating_point_v<T>) {
-            voxel = random() % 20 == 0 ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(random() % 1000) / 7.0f;
+            voxel = random() % 20 == 0 ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(random() % 1000) / T{7};
         } else {
             voxel = static_cast<T>(random());
         }
@@ -150,7 +150,10 @@ TEST_CASE("bricks and their ranges equal those made voxel by voxel")
     }
     check_against_brute_force<int8_t>({100, 7, 65}, VoxelType::int8, 2);
     check_against_brute_force<uint16_t>({100, 7, 65}, VoxelType::uint16, 2);
+    check_against_brute_force<uint32_t>({100, 7, 65}, VoxelType::uint32, 2);
+    check_against_brute_force<int32_t>({100, 7, 65}, VoxelType::int32, 2);
     check_against_brute_force<float>({100, 7, 65}, VoxelType::float32, 2);
+    check_against_brute_force<double>({100, 7, 65}, VoxelType::float64, 2);
     check_against_brute_force<uint8_t>({32 * 66 + 1, 2, 3}, VoxelType::uint8, 2);  // more than one run along x
 }
 
@@ -181,7 +184,8 @@ TEST_CASE("codes are the rounded map of the window, clamped to it")
              {IntensityWindow{0.0, 257.0}, IntensityWindow{-128.0, 257.0}, IntensityWindow{10.0, 3.0},
               IntensityWindow{10.5, 3.0}, IntensityWindow{-5.0, 0.25}, IntensityWindow{-32768.0, 1.0},
               IntensityWindow{30000.0, 65535.0}, IntensityWindow{40000.0, 9.0}, IntensityWindow{-32768.0, 60000.0},
-              IntensityWindow{1e6, 2.0}}) {
+              IntensityWindow{1e6, 2.0}, IntensityWindow{-2147483648.0, 1.0}, IntensityWindow{4294901760.0, 1.0},
+              IntensityWindow{4e9, 7.0}}) {
             std::vector<uint16_t> codes(voxels.size());
             CodeRows(type, window).convert(std::as_bytes(std::span(voxels)), codes);
             size_t wrong = 0;
@@ -201,7 +205,12 @@ TEST_CASE("codes are the rounded map of the window, clamped to it")
     check(VoxelType::int8, int8_t{-128}, int8_t{127});
     check(VoxelType::uint16, uint16_t{0}, uint16_t{65535});
     check(VoxelType::int16, int16_t{-32768}, int16_t{32767});
+    check(VoxelType::uint32, uint32_t{0}, std::numeric_limits<uint32_t>::max());
+    check(VoxelType::uint32, uint32_t{4294900000}, std::numeric_limits<uint32_t>::max());
+    check(VoxelType::int32, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max());
+    check(VoxelType::int32, -40000, 70000);
     check(VoxelType::float32, -40000.0f, 70000.0f);
+    check(VoxelType::float64, -40000.0, 70000.0);
 
     const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<float> odd = {std::numeric_limits<float>::quiet_NaN(), -infinity, infinity, 0.5f, -0.0f};

@@ -66,7 +66,10 @@ TEST_CASE("the voxels of every kind are its field at their centres, rounded to t
         check_voxels_equal_field<int8_t>(kind, VoxelType::int8);
         check_voxels_equal_field<uint16_t>(kind, VoxelType::uint16);
         check_voxels_equal_field<int16_t>(kind, VoxelType::int16);
+        check_voxels_equal_field<uint32_t>(kind, VoxelType::uint32);
+        check_voxels_equal_field<int32_t>(kind, VoxelType::int32);
         check_voxels_equal_field<float>(kind, VoxelType::float32);
+        check_voxels_equal_field<double>(kind, VoxelType::float64);
     }
 }
 

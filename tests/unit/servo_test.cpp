@@ -46,6 +46,12 @@ void* operator new(size_t bytes, std::align_val_t alignment)
 {
     return allocate(bytes, size_t(alignment));
 }
+// Sanitizers bring a version of this one that does not go through the others.
+void* operator new(size_t bytes, const std::nothrow_t&) noexcept
+{
+    if (counts_allocations) ++allocations;
+    return std::malloc(std::max<size_t>(bytes, 1));
+}
 void operator delete(void* memory) noexcept
 {
     std::free(memory);

@@ -73,7 +73,7 @@ const std::string EVERYTHING = R"({
   "light": {"shaded": false, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "shininess": 4, "direction": [1, 2, 3],
             "gradient_fade": 0.5},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
-             "sampling": "exact", "skip_empty_space": false},
+             "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
             "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3},
@@ -128,7 +128,8 @@ TEST_CASE("every key of a session is read")
     CHECK(session.groups.at(255) == last);
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
-    CHECK(session.render == RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, false});
+    CHECK(session.render ==
+          RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
     CHECK(session.probe ==
           ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5, -3});
@@ -244,7 +245,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
 {
     CHECK(refusal(with(R"("render": {"step": 1})")) ==
           "s.json: unknown key render.step; expected one of: size, step_voxels, opacity_limit, background, sampling, "
-          "skip_empty_space");
+          "paging, detail, skip_empty_space");
     struct Case {
         std::string keys, name;
     };
@@ -262,7 +263,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
         CHECK(refusal(with(wrong.keys)).starts_with("s.json: unknown key " + wrong.name + "; expected one of: "));
     }
     CHECK(volume_refusal(R"({"path": "a", "spacing": [1, 1, 1]})") ==
-          "s.json: unknown key volume.spacing; expected one of: path, raw, procedural");
+          "s.json: unknown key volume.spacing; expected one of: path, raw, procedural, channel, frame");
     CHECK(volume_refusal(R"({"path": "a", "procedural": "tubes"})").starts_with("s.json: unknown key volume.path;"));
 }
 

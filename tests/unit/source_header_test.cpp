@@ -147,8 +147,8 @@ TEST_CASE("an NRRD that cannot be read says which field, what it found and what 
     CHECK(folder.nrrd_refusal("encoding:", "") == at + ": encoding is missing; expected raw");
     CHECK(folder.nrrd_refusal("dimension:", "dimension: 4") == at + ": dimension is \"4\"; expected 3");
     CHECK(folder.nrrd_refusal("dimension:", "") == at + ": dimension is missing; expected 3");
-    CHECK(
-        contains(folder.nrrd_refusal("type:", "type: double"), ": type is \"double\"; expected 8 or 16 bit integers"));
+    CHECK(contains(folder.nrrd_refusal("type:", "type: longlong"),
+                   ": type is \"longlong\"; expected integers of 8, 16 or 32 bits, signed or unsigned, or floats"));
     CHECK(folder.nrrd_refusal("type:", "type: short") == at + ": endian is missing; expected little or big");
     CHECK(contains(folder.nrrd_refusal("type:", "type: short\nendian: middle"), ": endian is \"middle\"; expected"));
     CHECK(contains(folder.nrrd_refusal("data file:", "data file: LIST"),
@@ -240,8 +240,8 @@ TEST_CASE("a MetaImage that cannot be read says which field, what it found and w
     CHECK(folder.mhd_refusal("NDims", "") == at + ": NDims is missing; expected 3");
     CHECK(contains(folder.mhd_refusal("NDims", "NDims = 3\nElementNumberOfChannels = 3"),
                    "ElementNumberOfChannels is \"3\"; expected 1"));
-    CHECK(contains(folder.mhd_refusal("ElementType", "ElementType = MET_DOUBLE"),
-                   "ElementType is \"MET_DOUBLE\"; expected"));
+    CHECK(contains(folder.mhd_refusal("ElementType", "ElementType = MET_LONG_LONG"),
+                   "ElementType is \"MET_LONG_LONG\"; expected"));
     CHECK(contains(folder.mhd_refusal("ElementType", ""), "ElementType is missing; expected"));
     CHECK(contains(folder.mhd_refusal("ElementDataFile", ""), "ElementDataFile is missing; expected"));
     CHECK(contains(folder.mhd_refusal("ElementDataFile", "ElementDataFile = LIST"), "spread over several files"));

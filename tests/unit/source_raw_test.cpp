@@ -34,7 +34,7 @@ Sample<T> sample_of(size_t count, bool big_endian)
         const auto bits = static_cast<uint32_t>(random());
         T voxel;
         if constexpr (std::is_floating_point_v<T>) {
-            voxel = static_cast<T>(bits) / 1000.0f - 5e5f;
+            voxel = static_cast<T>(bits) / T{1000} - T{5e5};
         } else {
             voxel = static_cast<T>(bits);
         }
@@ -92,7 +92,10 @@ TEST_CASE("every type and byte order comes back from a raw file as it was writte
     check(VoxelType::int8, int8_t{});
     check(VoxelType::uint16, uint16_t{});
     check(VoxelType::int16, int16_t{});
+    check(VoxelType::uint32, uint32_t{});
+    check(VoxelType::int32, int32_t{});
     check(VoxelType::float32, float{});
+    check(VoxelType::float64, double{});
 }
 
 TEST_CASE("any box of a raw file is what the whole holds there, from several threads too")
@@ -148,7 +151,7 @@ TEST_CASE("a raw layout is read from its text")
 TEST_CASE("a raw layout that is none is refused with the expected form")
 {
     for (const char* text :
-         {"", ":", "1x2:uint8", "1x2x3", "1x2x3:", "1x2x3:double", "1x2x3x4:uint8", "1x2x3:uint8:middle",
+         {"", ":", "1x2:uint8", "1x2x3", "1x2x3:", "1x2x3:int64", "1x2x3x4:uint8", "1x2x3:uint8:middle",
           "1x2x3:uint8:-1", "1x2x3:uint8:big:big", "1x2x3:uint8:1:big", "1x2x3:uint8:big:1:2", "ax2x3:uint8",
           "1 x2x3:uint8", "1x2x3.5:uint8", "1x2x99999999999999999999:uint8", "0x1x2x3:uint8"}) {
         CAPTURE(text);
@@ -385,8 +388,8 @@ TEST_CASE("a scanner's side-car that is broken is refused by field")
     const std::string at = (folder.path / "root.dat").string();
     CHECK(refused("ObjectFileName: root.raw\nFormat: UCHAR\n") ==
           at + ": Resolution is missing; expected three whole numbers from 1 to 1048576");
-    CHECK(contains(refused("ObjectFileName: root.raw\nResolution: 5 4 3\nFormat: DOUBLE\n"),
-                   "Format is \"DOUBLE\"; expected"));
+    CHECK(contains(refused("ObjectFileName: root.raw\nResolution: 5 4 3\nFormat: QUAD\n"),
+                   "Format is \"QUAD\"; expected"));
     CHECK(contains(refused("ObjectFileName: root.raw\nResolution: 5 4 3\nResolution: 5 4 3\n"), "stated twice"));
     CHECK(contains(
         refused("<RAWFileData><Format>UCHAR</Format><Resolution X=\"5\" Y=\"4\" Z=\"3\" T=\"2\"/></RAWFileData>"),
@@ -419,8 +422,8 @@ TEST_CASE("a size in the file's name is used, and said to be a guess")
 
     CHECK(open_volume(folder.write("b_5X4X3.raw", marked_bytes()))->info().type == VoxelType::uint8);
     CHECK(open_volume(folder.write("c_5x4x3", std::string(240, 'x')))->info().type == VoxelType::float32);
-    CHECK(
-        contains(refusal(folder.write("d_5x4x3.raw", std::string(61, 'x'))), "holds 61 bytes, which is not 1, 2 or 4"));
+    CHECK(contains(refusal(folder.write("d_5x4x3.raw", std::string(61, 'x'))),
+                   "holds 61 bytes, which is not 1, 2, 4 or 8"));
     CHECK(contains(refusal(folder.write("e_5x4x3_8bit.raw", "x")), "holds 1 bytes; expected at least 60"));
     CHECK(contains(refusal(folder.write("f_0x4x3.raw", "x")), "size along x is 0; expected"));
     CHECK(contains(refusal(folder.write("f_99999999999x99999999999x99999999999.raw", "x")), "expected 1 to 1048576"));

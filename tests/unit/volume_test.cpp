@@ -13,9 +13,6 @@ using namespace shvr::test;
 
 namespace {
 
-constexpr VoxelType TYPES[] = {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
-                               VoxelType::float32};
-
 uint32_t code(const IntensityWindow& window, double intensity)
 {
     return static_cast<uint32_t>(std::lround(window.code_of(intensity)));
@@ -33,16 +30,22 @@ VolumeInfo info_of_size(const Size3& size)
 
 TEST_CASE("a voxel type is known by its own name and by those of the header formats")
 {
-    for (const VoxelType type : TYPES) CHECK(voxel_type_of(name_of(type)) == type);
+    for (const VoxelType type : VOXEL_TYPES) CHECK(voxel_type_of(name_of(type)) == type);
     CHECK(bytes_of(VoxelType::int8) == 1);
     CHECK(bytes_of(VoxelType::uint16) == 2);
+    CHECK(bytes_of(VoxelType::uint32) == 4);
     CHECK(bytes_of(VoxelType::float32) == 4);
+    CHECK(bytes_of(VoxelType::float64) == 8);
     CHECK(voxel_type_of("UCHAR") == VoxelType::uint8);
     CHECK(voxel_type_of("MET_CHAR") == VoxelType::int8);
     CHECK(voxel_type_of("  unsigned   short int ") == VoxelType::uint16);
     CHECK(voxel_type_of("MET_SHORT") == VoxelType::int16);
     CHECK(voxel_type_of("MET_FLOAT") == VoxelType::float32);
-    for (const char* unknown : {"", " ", "double", "int32", "MET_", "met_met_short", "unsigned"}) {
+    CHECK(voxel_type_of("MET_UINT") == VoxelType::uint32);
+    CHECK(voxel_type_of("signed int") == VoxelType::int32);
+    CHECK(voxel_type_of("double") == VoxelType::float64);
+    for (const char* unknown : {"", " ", "int64", "uint64_t", "long", "MET_LONG", "longlong", "MET_ULONG_LONG", "MET_",
+                                "met_met_short", "unsigned", "block"}) {
         CHECK_FALSE(voxel_type_of(unknown).has_value());
     }
 }
@@ -63,32 +66,33 @@ TEST_CASE("codes of integers are exact, and a threshold on codes is a threshold 
 {
     struct Case {
         VoxelType type;
-        int minimum, maximum;
+        int64_t minimum, maximum;
     };
     for (const auto& [type, minimum, maximum] :
          {Case{VoxelType::uint8, 0, 255}, Case{VoxelType::uint8, 7, 9}, Case{VoxelType::int8, -128, 127},
           Case{VoxelType::uint16, 0, 65535}, Case{VoxelType::uint16, 10, 300}, Case{VoxelType::uint16, 1, 32769},
-          Case{VoxelType::int16, -32768, 32767}, Case{VoxelType::int16, -1024, 3033}, Case{VoxelType::int16, 5, 5}}) {
-        const IntensityWindow window = window_for(type, minimum, maximum);
+          Case{VoxelType::int16, -32768, 32767}, Case{VoxelType::int16, -1024, 3033}, Case{VoxelType::int16, 5, 5},
+          Case{VoxelType::uint32, 4294901760, 4294967295}, Case{VoxelType::uint32, 70000, 70255},
+          Case{VoxelType::int32, -2147483648, -2147418113}, Case{VoxelType::int32, -300, 65235}}) {
+        const IntensityWindow window = window_for(type, double(minimum), double(maximum));
         CAPTURE(name_of(type));
         CAPTURE(maximum);
         CHECK(window.codes_per_unit == std::floor(window.codes_per_unit));
         CHECK(window.codes_per_unit >= 1.0);
-        CHECK(window.code_of(maximum) <= 65535.0);
-        CHECK(window.upper() >= maximum);
-        const int step = std::max(1, (maximum - minimum) / 50);
-        for (int value = minimum; value <= maximum; value += step) {
+        CHECK(window.code_of(double(maximum)) <= 65535.0);
+        CHECK(window.upper() >= double(maximum));
+        const int64_t step = std::max<int64_t>(1, (maximum - minimum) / 50);
+        for (double value = double(minimum); value <= double(maximum); value += double(step)) {
             CHECK(window.intensity_of(code(window, value)) == value);
-            for (const double threshold :
-                 {value - 1.0, value - 0.5, value - 1e-9, value + 0.0, value + 1e-9, value + 0.3,
-                  std::nextafter(double(value), 1e9), std::nextafter(double(value), -1e9)}) {
+            for (const double threshold : {value - 1.0, value - 0.5, value - 1e-6, value + 0.0, value + 1e-6,
+                                           value + 0.3, std::nextafter(value, 1e10), std::nextafter(value, -1e10)}) {
                 CHECK((code(window, value) >= window.threshold_code(threshold)) == (value >= threshold));
             }
         }
         CHECK(window.threshold_code(window.lower) == 0);
         CHECK(window.threshold_code(-1e300) == 0);
         CHECK(window.threshold_code(-std::numeric_limits<double>::infinity()) == 0);
-        CHECK(window.threshold_code(std::nextafter(window.intensity_of(65535), 1e9)) == 65536);
+        CHECK(window.threshold_code(std::nextafter(window.intensity_of(65535), 1e10)) == 65536);
         CHECK(window.threshold_code(std::numeric_limits<double>::infinity()) == 65536);
     }
     CHECK(window_for(VoxelType::uint8, 3, 4) == IntensityWindow{0.0, 257.0});
@@ -136,7 +140,82 @@ TEST_CASE("measuring agrees with counting by hand, for every type")
     check(VoxelType::int8, int8_t{-104}, int8_t{2});
     check(VoxelType::uint16, uint16_t{60}, uint16_t{600});
     check(VoxelType::int16, int16_t{-32768}, int16_t{512});
+    check(VoxelType::uint32, uint32_t{4000000000}, uint32_t{2000000});
+    check(VoxelType::int32, -2147483647 - 1, 40000000);
     check(VoxelType::float32, -3.5f, 0.25f);
+    check(VoxelType::float64, -0x1p500, 0x1p494);
+}
+
+TEST_CASE("integers of 32 bits that reach farther than there are codes are quantised, like floats")
+{
+    const IntensityWindow wide = window_for(VoxelType::uint32, 0.0, 4294967295.0);
+    CHECK(wide.code_of(4294967295.0) == doctest::Approx(65535.0));
+    CHECK(wide.codes_per_unit < 1.0);
+    CHECK(window_for(VoxelType::int32, -10.0, 65526.0).codes_per_unit < 1.0);
+    CHECK(window_for(VoxelType::int32, -10.0, 65525.0).codes_per_unit == 1.0);
+}
+
+TEST_CASE("a window spans whatever doubles there are")
+{
+    const double most = std::numeric_limits<double>::max();
+    const double least = std::numeric_limits<double>::denorm_min();
+    for (const auto& [minimum, maximum] : {std::pair(-most, most), {0.0, most}, {0.0, least}, {-least, 1.0}}) {
+        const IntensityWindow window = window_for(VoxelType::float64, minimum, maximum);
+        CHECK(std::isfinite(window.lower));
+        CHECK(std::isfinite(window.codes_per_unit));
+        CHECK(window.codes_per_unit > 0.0);
+        CHECK(std::isfinite(window.upper()));
+        CHECK(window.threshold_code(minimum) == 0);
+    }
+    const VolumeStatistics widest =
+        measure(memory_source<double>({3, 1, 1}, VoxelType::float64, {-most, 0.25 * most, most}));
+    CHECK(widest.histogram[0] == 1);
+    CHECK(widest.histogram[160] == 1);
+    CHECK(widest.histogram[255] == 1);
+}
+
+TEST_CASE("one outlier of 1e30 takes neither precision nor the histogram from the other voxels")
+{
+    const Size3 size(64, 64, 64);
+    std::vector<float> voxels(64 * 64 * 64);
+    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<float>(i % 4096) - 1024.0f;
+    const VolumeStatistics plain = measure(memory_source(size, VoxelType::float32, voxels));
+    CHECK_FALSE(plain.bulk.has_value());
+    CHECK(plain.range() == ValueRange{-1024.0, 3071.0});
+    CHECK(warnings_of(plain).empty());
+
+    for (const float outlier : {1e30f, -1e30f, 25000.0f, std::numeric_limits<float>::max()}) {
+        CAPTURE(outlier);
+        std::vector<float> spoilt = voxels;
+        spoilt[12345] = outlier;
+        spoilt[12346] = std::numeric_limits<float>::quiet_NaN();
+        const VolumeStatistics found = measure(memory_source(size, VoxelType::float32, spoilt));
+        CHECK((outlier > 0.0f ? found.maximum : found.minimum) == outlier);
+        CHECK(found.range() == ValueRange{-1024.0, 3071.0});
+        CHECK(found.beyond_bulk == 1);
+        CHECK(found.histogram[100] == 1024);
+        CHECK(std::accumulate(found.histogram.begin(), found.histogram.end(), int64_t{0}) == 64 * 64 * 64 - 1);
+        REQUIRE(warnings_of(found).size() == 2);
+        CHECK(contains(warnings_of(found)[1], "1 voxels lie far outside -1024 to 3071"));
+    }
+    // Less than four times as far as the others reach: part of the picture.
+    voxels[0] = 15000.0f;
+    CHECK(measure(memory_source(size, VoxelType::float32, voxels)).range().upper == 15000.0);
+}
+
+TEST_CASE("what is rare but all there is to see is no outlier")
+{
+    std::vector<double> voxels(1000000, -5.0);
+    voxels[500] = 1e6;
+    voxels[501] = 3.0;
+    const VolumeStatistics found = measure(memory_source({100, 100, 100}, VoxelType::float64, voxels));
+    CHECK(found.range() == ValueRange{-5.0, 1e6});
+    std::vector<int32_t> labels(1000000);
+    for (size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<int32_t>(i % 7);
+    labels[500] = 65000;  // all codes are exact: nothing is gained by leaving it out
+    CHECK(measure(memory_source({100, 100, 100}, VoxelType::int32, labels)).range().upper == 65000.0);
+    labels[500] = -2147483647;
+    CHECK(measure(memory_source({100, 100, 100}, VoxelType::int32, labels)).range() == ValueRange{0.0, 6.0});
 }
 
 TEST_CASE("voxels that are no number are counted and left out")

@@ -98,7 +98,7 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
         Renderer::Options{.device = {common.device, validation && *validation == '1'},
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads});
-    opened.renderer->load(*opened.source, session.statistics, opened.session.render.sampling);
+    opened.renderer->load(opened.source, session.statistics, opened.session.render);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_mask && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);

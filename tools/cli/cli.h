@@ -45,7 +45,7 @@ glm::uvec2 parse_size(const std::string& text);
 /// A session opened with its volume on the device and its mask, if there is one, loaded.
 struct Opened {
     Session session;
-    std::unique_ptr<VolumeSource> source;
+    std::shared_ptr<const VolumeSource> source;
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;

@@ -30,6 +30,7 @@ Described describe(const Options& options)
     if (is_bare && options.common.settings.empty()) {
         opened.source = open_volume(path);
         opened.statistics = measure(*opened.source);
+        opened.warnings = warnings_of(opened.statistics);
     } else {
         opened = open_session(path, options.common.settings);
     }
@@ -38,9 +39,6 @@ Described describe(const Options& options)
                         .warnings = std::move(opened.warnings),
                         .mask = opened.session.mask_path.string()};
     for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
-    if (described.statistics.not_finite > 0)
-        described.warnings.push_back(
-            sentence(described.statistics.not_finite, " voxels are NaN or infinite and are left out of every number"));
     return described;
 }
 
@@ -48,7 +46,7 @@ Json to_json(const Described& described, const std::string& input)
 {
     const VolumeInfo& info = described.info;
     const VolumeStatistics& statistics = described.statistics;
-    const IntensityWindow window = window_for(info.type, statistics.minimum, statistics.maximum);
+    const IntensityWindow window = window_for(info.type, statistics.range().lower, statistics.range().upper);
     const int64_t voxels = voxel_count(info);
     return {{"input", input},
             {"name", info.name},

@@ -40,7 +40,9 @@ Size3 parse_volume_size(const std::string& text)
 
 std::string nrrd_header(const VolumeInfo& info, const std::string& voxels)
 {
-    const char* type = info.type == VoxelType::float32 ? "float" : name_of(info.type);
+    const char* type = info.type == VoxelType::float32   ? "float"
+                       : info.type == VoxelType::float64 ? "double"
+                                                         : name_of(info.type);
     const char* endian = std::endian::native == std::endian::little ? "little" : "big";
     return sentence("NRRD0004\ntype: ", type, "\ndimension: 3\nsizes: ", info.size.x, " ", info.size.y, " ",
                     info.size.z,
@@ -101,9 +103,7 @@ void run(const Options& options)
 std::vector<std::string> type_names()
 {
     std::vector<std::string> names;
-    for (const VoxelType type :
-         {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16, VoxelType::float32})
-        names.emplace_back(name_of(type));
+    for (const VoxelType type : VOXEL_TYPES) names.emplace_back(name_of(type));
     return names;
 }
 

@@ -1,0 +1,59 @@
+#include "engine/passes/brick_leap.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace shvr {
+
+namespace {
+
+/// Bricks of one dispatch: bounds what it costs on a slow device.
+constexpr size_t BATCH = 2048;
+
+}  // namespace
+
+bool Visibility::shows(double lower_code, double upper_code) const
+{
+    const double lower = double(params.table_lower), upper = double(params.table_upper);
+    if (params.skipping == 0) return true;
+    // A code more on each side than the kernels' guard: what may be seen must never be left out here.
+    const double from = lower_code - 1.0, to = upper_code + 1.0;
+    if (params.table_entries < 2 || to < lower || from > upper) return false;
+    const double last = double(params.table_entries - 1);
+    const auto interval = [&](double code) {
+        return size_t(std::clamp((code - lower) * double(params.table_scale), 0.0, last - 1.0));
+    };
+    return visible_intervals[interval(to) + 1] > visible_intervals[interval(from)];
+}
+
+bool operator==(const Visibility& a, const Visibility& b)
+{
+    const auto members = [](const Visibility& v) {
+        return std::tie(v.params.table_lower, v.params.table_upper, v.params.table_scale, v.params.table_entries,
+                        v.params.skipping, v.visible_intervals, v.visible_groups);
+    };
+    return members(a) == members(b);
+}
+
+void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visibility,
+                const std::optional<MaskBinding>& mask, std::span<const gpu::BrickLeapJob> jobs)
+{
+    for (size_t first = 0; first < jobs.size(); first += BATCH) {
+        const std::span<const gpu::BrickLeapJob> batch = jobs.subspan(first, std::min(BATCH, jobs.size() - first));
+        Pass pass = graph.compute(mask ? "brick_leap_masked" : "brick_leap", "brick_leap");
+        pass.read("cell_ranges", volume.cell_ranges);
+        pass.block("jobs", batch);
+        pass.block("visible_intervals", std::span<const uint32_t>(visibility.visible_intervals));
+        gpu::BrickLeapParams params = visibility.params;
+        if (mask) {
+            pass.read("mask", mask->mask);
+            pass.block("visible_groups", std::span<const uint32_t>(visibility.visible_groups));
+            params.mask_slots = mask->slots;
+        }
+        pass.push(params);
+        pass.dispatch({8 * uint32_t(batch.size()), 8, 1});
+        volume.pages->cell_leap = pass.write("cell_leap", volume.pages->cell_leap);
+    }
+}
+
+}  // namespace shvr

@@ -1,0 +1,27 @@
+#pragma once
+// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup a brick, run when bricks arrive, and for all
+// that are there when the transfer function or the groups change.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "engine/passes/volume_binding.h"
+#include "shaders/pages.h"
+
+namespace shvr {
+
+/// What decides whether a range of codes shows anything.
+struct Visibility {
+    gpu::BrickLeapParams params{};            ///< but for mask_slots
+    std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
+    std::array<uint32_t, 8> visible_groups{};
+    /// As the kernels do it (shaders/occupancy.glsl).
+    bool shows(double lower_code, double upper_code) const;
+};
+bool operator==(const Visibility& a, const Visibility& b);
+
+void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visibility,
+                const std::optional<MaskBinding>& mask, std::span<const gpu::BrickLeapJob> jobs);
+
+}  // namespace shvr

@@ -1,0 +1,35 @@
+#pragma once
+// A volume that is wholly on the device: its bricks in the atlas, the page table, the value range of every cell and the leap
+// grid. A volume whose bricks do not fit the device budget is refused in words before any is read.
+//
+// One thread, the one that owns the executor.
+
+#include "engine/gpu/executor.h"
+#include "engine/passes/leap_grid.h"
+#include "engine/scene/device_volume.h"
+
+namespace shvr {
+
+class ResidentVolume final : public DeviceVolume {
+public:
+    /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
+    ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
+                   const IntensityWindow& window, bool filtered, int threads);
+
+    /// Device memory that the bricks of such a volume take, cells and leap grid included.
+    static uint64_t bytes_for(const VolumeInfo& info);
+
+    uint64_t brick_count() const;
+    /// Handles for a new frame graph.
+    VolumeBinding import(FrameGraph& graph) const;
+    VolumeBinding atlas(FrameGraph& graph) const override { return import(graph); }
+    std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+
+private:
+    bool filtered_;
+    glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
+    gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
+    std::array<gpu::Storage, 2> leap_scratch_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,39 @@
+#pragma once
+// The name of a brick: its level and its place in the grid of that level's bricks.
+
+#include <cstddef>
+#include <functional>
+
+#include "engine/volume/volume.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+
+struct BrickKey {
+    int level = 0;
+    glm::ivec3 brick{0};  ///< gpu::BRICK_SIZE voxels of the level a side; up to 2^15 of them along an axis
+    bool operator==(const BrickKey&) const = default;
+};
+
+struct BrickKeyHash {
+    size_t operator()(const BrickKey& key) const
+    {
+        const auto x = size_t(key.brick.x), y = size_t(key.brick.y), z = size_t(key.brick.z);
+        return std::hash<size_t>{}((x | y << 16 | z << 32 | size_t(key.level) << 48) * 0x9e3779b97f4a7c15ull);
+    }
+};
+
+/// The brick of the next coarser level that holds it.
+inline BrickKey parent_of(const BrickKey& key)
+{
+    return {key.level + 1, key.brick / 2};
+}
+
+/// What it stands for, in voxels of level 0, cut at the volume's border.
+inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
+{
+    const int64_t side = int64_t{gpu::BRICK_SIZE} << key.level;
+    return {side * Size3(key.brick), glm::min(side * (Size3(key.brick) + int64_t{1}), size)};
+}
+
+}  // namespace shvr

@@ -1,0 +1,48 @@
+// Finding bricks in the directory of pages.h. Needs `params`, and binds what it reads.
+
+layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } directory;
+layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
+layout(binding = 9, scalar) buffer Reached { uint bits[]; } reached;
+
+// Where a position is: in nothing visible (distance > 0), or in a brick.
+struct Place {
+    uint distance;    // in cells
+    uint cell_shift;  // log2 of a cell's side, in voxels
+    uint box_shift;   // leaps end at the cube of 2^box_shift voxels around the position; 31: anywhere
+    uint slot;
+    uint level;
+    uint entry;
+};
+
+Place place_at(const RaycastParams params, vec3 position)
+{
+    const uvec3 voxel = uvec3(position);
+    Place place;
+    place.cell_shift = params.page_shift;
+    place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
+    uint entry = directory.entries[place.entry];
+    // The finest view of the largest volume goes down ten times; most pictures never do.
+    while (entry >> PAGE_LEVEL_SHIFT == PAGE_NODE) {
+        --place.cell_shift;
+        const uvec3 half_of = voxel >> place.cell_shift & 1u;
+        place.entry = (entry & PAGE_PAYLOAD_MASK) + half_of.x + 2u * half_of.y + 4u * half_of.z;
+        entry = directory.entries[place.entry];
+    }
+    place.distance = entry >> PAGE_DISTANCE_SHIFT;
+    place.box_shift = 31u;
+    place.slot = entry & PAGE_PAYLOAD_MASK;
+    place.level = entry >> PAGE_LEVEL_SHIFT & 0xfu;
+    if (place.distance == 0u) {
+        const uvec3 cell = voxel >> place.level + 2u & BRICK_CELLS - 1u;
+        place.box_shift = place.cell_shift;
+        place.cell_shift = place.level + 2u;
+        place.distance = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;
+    }
+    return place;
+}
+
+// Lets the host know that a ray came here: what it meets decides what is loaded.
+void note_reached(const Place place)
+{
+    atomicOr(reached.bits[place.entry >> 5], 1u << (place.entry & 31u));
+}

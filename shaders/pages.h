@@ -1,0 +1,43 @@
+// Bricks that come and go: how a ray finds the finest brick that is there.
+//
+// The directory is a dense grid of cells of 2^cell_shift voxels a side, followed by blocks of eight children. An entry is
+//   distance << 28 | level << 24 | payload
+// Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
+// payload is the first of eight entries, x fastest, for the halves of this cell. Otherwise the payload is the slot (pack_slot)
+// of a brick of that level that holds the cell, perhaps a coarser one than wanted: the nearest there is.
+//
+// Within a brick, `cell_leap` tells how far one may leap over its 8^3 cells: Chebyshev distance to the nearest cell that
+// something visible may be in, as far as the brick reaches.
+#ifndef SHVR_PAGES_H
+#define SHVR_PAGES_H
+#include "leap.h"
+
+SHARED_BEGIN
+
+SHARED_CONST uint PAGE_DISTANCE_SHIFT = 28u;
+SHARED_CONST uint PAGE_LEVEL_SHIFT = 24u;
+SHARED_CONST uint PAGE_NODE = 15u;
+SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
+/// Cells of the directory's grid along one axis, at most: rebuilt for every new view.
+SHARED_CONST uint PAGE_GRID = 32u;
+
+/// A brick whose cells are to be looked at: one workgroup.
+struct BrickLeapJob {
+    uvec3 brick;  ///< of its level
+    uint level;
+    uint slot;
+    uint mask_slot;  ///< 0: no painted voxel in it
+};
+
+/// As OccupancyParams, of bricks that lie about in the atlas.
+struct BrickLeapParams {
+    float table_lower;
+    float table_upper;
+    float table_scale;
+    uint table_entries;
+    uint skipping;
+    uvec3 mask_slots;
+};
+
+SHARED_END
+#endif
