@@ -1,0 +1,78 @@
+#pragma once
+// A TIFF file and its chain of directories, without libtiff: libtiff needs some microseconds for each directory, and a
+// file may have a million. What this finds is enough to know how many pages there are, which of them are alike and where
+// they start; libtiff (tiff_page.h) reads one page of each kind at opening, and others when their voxels are read.
+// Nothing changes after construction; any thread may read.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/file.h"
+
+namespace shvr {
+
+/// No file has more pages: it is the longest side of a volume.
+inline constexpr size_t MOST_TIFF_PAGES = size_t{1} << 20;
+
+class TiffFile {
+public:
+    /// Fails where it is no regular file, cannot be opened or does not begin as a TIFF does.
+    explicit TiffFile(std::filesystem::path path);
+
+    /// Whether the first bytes are those of a TIFF or BigTIFF.
+    static bool begins(std::string_view head);
+
+    const std::filesystem::path& path() const { return path_; }
+    int64_t size_bytes() const { return size_bytes_; }
+    bool is_big_endian() const { return is_big_endian_; }
+    /// BigTIFF: offsets have 8 bytes instead of 4.
+    bool has_wide_offsets() const { return has_wide_offsets_; }
+    uint64_t first_directory() const { return first_directory_; }
+
+    /// All of `bytes`, or fails where the file has been cut short.
+    void read(int64_t offset, std::span<std::byte> bytes) const;
+    /// At most `bytes`; returns how many.
+    size_t read_some(int64_t offset, std::span<std::byte> bytes) const;
+    bool holds(uint64_t offset, uint64_t bytes) const;
+
+private:
+    std::filesystem::path path_;
+    FileDescriptor file_;
+    int64_t size_bytes_ = 0;
+    bool is_big_endian_ = false;
+    bool has_wide_offsets_ = false;
+    uint64_t first_directory_ = 0;
+};
+
+struct TiffDirectory {
+    uint64_t offset = 0;  ///< in the file
+    uint32_t kind = 0;    ///< index into TiffDirectories::kinds
+};
+
+/// Pages whose fields of size, layout and meaning are equal, as far as they lie in the directory itself.
+struct TiffKind {
+    size_t first_page = 0;
+    bool is_reduced = false;  ///< marked as a smaller copy of another page, or as a mask
+    std::string fields{};     ///< equal in two files: pages are alike
+};
+
+struct TiffDirectories {
+    std::vector<TiffDirectory> pages;
+    std::vector<TiffKind> kinds;
+};
+
+/// Fails, naming page and field, where the chain leaves the file, runs in a circle or is longer than
+/// `MOST_TIFF_PAGES`, and where what a page states of its strips does not fit into the file.
+TiffDirectories read_directories(const TiffFile& file);
+
+/// The quotient of a rational field of the directory at `offset`, which libtiff rounds to a float; nothing where there
+/// is none, or where it is not above 0 and finite.
+std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint16_t tag);
+/// Whether the directory at `offset` has the field.
+bool has_field(const TiffFile& file, uint64_t offset, uint16_t tag);
+
+}  // namespace shvr
