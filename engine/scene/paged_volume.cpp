@@ -489,6 +489,8 @@ PagedVolume::Counts PagedVolume::counts() const
             .evictions = evictions_,
             .leaves = is_reached_.size(),
             .reached = uint64_t(std::ranges::count(is_reached_, true)),
+            .host_bytes = store_.bytes(),
+            .peak_host_bytes = store_.peak_bytes(),
             .store = store_.counts()};
 }
 

@@ -78,8 +78,9 @@ public:
         uint64_t resident = 0;  ///< that are there
         uint64_t uploads = 0;
         uint64_t evictions = 0;
-        uint64_t leaves = 0;   ///< of the tree
-        uint64_t reached = 0;  ///< of those, by rays
+        uint64_t leaves = 0;                           ///< of the tree
+        uint64_t reached = 0;                          ///< of those, by rays
+        uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
         BrickStore::Counts store;
     };
     Counts counts() const;

@@ -156,7 +156,8 @@ bool Renderer::LeapState::operator==(const LeapState& other) const
 
 Renderer::Renderer(const Options& options)
     : device_(options.device),
-      memory_(device_, options.budget),
+      host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : uint64_t{2} << 30),
+      memory_(device_, {options.budget.device_bytes, host_budget_ / 2}),
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
       mask_(executor_, memory_)
@@ -200,7 +201,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     }
     const PagedVolume::Options options{.filtered = filtered,
                                        .threads = threads_,
-                                       .host_bytes = memory_.host_budget() / 2,
+                                       .host_bytes = host_budget_ / 4,
                                        .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * 3)};
     auto volume = std::make_unique<PagedVolume>(executor_, memory_, with_levels(std::move(source), options.host_bytes),
                                                 window, options);

@@ -129,7 +129,7 @@ TEST_CASE("pictures are the same at every budget, and the budget holds")
             CHECK(seen.complete);
             CHECK(different_bits(seen.image, expected.image) == 0);
             CHECK(small.renderer.memory().peak_device_bytes() <= mib << 20);
-            CHECK(small.renderer.memory().peak_host_bytes() <= mib << 20);
+            CHECK(small.renderer.peak_host_bytes() <= mib << 20);
             MESSAGE(detail, " voxels per pixel, ", mib, " MiB: ", small.counts().slots, " slots, ",
                     small.counts().uploads, " uploads, ", small.counts().evictions, " evictions");
         }
