@@ -212,8 +212,13 @@ namespace {
 /// One level as if it were all there is.
 class OneLevel final : public VolumeSource {
 public:
-    OneLevel(const VolumeSource& source, int level) : VolumeSource(info_of(source, level)), source_(source), level_(level) {}
-    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { source_.read_level(level_, box, voxels); }
+    OneLevel(const VolumeSource& source, int level)
+        : VolumeSource(info_of(source, level)), source_(source), level_(level)
+    {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        source_.read_level(level_, box, voxels);
+    }
 
 private:
     static VolumeInfo info_of(const VolumeSource& source, int level)

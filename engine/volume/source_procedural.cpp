@@ -129,8 +129,8 @@ public:
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
                 for (int64_t x = 0; x < extent.x; ++x)
-                    values[static_cast<size_t>(x)] =
-                        kind_->value(glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
+                    values[static_cast<size_t>(x)] = kind_->value(
+                        glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
                 store(info().type, values, row);
                 row += values.size() * bytes_of(info().type);
             }
