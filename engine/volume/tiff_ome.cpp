@@ -111,8 +111,8 @@ private:
         });
         if (count == 0) fail(subject_, " has no Image with Pixels; expected one");
         if (count > 1) {
-            result_.warnings.push_back(
-                sentence("the file holds ", count, " images; ", in_quotes(name), ", the largest, was taken"));
+            result_.warnings.push_back(sentence("the file holds ", count, " images; the largest",
+                                                name.empty() ? "" : ", " + in_quotes(name) + ",", " was taken"));
         }
         return largest;
     }
