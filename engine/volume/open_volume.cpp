@@ -17,6 +17,7 @@ struct Reader {
 constexpr Reader READERS[] = {
     {"NRRD", open_nrrd},
     {"MetaImage", open_mhd},
+    {"NIfTI", open_nifti},
     {"RAW with a side-car", open_raw_with_side_car},
 };
 
