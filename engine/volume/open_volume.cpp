@@ -19,6 +19,7 @@ constexpr Reader READERS[] = {
     {"TIFF", open_tiff, true},
     {"NRRD", open_nrrd},
     {"MetaImage", open_mhd},
+    {"NIfTI", open_nifti},
     {"RAW with a side-car", open_raw_with_side_car},
 };
 

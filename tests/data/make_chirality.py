@@ -56,6 +56,26 @@ ElementDataFile = {}
 JSON = '{"size": [5, 4, 3], "type": "int16", "endian": "big", "offset": 4, "spacing": [0.5, 0.5, 1.25], "unit": "mm"}\n'
 NSI = "ObjectFileName: nsi.raw\nResolution:     5 4 3\nSliceThickness: 0.5 0.5 1.25\nFormat:         SHORT\n"
 
+# Columns of the sforms: the phantom lies straight in RAS, its first voxel at 10, 20, 30.
+STRAIGHT = ((0.5, 0, 0, 10), (0, 0.5, 0, 20), (0, 0, 1.25, 30))
+RADIOLOGICAL = ((-0.5, 0, 0, 12), (0, 0.5, 0, 20), (0, 0, 1.25, 30))  # x runs from right to left, as most scanners write
+
+
+def nifti(order, magic, offset, sform=None, quaternion=None, qfac=1.0, version=1, slope=0.0, intercept=0.0):
+    """A header, filled up to `offset`; `order` is < or >."""
+    dim, pixdim = (3, 5, 4, 3, 1, 1, 1, 1), (qfac, 0.5, 0.5, 1.25, 0, 0, 0, 0)
+    codes = (1 if quaternion else 0, 1 if sform else 0)
+    qform = (*(quaternion or (0, 0, 0)), 10, 20, 30)
+    rows = [number for row in sform or ((0,) * 4,) * 3 for number in row]
+    if version == 1:
+        header = struct.pack(f"{order}i36x8h14xhhh8ffff3xB24x80x24xhh6f12f16x4s", 348, *dim, 4, 16, 0, *pixdim, offset,
+                             slope, intercept, 2, *codes, *qform, *rows, magic.encode())
+        return header.ljust(int(offset), b"\0")
+    header = struct.pack(f"{order}i8shh8q24x8dqdd48x80x24xii6d12d4xii16xB15x", 540, magic.encode() + b"\0\r\n\x1a\n", 4, 16,
+                         *dim, *pixdim, offset, slope, intercept, *codes, *qform, *rows, 2, 0, 0)
+    return header.ljust(int(offset), b"\0")
+
+
 FILES = {
     "attached.nrrd": NRRD.format("endian: big\n" + DIRECTIONS + UNITS).encode() + b"\n" + BIG,
     "detached.nhdr": NRRD.format('endian: little\nspacings: 0.5 0.5 1.25\nunits: "mm" "mm" "mm"\n').encode()
@@ -91,6 +111,19 @@ FILES = {
     "left_handed.nrrd": NRRD.format(LEFT + UNITS).encode() + b"\n" + reversed_along(0),
     "flipped_z.mha": META.format("False", "LOCAL").replace("0 0 1\nOffset = 0 0 0", "0 0 -1\nOffset = 10 20 32.5")
     .encode() + reversed_along(2),
+    "sform.nii": nifti("<", "n+1", 352, STRAIGHT) + LITTLE,
+    "big.nii": nifti(">", "n+1", 352, STRAIGHT) + BIG,
+    "gzip.nii.gz": gzip(nifti("<", "n+1", 368, STRAIGHT) + LITTLE),
+    "radiological.nii": nifti("<", "n+1", 352, RADIOLOGICAL) + reversed_along(0),
+    # Half a turn about y and a mirrored z: x alone runs backwards.
+    "qform.nii": nifti("<", "n+1", 352, quaternion=(0, 1, 0), qfac=-1.0).replace(
+        struct.pack("<f", 10), struct.pack("<f", 12)) + reversed_along(0),
+    "pair.hdr": nifti(">", "ni1", 0, STRAIGHT),
+    "pair.img": BIG,
+    "pair_gzip.hdr.gz": gzip(nifti("<", "ni1", 0, STRAIGHT)),
+    "pair_gzip.img.gz": gzip(LITTLE),
+    "version2.nii": nifti("<", "n+2", 544, STRAIGHT, version=2) + LITTLE,
+    "version2_big.nii": nifti(">", "n+2", 544, quaternion=(0, 0, 0), version=2) + BIG,
 }
 
 if __name__ == "__main__":
