@@ -65,8 +65,8 @@ VolumeStatistics measure(const VolumeSource& source);
 
 /// The same of a level, always by going through its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level);
-/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
-std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
+/// The statistics of integers of 8 or 16 bits, of which `lowest` + i occurs `counts[i]` times.
+VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
 /// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);

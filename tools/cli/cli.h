@@ -63,6 +63,7 @@ Json counters_of(const std::vector<gpu::PassReport>& passes);
 void check_validation(Opened& opened);
 
 void add_info(CLI::App& program);
+void add_import(CLI::App& program);
 void add_render(CLI::App& program);
 void add_annotate(CLI::App& program);
 void add_compare(CLI::App& program);
