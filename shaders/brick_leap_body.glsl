@@ -54,7 +54,8 @@ void main()
         const uvec3 cell = uvec3(column, z);
         bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(origin + cell)).x);
 #ifdef MASKED
-        if (!occupied && job.mask_slot != 0u) occupied = paint_shows(job, cell);
+        const bool shows = job.mask_slot != 0u && paint_shows(job, cell);
+        occupied = occupied || shows;
 #endif
         distances[0][grid_index(cell, uvec3(BRICK_CELLS))] = occupied ? 0u : BRICK_CELLS;
     }

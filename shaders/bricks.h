@@ -54,6 +54,8 @@ SHARED_FUNCTION uint mask_hash(uvec3 brick)
     return brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u;
 }
 SHARED_CONST uint MASK_ENTRY = 3u;
+/// A brick is at its hash or in one of the places after it: this many are looked at.
+SHARED_CONST uint MASK_PROBES = 4u;
 
 SHARED_END
 #endif

@@ -5,15 +5,14 @@
 #ifdef MASK_TABLE_HASHED
 uint mask_slot_of(uvec3 brick, uvec3 brick_counts)
 {
-    const uint last = mask_table.slots[0];
-    uint at = mask_hash(brick) & last;
-    for (;;) {
-        const uint entry = 1u + MASK_ENTRY * at;
-        const uint slot = mask_table.slots[entry + 2u];
-        if (slot == 0u || (mask_table.slots[entry] == (brick.x | brick.y << 16u) && mask_table.slots[entry + 1u] == brick.z))
-            return slot;
-        at = at + 1u & last;
+    const uint last = mask_table.slots[0], first = mask_hash(brick);
+    uint found = 0u;
+    for (uint probe = 0u; probe < MASK_PROBES; ++probe) {   // always all of them: lanes stay together
+        const uint entry = 1u + MASK_ENTRY * (first + probe & last);
+        const bool is_it = mask_table.slots[entry] == (brick.x | brick.y << 16u) && mask_table.slots[entry + 1u] == brick.z;
+        found |= is_it ? mask_table.slots[entry + 2u] : 0u;
     }
+    return found;
 }
 #else
 uint mask_slot_of(uvec3 brick, uvec3 brick_counts)

@@ -21,11 +21,14 @@ Place place_at(const RaycastParams params, vec3 position)
     place.cell_shift = params.page_shift;
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
     uint entry = directory.entries[place.entry];
-    // The finest view of the largest volume goes down ten times; most pictures never do.
-    while (entry >> PAGE_LEVEL_SHIFT == PAGE_NODE) {
-        --place.cell_shift;
+    // The finest view of the largest volume goes down ten times; most pictures never do. Lanes go down together: what one
+    // sets in a loop that others leave is not kept on every device.
+    for (uint depth = 0u; depth < params.page_depth; ++depth) {
+        const bool down = entry >> PAGE_LEVEL_SHIFT == PAGE_NODE;
+        place.cell_shift -= uint(down);
         const uvec3 half_of = voxel >> place.cell_shift & 1u;
-        place.entry = (entry & PAGE_PAYLOAD_MASK) + half_of.x + 2u * half_of.y + 4u * half_of.z;
+        const uint child = (entry & PAGE_PAYLOAD_MASK) + half_of.x + 2u * half_of.y + 4u * half_of.z;
+        place.entry = down ? child : place.entry;
         entry = directory.entries[place.entry];
     }
     place.distance = entry >> PAGE_DISTANCE_SHIFT;

@@ -33,6 +33,7 @@ struct RaycastParams {
     uvec3 mask_slots;     ///< atlas of mask bricks
     uvec3 page_counts;    ///< cells of the directory's grid, see pages.h
     uint page_shift;      ///< log2 of such a cell's side in voxels
+    uint page_depth;      ///< how far the directory's nodes go down
     float step;           ///< reference lengths
     float opacity_limit;  ///< a ray stops at or above it
     float table_lower;    ///< codes; nothing is drawn below

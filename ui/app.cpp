@@ -227,6 +227,8 @@ void App::work()
         document.view.look(document.session, document.camera, viewport_.pixels());
     document.view.show_probe(document.probe_look());
     document.view.advance();
+    if (renderer_->paged())
+        for (const std::string& message : renderer_->paged()->take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
         say(screenshot_.get());
@@ -308,31 +310,33 @@ void App::draw_probe() const
 Model App::model()
 {
     Document& document = *document_;
-    return {.session = document.session,
-            .volume = document.volume(),
-            .statistics = document.statistics,
-            .cameras = document.cameras(),
-            .brush = document.brush,
-            .haptic_threshold = document.haptic_threshold,
-            .probe_voxel = document.probe_voxel(),
-            .is_painting = document.annotator.stroke_is_running(),
-            .assistance = document.assistance,
-            .law = document.law,
-            .servo = document.touch.servo(),
-            .device_name = document.touch.device_name(),
-            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
-            .undoable = document.annotator.history().undoable(),
-            .redoable = document.annotator.history().redoable(),
-            .is_saved = document.is_saved,
-            .status = status_,
-            .shows_help = shows_help_,
-            .gpu_name = renderer_->device().traits().name,
-            .pass_times = document.view.pass_times(),
-            .view_is_complete = document.view.complete(),
-            .relevance_age_ms = document.touch.relevance_age_ms(),
-            .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
-            .device_bytes = renderer_->memory().device_bytes(),
-            .device_budget = renderer_->memory().device_budget()};
+    return {
+        .session = document.session,
+        .volume = document.volume(),
+        .statistics = document.statistics,
+        .cameras = document.cameras(),
+        .brush = document.brush,
+        .haptic_threshold = document.haptic_threshold,
+        .probe_voxel = document.probe_voxel(),
+        .is_painting = document.annotator.stroke_is_running(),
+        .assistance = document.assistance,
+        .law = document.law,
+        .servo = document.touch.servo(),
+        .device_name = document.touch.device_name(),
+        .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+        .undoable = document.annotator.history().undoable(),
+        .redoable = document.annotator.history().redoable(),
+        .is_saved = document.is_saved,
+        .status = status_,
+        .shows_help = shows_help_,
+        .gpu_name = renderer_->device().traits().name,
+        .pass_times = document.view.pass_times(),
+        .view_is_complete = document.view.complete(),
+        .view_is_limited = renderer_->paged() != nullptr && renderer_->paged()->state() == PagedVolume::State::limited,
+        .relevance_age_ms = document.touch.relevance_age_ms(),
+        .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
+        .device_bytes = renderer_->memory().device_bytes(),
+        .device_budget = renderer_->memory().device_budget()};
 }
 
 AppReport App::report()

@@ -40,6 +40,7 @@ struct Model {
     std::string gpu_name;
     const std::vector<View::PassTime>& pass_times;
     bool view_is_complete = true;
+    bool view_is_limited = false;   ///< coarser than the screen: more is seen than the budget holds
     double relevance_age_ms = 0.0;  ///< of what the servo uses; 0 without assistance
     double ui_frame_ms = 0.0;       ///< median of the last frames
     uint64_t device_bytes = 0, device_budget = 0;

@@ -252,7 +252,9 @@ void status_bar(const Model& model, const glm::uvec2& window)
                      ImGuiWindowFlags_NoNav);
     ImGui::TextUnformatted(model.status.c_str());
     align_right(place_of(model.probe_voxel) + "    |    " + (model.is_saved ? "saved" : "not saved") + "    |    " +
-                (model.view_is_complete ? "sharp" : "refining"));
+                (!model.view_is_complete ? "refining"
+                 : model.view_is_limited ? "coarser than the screen: device budget"
+                                         : "sharp"));
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);

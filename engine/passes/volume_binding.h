@@ -16,6 +16,7 @@ struct PageBinding {
     bool feedback = false;  ///< they are to
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;
+    uint32_t depth = 0;
 };
 
 struct VolumeBinding {

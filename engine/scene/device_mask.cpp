@@ -113,23 +113,29 @@ std::vector<uint32_t> DeviceMask::dense_table(const Mask& mask) const
     return entries;
 }
 
-/// The index of the last place, a power of two less one, then the places; at most half of them are taken.
+/// The index of the last place, a power of two less one, then the places: as few as keep every brick near its hash.
 std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 {
     const glm::i64vec3 counts = mask.brick_counts();
-    const auto places = uint32_t(std::bit_ceil(2 * slots_.size() + 16));
-    std::vector<uint32_t> table(1 + size_t(places) * gpu::MASK_ENTRY);
-    table[0] = places - 1;
-    for (const auto& [brick, slot] : slots_) {
+    std::vector<uint32_t> table;
+    const auto insert = [&](int64_t brick, uint32_t slot) {
         const glm::uvec3 at(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
-        uint32_t place = gpu::mask_hash(at) & (places - 1);
-        while (table[1 + size_t(place) * gpu::MASK_ENTRY + 2] != 0) place = (place + 1) & (places - 1);
-        uint32_t* entry = &table[1 + size_t(place) * gpu::MASK_ENTRY];
-        entry[0] = at.x | at.y << 16;
-        entry[1] = at.z;
-        entry[2] = slot;
+        for (uint32_t probe = 0; probe < gpu::MASK_PROBES; ++probe) {
+            uint32_t* entry = &table[1 + size_t((gpu::mask_hash(at) + probe) & table[0]) * gpu::MASK_ENTRY];
+            if (entry[2] != 0) continue;
+            entry[0] = at.x | at.y << 16;
+            entry[1] = at.z;
+            entry[2] = slot;
+            return true;
+        }
+        return false;
+    };
+    for (size_t places = std::bit_ceil(2 * slots_.size() + 16);; places *= 2) {
+        table.assign(1 + places * gpu::MASK_ENTRY, 0);
+        table[0] = uint32_t(places - 1);
+        if (std::ranges::all_of(slots_, [&](const auto& painted) { return insert(painted.first, painted.second); }))
+            return table;
     }
-    return table;
 }
 
 void DeviceMask::submit(FrameGraph graph)

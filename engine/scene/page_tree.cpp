@@ -215,6 +215,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     tree.cell_shift = tree.finest_level + 5;
     const int64_t longest = std::max({volume.size.x, volume.size.y, volume.size.z});
     while ((longest - 1) >> tree.cell_shift >= int64_t{gpu::PAGE_GRID}) ++tree.cell_shift;
+    tree.depth = tree.cell_shift - (tree.finest_level + 5);
     tree.counts = glm::uvec3(((volume.size - int64_t{1}) >> int64_t{tree.cell_shift}) + int64_t{1});
     tree.entries.assign(size_t(tree.counts.x) * tree.counts.y * tree.counts.z, empty_entry(1));
 

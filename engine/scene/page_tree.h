@@ -33,6 +33,7 @@ struct PageTree {
     int finest_level = 0;      ///< of all leaves: it sets the distance between samples
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
+    int depth = 0;             ///< levels of nodes below it
     /// The directory of shaders/pages.h as far as the view alone decides it: what is empty, and the nodes. Where
     /// `leaf_of_entry` names a leaf, the entry is to be filled with the brick that stands for it.
     std::vector<uint32_t> entries;

@@ -142,7 +142,7 @@ PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
     if (range != known_ranges_.end() && !is_painted(key) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
         return LeafState::empty;
-    return store_.has_failed(key) ? LeafState::failed : LeafState::missing;
+    return store_.failure_of(key) ? LeafState::failed : LeafState::missing;
 }
 
 void PagedVolume::fill_directory()
@@ -185,7 +185,8 @@ VolumeBinding PagedVolume::atlas(FrameGraph& graph) const
     return {.atlas = graph.import("atlas", atlas_.import()), .filtered = options_.filtered};
 }
 
-VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, bool feedback)
+VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& binding,
+                                  bool feedback)
 {
     SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
     VolumeBinding volume{.atlas = graph.import("atlas", atlas_.import()),
@@ -197,7 +198,8 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, boo
                       .reached = {},
                       .feedback = feedback,
                       .counts = tree_->counts,
-                      .cell_shift = uint32_t(tree_->cell_shift)};
+                      .cell_shift = uint32_t(tree_->cell_shift),
+                      .depth = uint32_t(tree_->depth)};
     volume.pages = pages;
     if (!leap_jobs_.empty()) {
         std::vector<gpu::BrickLeapJob> jobs;
@@ -207,7 +209,7 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, boo
             jobs.push_back(job_of(key, there->second));
             if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
         }
-        brick_leap(graph, volume, visibility_, mask.empty() ? std::nullopt : std::optional(mask.import(graph)), jobs);
+        brick_leap(graph, volume, visibility_, binding, jobs);
     }
     if (std::exchange(directory_is_stale_, false)) {
         fill_directory();
@@ -359,9 +361,9 @@ void PagedVolume::update_wants()
     if (!std::exchange(wants_are_stale_, false)) return;
     std::vector<BrickKey> keys;
     for (const BrickKey& key : region_)
-        if (!resident_.contains(key) && !store_.has_failed(key)) keys.push_back(key);
+        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
     for (const BrickKey& key : coarse_)
-        if (!resident_.contains(key) && !store_.has_failed(key)) keys.push_back(key);
+        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
     // What has a place, or will have one.
     size_t room = 0;
     for (uint32_t slot = 1; slot < slots_.size(); ++slot) {
@@ -446,11 +448,7 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     for (const BrickKey& key : keys) {
         if (!resident_.contains(key) && wait) {
             const BrickStore::Texels texels = store_.get(key);
-            if (!texels) {
-                const std::vector<std::string> messages = store_.take_messages();
-                fail(messages.empty() ? sentence(info().name, ": a brick around the probe cannot be read")
-                                      : messages.front());
-            }
+            if (!texels) throw Error(store_.failure_of(key).value_or(info().name + ": a brick cannot be read"));
             SHVR_CHECK(place(key, *texels, true), "room was counted");
         }
         const auto there = resident_.find(key);
@@ -491,6 +489,8 @@ PagedVolume::Counts PagedVolume::counts() const
             .evictions = evictions_,
             .leaves = is_reached_.size(),
             .reached = uint64_t(std::ranges::count(is_reached_, true)),
+            .host_bytes = store_.bytes(),
+            .peak_host_bytes = store_.peak_bytes(),
             .store = store_.counts()};
 }
 

@@ -42,8 +42,10 @@ public:
     void look(const PageView& view, const Visibility& visibility);
     using TreeRef = std::shared_ptr<const PageTree>;
     const TreeRef& tree() const { return tree_; }
-    /// Handles for a graph that draws; brings directory and leaps up to date in it.
-    VolumeBinding import(FrameGraph& graph, const DeviceMask& mask, bool feedback);
+    /// Handles for a graph that draws; brings directory and leaps up to date in it. `binding`: the mask's in that graph,
+    /// where anything is painted.
+    VolumeBinding import(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& binding,
+                         bool feedback);
     /// import() would have work to do before it can draw.
     bool is_stale() const { return directory_is_stale_ || !leap_jobs_.empty(); }
 
@@ -76,8 +78,9 @@ public:
         uint64_t resident = 0;  ///< that are there
         uint64_t uploads = 0;
         uint64_t evictions = 0;
-        uint64_t leaves = 0;   ///< of the tree
-        uint64_t reached = 0;  ///< of those, by rays
+        uint64_t leaves = 0;                           ///< of the tree
+        uint64_t reached = 0;                          ///< of those, by rays
+        uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
         BrickStore::Counts store;
     };
     Counts counts() const;

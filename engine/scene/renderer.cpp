@@ -99,6 +99,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     if (binding.pages) {
         params.page_counts = binding.pages->counts;
         params.page_shift = binding.pages->cell_shift;
+        params.page_depth = binding.pages->depth;
     }
     params.step = float(step_voxels);
     params.opacity_limit = float(session.render.opacity_limit);
@@ -155,7 +156,8 @@ bool Renderer::LeapState::operator==(const LeapState& other) const
 
 Renderer::Renderer(const Options& options)
     : device_(options.device),
-      memory_(device_, options.budget),
+      host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : uint64_t{2} << 30),
+      memory_(device_, {options.budget.device_bytes, host_budget_ / 2}),
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
       mask_(executor_, memory_)
@@ -199,7 +201,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     }
     const PagedVolume::Options options{.filtered = filtered,
                                        .threads = threads_,
-                                       .host_bytes = memory_.host_budget() / 2,
+                                       .host_bytes = host_budget_ / 4,
                                        .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * 3)};
     auto volume = std::make_unique<PagedVolume>(executor_, memory_, with_levels(std::move(source), options.host_bytes),
                                                 window, options);
@@ -324,8 +326,8 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     Prepared prepared;
     RaycastInput& input = prepared.input;
     if (paged_) {
-        prepared.volume = paged_->import(graph, mask_, feedback);
         if (!mask_.empty()) input.mask = mask_.import(graph);
+        prepared.volume = paged_->import(graph, mask_, input.mask, feedback);
     } else {
         prepared.volume = resident_->import(graph);
         const LeapGridInput leap = want_leap_grid(graph, prepared.volume, session);

@@ -58,6 +58,8 @@ class Renderer {
 public:
     struct Options {
         gpu::DeviceOptions device;
+        /// Of the host's bytes (0: 2 GiB) half are for mapped memory, a quarter for bricks kept on the host and a quarter
+        /// for the coarser levels of files that have none.
         gpu::Budget budget;
         int threads = 0;  ///< workers that build bricks; 0: one a core
     };
@@ -77,6 +79,12 @@ public:
     /// Null where all bricks are on the device.
     PagedVolume* paged() const { return paged_; }
     const VolumeStatistics& statistics() const { return statistics_; }
+    /// Mapped memory, and bricks kept on the host.
+    uint64_t host_bytes() const { return memory_.host_bytes() + (paged_ ? paged_->counts().host_bytes : 0); }
+    uint64_t peak_host_bytes() const
+    {
+        return memory_.peak_host_bytes() + (paged_ ? paged_->counts().peak_host_bytes : 0);
+    }
 
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
@@ -129,6 +137,7 @@ private:
                      bool feedback);
 
     gpu::Device device_;
+    uint64_t host_budget_;
     gpu::Memory memory_;
     gpu::Executor executor_;
     int threads_;

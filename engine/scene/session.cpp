@@ -33,10 +33,7 @@ fs::path session_file_of(const fs::path& path)
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
     if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
     const fs::path file = path / "shvr" / "session.json";
-    if (!fs::is_regular_file(file, ignored))
-        fail(path.string(), ": is a folder without shvr/session.json; expected a project folder, a session file ",
-             "(.json) or a volume file");
-    return file;
+    return fs::is_regular_file(file, ignored) ? file : fs::path();  // some volumes are folders
 }
 
 /// The smallest session for a volume file.

@@ -29,8 +29,9 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
 
 std::string raw_text(const RawLayout& layout)
 {
-    return sentence(layout.size.x, "x", layout.size.y, "x", layout.size.z, ":", name_of(layout.type), ":",
-                    layout.big_endian ? "big" : "little", ":", layout.offset_bytes);
+    const char* const order = !layout.big_endian ? "" : *layout.big_endian ? ":big" : ":little";
+    return sentence(layout.size.x, "x", layout.size.y, "x", layout.size.z, ":", name_of(layout.type), order, ":",
+                    layout.offset_bytes);
 }
 
 json write_volume(const Session& session, const std::filesystem::path& folder)

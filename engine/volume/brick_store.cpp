@@ -99,10 +99,11 @@ BrickStore::Texels BrickStore::get(const BrickKey& key)
     return texels;
 }
 
-bool BrickStore::has_failed(const BrickKey& key) const
+std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
 {
     const std::scoped_lock lock(mutex_);
-    return failed_.contains(key);
+    const auto found = failed_.find(key);
+    return found == failed_.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// The mutex is held. The next wanted brick that nobody has or makes.
@@ -161,7 +162,7 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
 {
     const std::scoped_lock lock(mutex_);
     ++counts_.failures;
-    failed_.insert(key);
+    failed_.emplace(key, message);
     // Several bricks may lie in one broken chunk.
     if (known_messages_.size() < MOST_MESSAGES && known_messages_.insert(message).second) messages_.push_back(message);
 }

@@ -46,7 +46,8 @@ public:
     bool wait();
     /// One brick, now: read on this thread unless it is kept. Null where it cannot be read.
     Texels get(const BrickKey& key);
-    bool has_failed(const BrickKey& key) const;
+    /// Why a brick cannot be read; nothing where it can be, or nobody has tried.
+    std::optional<std::string> failure_of(const BrickKey& key) const;
 
     /// What could not be read, one sentence each, since the last call.
     std::vector<std::string> take_messages();
@@ -79,7 +80,8 @@ private:
     std::list<BrickKey> ready_;                           ///< in the order in which they came
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
     std::list<BrickKey> by_age_;  ///< of `kept_`, oldest use first
-    std::unordered_set<BrickKey, BrickKeyHash> loading_, failed_;
+    std::unordered_set<BrickKey, BrickKeyHash> loading_;
+    std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;

@@ -186,16 +186,22 @@ std::vector<double> HeaderFields::numbers(const char* name, size_t count) const
 
 Size3 HeaderFields::size(const char* name) const
 {
-    const std::string expected = sentence("three whole numbers from 1 to ", LARGEST_SIDE);
-    const std::vector<std::string_view> words = words_of(required(name, expected.c_str()));
-    if (words.size() != 3) refuse(name, expected);
-    Size3 size(0);
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::optional<int64_t> side = whole_of(words[static_cast<size_t>(axis)]);
+    const std::vector<int64_t> sides = sizes(name, 3);
+    return {sides[0], sides[1], sides[2]};
+}
+
+std::vector<int64_t> HeaderFields::sizes(const char* name, size_t count) const
+{
+    const std::string expected =
+        sentence(count == 3 ? "three" : std::to_string(count), " whole numbers from 1 to ", LARGEST_SIDE);
+    std::vector<int64_t> sides;
+    for (const std::string_view word : words_of(required(name, expected.c_str()))) {
+        const std::optional<int64_t> side = whole_of(word);
         if (!side || *side < 1 || *side > LARGEST_SIDE) refuse(name, expected);
-        size[axis] = *side;
+        sides.push_back(*side);
     }
-    return size;
+    if (sides.size() != count) refuse(name, expected);
+    return sides;
 }
 
 VoxelType HeaderFields::type(const char* name) const

@@ -50,8 +50,9 @@ public:
 
     int64_t whole(const char* name, int64_t fallback, int64_t lower, int64_t upper) const;
     std::vector<double> numbers(const char* name, size_t count) const;
-    Size3 size(const char* name) const;      ///< required, each 1 ... 2^20
-    VoxelType type(const char* name) const;  ///< required
+    Size3 size(const char* name) const;                                ///< required, each 1 ... 2^20
+    std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< as `size`, of `count` axes
+    VoxelType type(const char* name) const;                            ///< required
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
 

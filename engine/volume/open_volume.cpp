@@ -10,13 +10,16 @@ namespace {
 struct Reader {
     const char* name;
     std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
+    bool reads_folders = false;  ///< others are not asked about one
 };
 
 /// In this order: a header is asked before the bare voxels that it may describe.
 constexpr Reader READERS[] = {
-    {"TIFF", open_tiff},
+    {"OME-Zarr", open_ome_zarr, true},
+    {"TIFF", open_tiff, true},
     {"NRRD", open_nrrd},
     {"MetaImage", open_mhd},
+    {"NIfTI", open_nifti},
     {"RAW with a side-car", open_raw_with_side_car},
 };
 
@@ -78,11 +81,18 @@ RawLayout parse_raw_layout(const std::string& text)
 
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)
 {
+    std::error_code ignored;
+    const bool is_folder = std::filesystem::is_directory(path, ignored);
     std::string tried;
     for (const Reader& reader : READERS) {
+        if (is_folder && !reader.reads_folders) continue;
         if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) return source;
         tried += tried.empty() ? "" : ", ";
         tried += reader.name;
+    }
+    if (is_folder) {
+        fail(path.string(), ": is a folder without shvr/session.json and without a volume; expected a project, or ",
+             "a volume as ", tried);
     }
     fail(path.string(), ": is in no format known here; expected ", tried, ", or bare voxels with --raw WxHxD:TYPE");
 }

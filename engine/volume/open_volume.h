@@ -9,7 +9,7 @@ namespace shvr {
 struct RawLayout {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    bool big_endian = false;
+    std::optional<bool> big_endian{};  ///< nothing: little-endian is taken, with a warning
     int64_t offset_bytes = 0;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
@@ -19,6 +19,8 @@ RawLayout parse_raw_layout(const std::string& text);
 
 /// Fails where no reader knows the file (naming the formats tried), or where the reader that knows it finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
+/// `path` is one file; or the first of numbered files ("head.1", "slice007.raw") that hold one slice each; or a folder
+/// of such files, in the order of the numbers in their names. OFFSET is left out of each.
 std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace shvr

@@ -6,14 +6,20 @@
 
 namespace shvr {
 
+/// OME-Zarr images of versions 0.1 to 0.4, projects, and bare Zarr arrays (version 2): folders with a .zattrs, .zgroup or
+/// .zarray.
+std::unique_ptr<VolumeSource> open_ome_zarr(const std::filesystem::path& path, const OpenOptions& options);
 /// TIFF and BigTIFF, by their first bytes or their extension, and folders of TIFFs.
 std::unique_ptr<VolumeSource> open_tiff(const std::filesystem::path& path, const OpenOptions& options);
 
-/// NRRD and NHDR, encoding raw, by their first bytes or their extension.
+/// NRRD and NHDR, encodings raw and gzip, by their first bytes or their extension.
 std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const OpenOptions& options);
 
-/// MetaImage, MHD and MHA, not compressed, by their first field or their extension.
+/// MetaImage, MHD and MHA, by their first field or their extension.
 std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const OpenOptions& options);
+
+/// NIfTI-1 and NIfTI-2: .nii, .nii.gz, .hdr with .img, by their first bytes or their extension.
+std::unique_ptr<VolumeSource> open_nifti(const std::filesystem::path& path, const OpenOptions& options);
 
 /// Bare voxels described by what lies beside them, or the side-car itself (source_side_car.cpp lists what is known).
 std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path, const OpenOptions& options);

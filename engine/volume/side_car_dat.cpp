@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/volume/header_text.h"
+#include "engine/volume/orientation.h"
 #include "engine/volume/side_cars.h"
 
 namespace shvr {
@@ -121,12 +122,21 @@ void warn_of_what_is_left_out(const HeaderFields& fields, VolumeInfo& info)
                 sentence(name, " is ", in_quotes(*fields.find(name)), "; voxels are shown as stored"));
         }
     }
+}
+
+/// Columns are the directions of x, y and z; the frame has no name.
+void read_orientation(const HeaderFields& fields, VolumeInfo& info)
+{
     if (!fields.has("Orientation")) return;
-    const std::vector<double> axes = fields.numbers("Orientation", 9);
-    bool is_identity = true;
-    for (size_t i = 0; i < 9; ++i) is_identity &= std::abs(axes[i] - (i % 4 == 0 ? 1.0 : 0.0)) < 1e-9;
-    if (!is_identity)
-        info.warnings.emplace_back("Orientation is not the identity; the volume is shown along its own axes");
+    const std::vector<double> m = fields.numbers("Orientation", 9);
+    const glm::dmat3 steps(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = glm::length(steps[axis]);
+        if (!(length > 0.0) || !std::isfinite(length)) {
+            fields.refuse("Orientation", "three vectors of finite length above 0");
+        }
+    }
+    static_cast<void>(place(info, steps, glm::dvec3(0.0), ""));
 }
 
 }  // namespace
@@ -147,18 +157,17 @@ std::optional<SideCar> read_dat_side_car(const fs::path& path, fs::path raw)
         return {};
     }
 
-    SideCar found;
+    SideCar found{.voxels = {.big_endian = {}}};
     found.info.size = fields->size("Resolution");
     fields->whole("Resolution T", 1, 1, 1);
     found.info.type = fields->type("Format");
     describe_spacing(*fields, found.info);
     warn_of_what_is_left_out(*fields, found.info);
+    read_orientation(*fields, found.info);
     if (const std::string* order = fields->find("ByteOrder")) {
         const std::string lower = lower_case(*order);
         if (lower != "littleendian" && lower != "bigendian") fields->refuse("ByteOrder", "LittleEndian or BigEndian");
         found.voxels.big_endian = lower == "bigendian";
-    } else if (bytes_of(found.info.type) > 1) {
-        found.info.warnings.emplace_back(NO_BYTE_ORDER);
     }
     if (raw.empty()) {
         raw = fields->data_file("ObjectFileName");

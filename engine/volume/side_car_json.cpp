@@ -61,7 +61,7 @@ std::string json_text(const fs::path& path, const char* key, const Json& value, 
 
 SideCar read_json_side_car(const fs::path& path, const Json& document, const fs::path& raw)
 {
-    SideCar found{.voxels = {.file = raw}};
+    SideCar found{.voxels = {.file = raw, .big_endian = {}}};
     std::optional<glm::dvec3> spacing;
     std::optional<std::string> unit;
     for (const auto& [key, value] : document.items()) {
@@ -94,7 +94,6 @@ SideCar read_json_side_car(const fs::path& path, const Json& document, const fs:
     for (const char* key : {"size", "type"}) {
         if (!document.contains(key)) fail(path.string(), ": ", key, " is missing; expected size and type");
     }
-    if (bytes_of(found.info.type) > 1 && !document.contains("endian")) found.info.warnings.emplace_back(NO_BYTE_ORDER);
     apply_spacing(found.info, spacing, unit, "voxel");
     return found;
 }

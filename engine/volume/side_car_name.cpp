@@ -83,11 +83,10 @@ std::optional<SideCar> read_file_name(const fs::path& raw)
 
     found.info.name = raw.string();
     found.info.type = type ? *type : type_by_length(raw, found.info);
-    found.voxels.big_endian = big_endian.value_or(false);
+    found.voxels.big_endian = big_endian;
     found.info.warnings.push_back(sentence("size ", found.info.size.x, "x", found.info.size.y, "x", found.info.size.z,
                                            " and type ", name_of(found.info.type),
                                            " were guessed from the file's name"));
-    if (bytes_of(found.info.type) > 1 && !big_endian) found.info.warnings.emplace_back(NO_BYTE_ORDER);
     apply_spacing(found.info, {}, {}, "voxel");
     return found;
 }

@@ -16,14 +16,20 @@ namespace {
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr size_t BINS = 256;
 
-/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice where that is too large.
+/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice where that is too large. Where
+/// voxels lie together in blocks, slabs are as thick as those, and of rows of whole blocks.
 template <class T, class Take>
 void for_each_slab(const VolumeSource& source, const Take& take)
 {
     const Size3 size = source.info().size;
+    const Size3 block = glm::min(source.block(), size);
     const int64_t row_bytes = size.x * static_cast<int64_t>(sizeof(T));
-    const int64_t rows = std::min(size.y, std::max<int64_t>(1, SLAB_BYTES / row_bytes));
-    const int64_t slices = rows < size.y ? 1 : std::min(size.z, std::max<int64_t>(1, SLAB_BYTES / (row_bytes * rows)));
+    int64_t rows = std::min(size.y, std::max<int64_t>(1, SLAB_BYTES / (row_bytes * block.z)));
+    if (rows < size.y) rows = std::max(rows / block.y, int64_t{1}) * block.y;
+    int64_t slices = block.z;
+    if (rows >= size.y) slices *= std::max<int64_t>(1, SLAB_BYTES / (row_bytes * size.y * block.z));
+    rows = std::min(rows, size.y);
+    slices = std::min(slices, size.z);
     std::vector<T> slab(static_cast<size_t>(size.x * rows * slices));
     for (int64_t z = 0; z < size.z; z += slices) {
         for (int64_t y = 0; y < size.y; y += rows) {
@@ -59,26 +65,16 @@ VolumeStatistics measure_integers(const VolumeSource& source)
         for (size_t i = 0; i < voxels.size(); ++i) ++counts[(i % TABLES) * VALUES + static_cast<Unsigned>(voxels[i])];
     });
 
-    std::vector<std::pair<double, int64_t>> present;  // value, how often; ascending
+    std::vector<int64_t> ascending;
     constexpr int LOWEST = std::is_signed_v<T> ? -static_cast<int>(VALUES / 2) : 0;
     for (int value = LOWEST; value < LOWEST + static_cast<int>(VALUES); ++value) {
         int64_t count = 0;
         for (size_t table = 0; table < TABLES; ++table) {
             count += counts[table * VALUES + static_cast<Unsigned>(value)];
         }
-        if (count > 0) present.emplace_back(value, count);
+        ascending.push_back(count);
     }
-    VolumeStatistics statistics{.minimum = present.front().first, .maximum = present.back().first};
-    statistics.histogram.assign(BINS, 0);
-    long double sum = 0.0L;
-    int64_t voxels = 0;
-    for (const auto& [value, count] : present) {
-        statistics.histogram[bin_of(statistics.range(), value)] += count;
-        sum += static_cast<long double>(value) * static_cast<long double>(count);
-        voxels += count;
-    }
-    statistics.mean = static_cast<double>(sum / static_cast<long double>(voxels));
-    return statistics;
+    return statistics_of(ascending, LOWEST);
 }
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
@@ -242,6 +238,25 @@ Size3 size_of_level(const Size3& size, int level)
 {
     const int64_t side = int64_t{1} << level;
     return (size + (side - 1)) / side;
+}
+
+VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
+{
+    std::vector<std::pair<double, int64_t>> present;  // value, how often; ascending
+    for (size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] > 0) present.emplace_back(lowest + static_cast<int>(i), counts[i]);
+    }
+    VolumeStatistics statistics{.minimum = present.front().first, .maximum = present.back().first};
+    statistics.histogram.assign(BINS, 0);
+    long double sum = 0.0L;
+    int64_t voxels = 0;
+    for (const auto& [value, count] : present) {
+        statistics.histogram[bin_of(statistics.range(), value)] += count;
+        sum += static_cast<long double>(value) * static_cast<long double>(count);
+        voxels += count;
+    }
+    statistics.mean = static_cast<double>(sum / static_cast<long double>(voxels));
+    return statistics;
 }
 
 VolumeStatistics measure(const VolumeSource& source)

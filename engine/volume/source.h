@@ -35,6 +35,10 @@ public:
     /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
+    /// How voxels of level 0 lie together where they come from: boxes of whole such blocks, counted from voxel 0, are
+    /// read without decoding anything twice. 1, 1, 1: it does not matter.
+    virtual Size3 block() const { return Size3(1); }
+
     /// How many levels there are, at least 1.
     virtual int levels() const { return 1; }
     /// As `read`, of a level.
@@ -61,6 +65,8 @@ VolumeStatistics measure(const VolumeSource& source);
 
 /// The same of a level, always by going through its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level);
+/// The statistics of integers of 8 or 16 bits, of which `lowest` + i occurs `counts[i]` times.
+VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
 /// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);

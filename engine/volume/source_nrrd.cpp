@@ -1,11 +1,12 @@
-// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html). Read is what describes bare voxels, in the
-// header's own file or in another one.
+// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels bare or behind gzip, in the header's own
+// file, in another one or in many.
 
-#include <array>
-#include <cmath>
+#include <utility>
 
 #include "engine/base/error.h"
-#include "engine/volume/header_text.h"
+#include "engine/volume/data_files.h"
+#include "engine/volume/nrrd_axes.h"
+#include "engine/volume/orientation.h"
 #include "engine/volume/readers.h"
 #include "engine/volume/source_raw.h"
 
@@ -17,7 +18,8 @@ constexpr int64_t LINE_SKIP_BYTES = int64_t{16} << 20;
 struct Header {
     HeaderFields fields;
     bool is_attached = false;
-    int64_t voxels_at = 0;  ///< where the header's own file goes on after the empty line
+    int64_t voxels_at = 0;         ///< where the header's own file goes on after the empty line
+    std::string_view file_list{};  ///< the lines after "data file: LIST"
 };
 
 Header read_header(const std::filesystem::path& path, const std::string& head)
@@ -41,128 +43,14 @@ Header read_header(const std::filesystem::path& path, const std::string& head)
             fail(path.string(), ": line ", line_number, " is ", in_quotes(line), "; expected \"field: value\"");
         }
         if (line.substr(colon).starts_with(":=")) continue;  // free key/value pairs
-        header.fields.add(line.substr(0, colon), line.substr(colon + 1));
+        const std::string name = lower_case(trimmed(line.substr(0, colon)));
+        header.fields.add(name, line.substr(colon + 1));
+        if ((name == "data file" || name == "datafile") && is_list(line.substr(colon + 1))) {
+            header.file_list = rest;  // the last field: what follows are names
+            break;
+        }
     }
     return header;
-}
-
-/// "mm" "mm" "mm", or without quotes.
-std::vector<std::string> texts_of(std::string_view value)
-{
-    std::vector<std::string> texts;
-    for (size_t open = value.find('"'); open != std::string_view::npos; open = value.find('"')) {
-        const size_t close = value.find('"', open + 1);
-        if (close == std::string_view::npos) break;
-        texts.emplace_back(value.substr(open + 1, close - open - 1));
-        value.remove_prefix(close + 1);
-    }
-    if (texts.empty()) {
-        for (const std::string_view word : words_of(value)) texts.emplace_back(word);
-    }
-    return texts;
-}
-
-std::optional<std::string> unit_of(const HeaderFields& fields)
-{
-    const char* const name = fields.has("space units") ? "space units" : "units";
-    const std::string* value = fields.find(name);
-    if (value == nullptr) return {};
-    const std::vector<std::string> texts = texts_of(*value);
-    if (texts.empty()) return {};
-    for (const std::string& text : texts) {
-        if (plain_unit(text) != plain_unit(texts[0])) fields.refuse(name, "one unit for all axes");
-    }
-    return texts[0];
-}
-
-/// Columns are the steps from voxel to voxel along x, y and z.
-glm::dmat3 space_directions(const HeaderFields& fields)
-{
-    constexpr const char* NAME = "space directions";
-    constexpr const char* EXPECTED = "three vectors of three numbers, (a,b,c) (d,e,f) (g,h,i)";
-    std::string_view rest = fields.required(NAME, EXPECTED);
-    glm::dmat3 directions(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        rest = trimmed(rest);
-        const size_t close = rest.find(')');
-        if (!rest.starts_with('(') || close == std::string_view::npos) fields.refuse(NAME, EXPECTED);
-        std::string numbers(rest.substr(1, close - 1));
-        rest.remove_prefix(close + 1);
-        for (char& character : numbers) {
-            if (character == ',') character = ' ';
-        }
-        const std::vector<std::string_view> words = words_of(numbers);
-        if (words.size() != 3) fields.refuse(NAME, EXPECTED);
-        for (int component = 0; component < 3; ++component) {
-            const std::optional<double> number = number_of(words[static_cast<size_t>(component)]);
-            if (!number || !std::isfinite(*number)) fields.refuse(NAME, EXPECTED);
-            directions[axis][component] = *number;
-        }
-        if (!(glm::length(directions[axis]) > 0.0) || !std::isfinite(glm::length(directions[axis]))) {
-            fields.refuse(NAME, "vectors of finite length above 0");
-        }
-    }
-    if (!trimmed(rest).empty()) fields.refuse(NAME, EXPECTED);
-    return directions;
-}
-
-bool space_is_left_handed(const HeaderFields& fields)
-{
-    const std::string* value = fields.find("space");
-    const std::string space = value == nullptr ? "" : lower_case(*value);
-    return space == "left-anterior-superior" || space == "las" || space == "3d-left-handed";
-}
-
-/// Voxels are shown in the order of the file, along their own axes; what that changes is said.
-void warn_of_orientation(VolumeInfo& info, const glm::dmat3& directions, bool left_handed)
-{
-    bool is_oblique = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        const glm::dvec3 unit = glm::normalize(directions[axis]);
-        if (std::abs(unit[axis]) < 1.0 - 1e-9) {
-            is_oblique = true;
-        } else if (unit[axis] < 0.0) {
-            info.warnings.push_back(sentence("axis ", "xyz"[axis],
-                                             " runs against its space direction; voxels are kept in ",
-                                             "the order of the file"));
-        }
-    }
-    if (is_oblique) {
-        info.warnings.emplace_back("space directions are oblique; the volume is shown along its own axes");
-    }
-    if ((glm::determinant(directions) < 0.0) != left_handed) {
-        info.warnings.emplace_back("axes are left-handed; the volume is shown as its mirror image");
-    }
-}
-
-void read_spacing(const HeaderFields& fields, VolumeInfo& info)
-{
-    std::optional<glm::dvec3> spacing;
-    if (fields.has("space directions")) {
-        const glm::dmat3 directions = space_directions(fields);
-        spacing = glm::dvec3(glm::length(directions[0]), glm::length(directions[1]), glm::length(directions[2]));
-        warn_of_orientation(info, directions, space_is_left_handed(fields));
-    } else if (fields.has("spacings")) {
-        const std::vector<double> numbers = fields.numbers("spacings", 3);
-        // "nan" is how NRRD says that it does not know.
-        if (!(std::isnan(numbers[0]) && std::isnan(numbers[1]) && std::isnan(numbers[2]))) {
-            for (int axis = 0; axis < 3; ++axis) {
-                const double number = numbers[static_cast<size_t>(axis)];
-                if (!std::isfinite(number) || number == 0.0) fields.refuse("spacings", "3 finite numbers other than 0");
-                if (number < 0.0) {
-                    info.warnings.push_back(sentence("spacing along ", "xyz"[axis], " is negative; voxels are kept in ",
-                                                     "the order of the file"));
-                }
-            }
-            spacing = glm::abs(glm::dvec3(numbers[0], numbers[1], numbers[2]));
-        }
-    }
-    apply_spacing(info, spacing, unit_of(fields), "mm");
-}
-
-bool is_pattern(std::string_view data_file)
-{
-    return data_file.find('%') != std::string_view::npos && words_of(data_file).size() >= 4;
 }
 
 /// Where the bytes begin that follow `lines` line ends counted from `from`.
@@ -182,60 +70,106 @@ int64_t skip_lines(const HeaderFields& fields, const std::filesystem::path& file
     return static_cast<int64_t>(at);
 }
 
-RawVoxels place_voxels(const Header& header, VoxelType type)
+bool is_deflated(const HeaderFields& fields)
+{
+    const std::string encoding = lower_case(fields.required("encoding", "raw or gzip"));
+    if (encoding == "gzip" || encoding == "gz") return true;
+    if (encoding == "raw") return false;
+    const bool is_known = encoding == "bzip2" || encoding == "bz2" || encoding == "ascii" || encoding == "text" ||
+                          encoding == "txt" || encoding == "hex";
+    fail(fields.path().string(), ": encoding ", in_quotes(encoding), is_known ? " is not supported" : " is not known",
+         "; expected raw or gzip");
+}
+
+bool is_big_endian(const HeaderFields& fields, VoxelType type)
+{
+    if (bytes_of(type) == 1) return false;
+    const std::string endian = lower_case(fields.required("endian", "little or big"));
+    if (endian != "little" && endian != "big") fields.refuse("endian", "little or big");
+    return endian == "big";
+}
+
+/// Skips lines and bytes of one file, as the header says of all of them.
+RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, bool deflated)
+{
+    constexpr int64_t MOST = int64_t{1} << 62;
+    const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
+    const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
+    // Decompressed bytes cannot be counted from their end, and lines are skipped before bytes are decompressed.
+    const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
+    if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
+    const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));
+    return {file, deflated ? begin : begin + bytes};
+}
+
+RawVoxels place_voxels(const Header& header, const VolumeInfo& info)
 {
     const HeaderFields& fields = header.fields;
-    RawVoxels voxels{.file = fields.path(), .offset_bytes = header.voxels_at};
+    RawVoxels voxels;
+    voxels.is_deflated = is_deflated(fields);
+    voxels.big_endian = is_big_endian(fields, info.type);
     const char* const data_file = fields.has("datafile") ? "datafile" : "data file";
-    if (const std::string* stated = fields.find(data_file)) {
-        if (stated->starts_with("LIST") || is_pattern(*stated)) {
-            fields.refuse(data_file, "one file: voxels spread over several files are not supported yet");
+    const std::string* stated = fields.find(data_file);
+    if (stated == nullptr && !header.is_attached) {
+        fail(fields.path().string(), ": has neither a data file nor an empty line with voxels behind it; ",
+             "expected one of them");
+    }
+    if (stated != nullptr && (is_list(*stated) || is_pattern(*stated))) {
+        for (const auto& file : data_files(fields, data_file, header.file_list, info.size)) {
+            voxels.parts.push_back(place_in(fields, file, 0, voxels.is_deflated));
         }
-        voxels.file = fields.data_file(data_file);
-        voxels.offset_bytes = 0;
-    } else if (!header.is_attached) {
-        fail(fields.path().string(), ": ends without \"data file\" and without the empty line before voxels; expected ",
-             "one of them");
+    } else {
+        const RawVoxels::Part part = stated == nullptr
+                                         ? place_in(fields, fields.path(), header.voxels_at, voxels.is_deflated)
+                                         : place_in(fields, fields.data_file(data_file), 0, voxels.is_deflated);
+        voxels.file = part.file;
+        voxels.offset_bytes = part.offset_bytes;
     }
-
-    const std::string encoding = lower_case(fields.required("encoding", "raw"));
-    if (encoding != "raw") {
-        fail(fields.path().string(), ": encoding ", in_quotes(encoding), " is not supported yet; expected raw");
+    if (voxels.is_deflated) {
+        voxels.skip_bytes = fields.whole(fields.has("byteskip") ? "byteskip" : "byte skip", 0, 0, INT64_MAX);
     }
-    if (bytes_of(type) > 1) {
-        const std::string endian = lower_case(fields.required("endian", "little or big"));
-        if (endian != "little" && endian != "big") fields.refuse("endian", "little or big");
-        voxels.big_endian = endian == "big";
-    }
-
-    constexpr int64_t MOST = int64_t{1} << 62;
-    const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
-    const int64_t bytes = fields.whole(byte_skip, 0, -1, MOST);
-    const int64_t lines = fields.whole(line_skip, 0, 0, MOST);
-    voxels.offset_bytes = bytes == RawVoxels::AT_END
-                              ? RawVoxels::AT_END
-                              : skip_lines(fields, voxels.file, voxels.offset_bytes, lines) + bytes;
     return voxels;
+}
+
+/// Goes to one of several points in time.
+void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, const VolumeInfo& info, RawVoxels& voxels)
+{
+    if (frames == 1) return;
+    if (!voxels.parts.empty() || voxels.offset_bytes == RawVoxels::AT_END) {
+        fields.refuse("dimension", "3: points in time in several files, or counted from the end, are not supported");
+    }
+    int64_t bytes = 0;
+    int64_t all = 0;
+    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)), &bytes) ||
+        __builtin_mul_overflow(bytes, frames, &all) ||
+        __builtin_add_overflow(all, voxels.is_deflated ? voxels.skip_bytes : voxels.offset_bytes, &all)) {
+        fields.refuse("sizes", "sizes whose voxels fit in 2^63 bytes");
+    }
+    (voxels.is_deflated ? voxels.skip_bytes : voxels.offset_bytes) += frame * bytes;
+    voxels.bytes_after = (frames - 1 - frame) * bytes;
 }
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const OpenOptions& /*options*/)
+std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const OpenOptions& options)
 {
     const std::string extension = lower_case(path.extension().string());
     if (!read_head(path, 4).starts_with("NRRD") && extension != ".nrrd" && extension != ".nhdr") return nullptr;
 
-    const Header header = read_header(path, read_head(path));
+    const std::string head = read_head(path);
+    const Header header = read_header(path, head);
     const HeaderFields& fields = header.fields;
-    fields.required("dimension", "3");
-    fields.whole("dimension", 3, 3, 3);
     VolumeInfo info{.name = path.filename().string(), .format = "nrrd"};
-    info.size = fields.size("sizes");
+    const NrrdAxes axes = read_nrrd_axes(fields);
+    info.size = axes.size;
     info.type = fields.type("type");
-    read_spacing(fields, info);
-    const RawVoxels voxels = place_voxels(header, info.type);
-    return open_raw_voxels(std::move(info), voxels);
+    read_nrrd_space(fields, axes, info);
+    RawVoxels voxels = place_voxels(header, info);
+    voxels.channels = axes.channels;
+    voxels.channel = chosen_channel(path.string(), options, axes.channels,
+                                    axes.channels_are_colors ? color_names(axes.channels) : color_names(0));
+    choose_frame(fields, chosen_frame(path.string(), options, axes.frames), axes.frames, info, voxels);
+    return right_handed(open_raw_voxels(std::move(info), voxels));
 }
 
 }  // namespace shvr

@@ -1,52 +1,30 @@
 #include "engine/volume/source_raw.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/base/file.h"
+#include "engine/volume/byte_order.h"
 #include "engine/volume/header_text.h"
-#include "engine/volume/open_volume.h"
+#include "engine/volume/inflated_bytes.h"
 
 namespace shvr {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "files in little-endian order are taken as they are");
+/// Deflated parts are slices, of which several may be open.
+constexpr int64_t KEPT_OF_PART = int64_t{2} << 20;
 
-template <class Bits, Bits (*SWAPPED)(Bits)>
-void swap_each(std::span<std::byte> bytes)
-{
-    for (size_t at = 0; at < bytes.size(); at += sizeof(Bits)) {
-        Bits bits;
-        std::memcpy(&bits, bytes.data() + at, sizeof(Bits));
-        bits = SWAPPED(bits);
-        std::memcpy(bytes.data() + at, &bits, sizeof(Bits));
-    }
-}
-
-uint16_t swapped16(uint16_t bits)
-{
-    return __builtin_bswap16(bits);
-}
-uint32_t swapped32(uint32_t bits)
-{
-    return __builtin_bswap32(bits);
-}
-uint64_t swapped64(uint64_t bits)
-{
-    return __builtin_bswap64(bits);
-}
+struct Layout {
+    bool big_endian = false;
+    int64_t channels = 1;
+    int64_t channel = 0;
+};
 
 class RawSource final : public VolumeSource {
 public:
-    RawSource(VolumeInfo info, RawVoxels voxels, FileDescriptor file)
-        : VolumeSource(std::move(info)), voxels_(std::move(voxels)), file_(std::move(file))
+    RawSource(VolumeInfo info, const Layout& layout, std::unique_ptr<VoxelBytes> bytes)
+        : VolumeSource(std::move(info)), layout_(layout), bytes_(std::move(bytes))
     {}
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
@@ -68,78 +46,131 @@ public:
         for (int64_t z = box.lower.z; z < box.upper.z; z += slices) {
             for (int64_t y = box.lower.y; y < box.upper.y; y += rows) {
                 const int64_t first = box.lower.x + size.x * (y + size.y * z);
-                read_run(voxels_.offset_bytes + first * voxel_bytes, {run, run_bytes});
+                read_run(first, {run, run_bytes});
                 run += run_bytes;
             }
         }
-        if (voxels_.big_endian && voxel_bytes == 2) swap_each<uint16_t, swapped16>(voxels);
-        if (voxels_.big_endian && voxel_bytes == 4) swap_each<uint32_t, swapped32>(voxels);
-        if (voxels_.big_endian && voxel_bytes == 8) swap_each<uint64_t, swapped64>(voxels);
+        if (layout_.big_endian) swap_bytes(voxels, bytes_of(info().type));
     }
 
 private:
-    void read_run(int64_t offset, std::span<std::byte> bytes) const
+    void read_run(int64_t first_voxel, std::span<std::byte> voxels) const
     {
-        while (!bytes.empty()) {
-            const ssize_t count = ::pread(file_.number(), bytes.data(), bytes.size(), offset);
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) fail(voxels_.file.string(), ": cannot be read: ", reason_of(errno));
-            if (count == 0) {
-                fail(voxels_.file.string(), ": ended after ", offset, " bytes; expected ",
-                     offset + static_cast<int64_t>(bytes.size()), ": it was cut short while open");
+        const size_t voxel_bytes = bytes_of(info().type);
+        const int64_t stride = layout_.channels * static_cast<int64_t>(voxel_bytes);
+        if (layout_.channels == 1) return bytes_->read(first_voxel * stride, voxels);
+        constexpr size_t BLOCK_BYTES = size_t{1} << 20;
+        const size_t block_voxels = std::max<size_t>(1, BLOCK_BYTES / static_cast<size_t>(stride));
+        std::vector<std::byte> block(static_cast<size_t>(stride) * std::min(block_voxels, voxels.size() / voxel_bytes));
+        while (!voxels.empty()) {
+            const size_t count = std::min(block_voxels, voxels.size() / voxel_bytes);
+            bytes_->read(first_voxel * stride, std::span(block).first(count * static_cast<size_t>(stride)));
+            const std::byte* from = block.data() + static_cast<size_t>(layout_.channel) * voxel_bytes;
+            for (size_t i = 0; i < count; ++i, from += stride) {
+                std::memcpy(voxels.data() + i * voxel_bytes, from, voxel_bytes);
             }
-            bytes = bytes.subspan(static_cast<size_t>(count));
-            offset += count;
+            voxels = voxels.subspan(count * voxel_bytes);
+            first_voxel += static_cast<int64_t>(count);
         }
     }
 
-    RawVoxels voxels_;
-    FileDescriptor file_;
+    Layout layout_;
+    std::unique_ptr<VoxelBytes> bytes_;
 };
+
+// ---- Opening: sizes against files -----------------------------------------------------------------------------------
+
+/// The bytes of all channels of all voxels; fails where 63 bits do not count them.
+int64_t bytes_of_voxels(const VolumeInfo& info, const RawVoxels& voxels, int64_t offset)
+{
+    SHVR_CHECK(offset >= 0 && voxels.channels >= 1 && voxels.channel >= 0 && voxels.channel < voxels.channels);
+    int64_t needed = 0;
+    int64_t all = 0;
+    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)), &needed) ||
+        __builtin_mul_overflow(needed, voxels.channels, &needed) ||
+        __builtin_add_overflow(needed, voxels.bytes_after, &all) || __builtin_add_overflow(all, offset, &all)) {
+        fail(voxels.file.string(), ": offset is ", offset,
+             "; expected one that leaves room for the voxels within 2^63 bytes");
+    }
+    return needed;
+}
+
+std::string size_text(const VolumeInfo& info, const RawVoxels& voxels)
+{
+    return sentence(info.size.x, "x", info.size.y, "x", info.size.z, " voxels of ",
+                    voxels.channels > 1 ? sentence(voxels.channels, " times ") : std::string(), name_of(info.type));
+}
+
+/// Checks that `file` holds `needed` bytes at `offset`. Returns where they begin.
+int64_t place_in_file(const InputFile& file, int64_t offset, int64_t needed, int64_t after, const std::string& of_what)
+{
+    const int64_t all = (offset == RawVoxels::AT_END ? 0 : offset) + needed + after;
+    if (file.bytes < all) {
+        fail(file.path.string(), ": holds ", file.bytes, " bytes; expected at least ", all, " for ", of_what,
+             offset > 0 ? sentence(" after a header of ", offset) : std::string());
+    }
+    return offset == RawVoxels::AT_END ? file.bytes - needed : offset;
+}
+
+std::unique_ptr<VoxelBytes> open_one(VolumeInfo& info, const RawVoxels& voxels)
+{
+    InputFile file = open_input_file(voxels.file);
+    const bool at_end = voxels.offset_bytes == RawVoxels::AT_END;
+    const int64_t offset = at_end ? 0 : voxels.offset_bytes;
+    const int64_t needed = bytes_of_voxels(info, voxels, voxels.is_deflated ? voxels.skip_bytes : offset);
+    if (voxels.is_deflated) {
+        return bytes_of_deflated(
+            {.file = std::move(file), .offset_bytes = offset, .skip_bytes = voxels.skip_bytes, .wanted_bytes = needed});
+    }
+    const int64_t begin = place_in_file(file, voxels.offset_bytes, needed, voxels.bytes_after, size_text(info, voxels));
+    if (const int64_t more = file.bytes - begin - needed - voxels.bytes_after; more > 0 && !at_end) {
+        info.warnings.push_back(sentence(voxels.file.filename().string(), " holds ", more,
+                                         " bytes more than the voxels need; they were left out"));
+    }
+    return bytes_of_file(std::move(file), begin);
+}
+
+std::unique_ptr<VoxelBytes> open_part(const RawVoxels& voxels, const RawVoxels::Part& part, int64_t share,
+                                      const std::string& of_what)
+{
+    InputFile file = open_input_file(part.file);
+    if (voxels.is_deflated) {
+        return bytes_of_deflated({.file = std::move(file),
+                                  .offset_bytes = part.offset_bytes,
+                                  .skip_bytes = voxels.skip_bytes,
+                                  .wanted_bytes = share,
+                                  .kept_bytes = KEPT_OF_PART});
+    }
+    const int64_t begin = place_in_file(file, part.offset_bytes, share, 0, of_what);
+    return bytes_of_file(std::move(file), begin);
+}
+
+std::unique_ptr<VoxelBytes> open_parts(const VolumeInfo& info, const RawVoxels& voxels)
+{
+    const int64_t needed = bytes_of_voxels(info, voxels, 0);
+    const auto count = static_cast<int64_t>(voxels.parts.size());
+    SHVR_CHECK(needed % count == 0, needed, " ", count);
+    const int64_t share = needed / count;
+    const std::string of_what =
+        sentence(count == 1 ? "" : sentence("one of ", count, " equal parts of "), size_text(info, voxels));
+    // Each is looked at now: a missing slice is better found before the first hour of work than after.
+    for (const RawVoxels::Part& part : voxels.parts) static_cast<void>(open_part(voxels, part, share, of_what));
+    return bytes_of_parts(voxels.parts.size(), share, [voxels, share, of_what](size_t i) {
+        return open_part(voxels, voxels.parts[i], share, of_what);
+    });
+}
 
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_raw_voxels(VolumeInfo info, const RawVoxels& voxels)
 {
-    const std::string name = voxels.file.string();
-    // Without O_NONBLOCK, opening a FIFO waits for a writer before we can see that it is one.
-    FileDescriptor file(::open(voxels.file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (!file) fail(name, ": cannot be opened: ", reason_of(errno));
-    struct stat status {};
-    if (::fstat(file.number(), &status) != 0) fail(name, ": cannot be examined: ", reason_of(errno));
-    if (!S_ISREG(status.st_mode)) {
-        fail(name, ": is ", S_ISDIR(status.st_mode) ? "a folder" : "a pipe or device", "; expected a file");
+    std::unique_ptr<VoxelBytes> bytes = voxels.parts.empty() ? open_one(info, voxels) : open_parts(info, voxels);
+    if (!voxels.big_endian && bytes_of(info.type) > 1) {
+        const bool may_look = voxels.channels == 1 && !voxels.is_deflated;
+        info.warnings.push_back(byte_order_warning(info, may_look ? bytes.get() : nullptr));
     }
-
-    const bool at_end = voxels.offset_bytes == RawVoxels::AT_END;
-    const int64_t offset = at_end ? 0 : voxels.offset_bytes;
-    SHVR_CHECK(offset >= 0, offset);
-    int64_t needed = 0;
-    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)), &needed) ||
-        __builtin_add_overflow(needed, offset, &needed)) {
-        fail(name, ": offset is ", offset, "; expected one that leaves room for the voxels within 2^63 bytes");
-    }
-    const int64_t held = status.st_size;
-    if (held < needed) {
-        fail(name, ": holds ", held, " bytes; expected at least ", needed, " for ", info.size.x, "x", info.size.y, "x",
-             info.size.z, " voxels of ", name_of(info.type),
-             offset > 0 ? sentence(" after a header of ", offset) : std::string());
-    }
-    if (held > needed && !at_end) {
-        info.warnings.push_back(sentence(voxels.file.filename().string(), " holds ", held - needed,
-                                         " bytes more than the voxels need; they were left out"));
-    }
-    RawVoxels placed = voxels;
-    placed.offset_bytes = at_end ? held - needed : offset;
-    return std::make_unique<RawSource>(std::move(info), std::move(placed), std::move(file));
-}
-
-std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout)
-{
-    VolumeInfo info{.name = path.filename().string(), .format = "raw", .size = layout.size, .type = layout.type};
-    const bool stated = layout.spacing != glm::dvec3(1.0) || layout.unit != "voxel";
-    apply_spacing(info, stated ? std::optional(layout.spacing) : std::nullopt, layout.unit, "voxel");
-    return open_raw_voxels(std::move(info), {path, layout.offset_bytes, layout.big_endian});
+    const Layout layout{voxels.big_endian.value_or(false), voxels.channels, voxels.channel};
+    return std::make_unique<RawSource>(std::move(info), layout, std::move(bytes));
 }
 
 }  // namespace shvr

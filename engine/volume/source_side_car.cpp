@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/volume/header_text.h"
+#include "engine/volume/orientation.h"
 #include "engine/volume/readers.h"
 #include "engine/volume/side_cars.h"
 
@@ -25,7 +26,7 @@ Source open_side_car(SideCar side_car)
 {
     side_car.info.name = side_car.voxels.file.filename().string();
     side_car.info.format = "raw";
-    return open_raw_voxels(std::move(side_car.info), side_car.voxels);
+    return right_handed(open_raw_voxels(std::move(side_car.info), side_car.voxels));
 }
 
 bool is_file(const fs::path& path)

@@ -3,7 +3,7 @@ import unittest
 
 from harness import CliTest, Volume, run
 
-KEYS = ["format", "size", "type", "spacing", "unit", "min", "max", "mean", "voxels", "levels", "warnings",
+KEYS = ["format", "size", "type", "spacing", "unit", "frame", "directions", "origin", "min", "max", "mean", "voxels", "levels", "warnings",
         "histogram", "window"]
 
 
@@ -34,6 +34,22 @@ class Info(CliTest):
         for info in infos:
             self.assertEqual((info["type"], info["min"], info["max"]), ("int16", -500, -441))
         self.assertEqual(infos[0]["histogram"], infos[1]["histogram"])
+
+    def test_where_the_volume_lies_is_stated(self):
+        (self.folder / "a.nrrd").write_bytes(
+            b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nspace: LPS\nspace directions: (0,0.5,0) (-2,0,0) "
+            b"(0,0,3)\nspace origin: (1,2,3.5)\nencoding: raw\n\nab")
+        info = self.check_json("info", self.folder / "a.nrrd")
+        self.assertEqual((info["frame"], info["directions"], info["origin"], info["spacing"]),
+                         ("LPS", [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], [1, 2, 3.5], [0.5, 2, 3]))
+
+    def test_numbered_slices_open_by_their_folder(self):
+        slices = self.folder / "slices"
+        slices.mkdir()
+        for z in range(12):
+            (slices / f"slice.{z + 1}").write_bytes(bytes([z] * 20))
+        info = self.check_json("info", slices, "--raw", "5x4x12:uint8")
+        self.assertEqual((info["size"], info["min"], info["max"]), ([5, 4, 12], 0, 11))
 
     def test_a_session_and_a_project_are_told_by_their_volume(self):
         header = Volume.noise((8, 8, 8), seed=2).write(self.folder)

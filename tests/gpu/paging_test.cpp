@@ -1,7 +1,12 @@
-// Bricks that come and go: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the budget.
+// Bricks that come and go: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
+// budget; nothing is loaded twice; what cannot be read is named.
+
+#include <chrono>
 
 #include <doctest/doctest.h>
 
+#include "engine/scene/annotator.h"
+#include "engine/scene/view.h"
 #include "engine/volume/pyramid_source.h"
 #include "tests/support/gpu.h"
 
@@ -10,11 +15,15 @@ using namespace shvr::test;
 
 namespace {
 
-std::shared_ptr<const VolumeSource> tubes(const Size3& size, VoxelType type = VoxelType::uint8)
+using Source = std::shared_ptr<const VolumeSource>;
+constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
+
+Source tubes(const Size3& size)
 {
-    return open_procedural({.kind = "tubes", .size = size, .seed = 3, .type = type});
+    return open_procedural({.kind = "tubes", .size = size, .seed = 3});
 }
 
+/// Finest bricks everywhere, exact samples.
 Session session_of(double opacity, bool shaded)
 {
     Session session;
@@ -28,43 +37,242 @@ Session session_of(double opacity, bool shaded)
     return session;
 }
 
-/// A renderer of its own, with a budget; it outlives no test case.
-struct Paged {
+/// A renderer with a budget of its own.
+struct Budgeted {
     Renderer renderer;
-    explicit Paged(uint64_t device_mib, uint64_t host_mib = 0)
+    explicit Budgeted(uint64_t device_mib = 0, uint64_t host_mib = 0)
         : renderer({.device = {"", true}, .budget = {device_mib << 20, host_mib << 20}, .threads = 2})
     {}
-    ~Paged()
+    ~Budgeted()
     {
         for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
     }
-    Picture picture(std::shared_ptr<const VolumeSource> source, Session session, Paging paging, const Camera& camera)
+    void load(const Source& source, Session session, Paging paging)
     {
         session.render.paging = paging;
-        const VolumeStatistics statistics{.minimum = 0.0, .maximum = 255.0};
-        renderer.load(std::move(source), statistics, session.render);
+        renderer.load(source, BYTES, session.render);
+    }
+    Picture picture(const Source& source, const Session& session, Paging paging, const Camera& camera)
+    {
+        load(source, session, paging);
         return renderer.render(session, camera);
     }
+    PagedVolume::Counts counts() { return renderer.paged()->counts(); }
 };
+
+/// Another source, some of whose bricks cannot be read.
+class Broken final : public VolumeSource {
+public:
+    explicit Broken(Source source) : VolumeSource(source->info()), source_(std::move(source)) {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+    int levels() const override { return source_->levels(); }
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        if (level == 0 && box.lower.x < 32) fail("chunk 0.0.0: is torn");
+        source_->read_level(level, box, voxels);
+    }
+
+private:
+    Source source_;
+};
+
+void settle(View& view)
+{
+    for (int i = 0; !view.complete(); ++i) {
+        REQUIRE(i < 10'000'000);
+        view.advance();
+    }
+}
 
 }  // namespace
 
 TEST_CASE("paged pictures of the finest level equal resident ones bit for bit")
 {
-    const std::shared_ptr<const VolumeSource> source = tubes({150, 131, 170});
-    const VolumeInfo& info = source->info();
-    Camera inside = camera_looking("front", info);
+    const Source source = tubes({150, 131, 170});
+    Camera inside = camera_looking("front", source->info());
     inside.eye = glm::dvec3(70.0, 20.0, 80.0);
-    Camera parallel = camera_looking("left", info);
+    Camera parallel = camera_looking("left", source->info());
     parallel.projection = Camera::Projection::orthographic;
+    Budgeted all;
     for (const double opacity : {0.02, 1.0})
         for (const bool shaded : {false, true})
-            for (const Camera& camera : {camera_looking("front", info), inside, parallel}) {
-                Paged all(0);
+            for (const Camera& camera : {camera_looking("front", source->info()), inside, parallel}) {
                 const Session session = session_of(opacity, shaded);
                 const Picture expected = all.picture(source, session, Paging::never, camera);
                 const Picture seen = all.picture(source, session, Paging::always, camera);
                 CHECK(seen.complete);
                 CHECK(different_bits(seen.image, expected.image) == 0);
+                Session patient = session;
+                patient.render.skip_empty_space = false;
+                CHECK(different_bits(all.picture(source, patient, Paging::always, camera).image, expected.image) == 0);
             }
+}
+
+TEST_CASE("pictures are the same at every budget, and the budget holds")
+{
+    // 1000 bricks of the finest level: 80 MB, of which the small budget holds a part.
+    const Source source = tubes({320, 320, 320});
+    for (const double detail : {0.0, 1.0}) {
+        Session session = session_of(0.05, true);
+        session.render.detail = detail;
+        session.render.size = {128, 128};
+        const Camera camera = camera_looking("right", source->info());
+        Budgeted unlimited;
+        const Picture expected = unlimited.picture(source, session, Paging::always, camera);
+        CHECK(expected.complete);
+        if (detail == 0.0)
+            CHECK(different_bits(unlimited.picture(source, session, Paging::never, camera).image, expected.image) == 0);
+        for (const uint64_t mib : {24, 64}) {
+            Budgeted small(mib, mib);
+            const Picture seen = small.picture(source, session, Paging::always, camera);
+            CAPTURE(mib);
+            CHECK(seen.complete);
+            CHECK(different_bits(seen.image, expected.image) == 0);
+            CHECK(small.renderer.memory().peak_device_bytes() <= mib << 20);
+            CHECK(small.renderer.peak_host_bytes() <= mib << 20);
+            MESSAGE(detail, " voxels per pixel, ", mib, " MiB: ", small.counts().slots, " slots, ",
+                    small.counts().uploads, " uploads, ", small.counts().evictions, " evictions");
+        }
+    }
+}
+
+TEST_CASE("only bricks that rays come by are loaded, each once")
+{
+    const Source source = tubes({256, 256, 256});
+    // Opaque from the first voxel on: only the near faces are seen.
+    Session session = session_of(1.0, false);
+    session.transfer_function = TransferFunction({{0.0, WHITE, 1.0}, {255.0, WHITE, 1.0}});
+    const Camera camera = camera_looking("front", source->info());
+    Budgeted all;
+    const Picture first = all.picture(source, session, Paging::always, camera);
+    CHECK(first.complete);
+    const PagedVolume::Counts counts = all.counts();
+    CHECK(counts.leaves == 512);
+    CHECK(counts.reached <= 64 + 2 * 8);  // the face, and what its perspective shows of the sides
+    // Coarser levels of 64 bricks or fewer are always there: 64 + 8 + 1.
+    CHECK(counts.uploads <= counts.reached + 73);
+    for (int i = 0; i < 3; ++i) CHECK(different_bits(all.renderer.render(session, camera).image, first.image) == 0);
+    CHECK(all.counts().uploads == counts.uploads);
+    CHECK(all.counts().store.loads == counts.store.loads);
+}
+
+TEST_CASE("a view of bricks that come and go comes to rest on the direct picture and then does nothing")
+{
+    const Source source = tubes({200, 180, 220});
+    const Session session = session_of(0.1, true);
+    const Camera camera = camera_looking("left", source->info());
+    Budgeted direct, seen;
+    const Picture expected = direct.picture(source, session, Paging::never, camera);
+    seen.load(source, session, Paging::always);
+    View view(seen.renderer);
+    view.look(session, camera, session.render.size);
+    view.advance();
+    settle(view);
+    const Image8 shown = view.read_back();
+    const Image8 wanted = to_image8(expected.image);
+    size_t different = 0;
+    for (size_t i = 0; i < shown.rgba.size(); ++i) different += std::abs(int(shown.rgba[i]) - int(wanted.rgba[i])) > 1;
+    CHECK(different == 0);
+
+    const PagedVolume::Counts counts = seen.counts();
+    CHECK(counts.evictions == 0);
+    CHECK(counts.uploads <= counts.store.loads);
+    const uint64_t submissions = view.submissions();
+    for (int i = 0; i < 100; ++i) view.advance();
+    CHECK(view.submissions() == submissions);
+    CHECK(seen.counts().store.loads == counts.store.loads);
+}
+
+TEST_CASE("what is painted is the same on bricks that come and go, and is seen the same")
+{
+    const Source source = tubes({150, 131, 170});
+    const Session session = session_of(0.3, true);
+    const Camera camera = camera_looking("front", source->info());
+    const std::vector<PaintOp> ops{
+        {.brush = Brush::fill,
+         .group = 3,
+         .threshold = 30.0,
+         .radius_voxels = 9.0,
+         .path = {{20, 60, 80}, {120, 70, 90}}},
+        {.brush = Brush::flood, .group = 5, .threshold = 35.0, .radius_voxels = 20.0, .path = {{70, 60, 80}}},
+        {.brush = Brush::speckle, .group = 7, .threshold = 45.0, .radius_voxels = 15.0, .path = {{40, 50, 60}}}};
+    std::vector<Picture> pictures;
+    std::vector<std::array<int64_t, 256>> voxels;
+    for (const Paging paging : {Paging::never, Paging::always}) {
+        Budgeted device(paging == Paging::always ? 24 : 0);
+        device.load(source, session, paging);
+        Annotator annotator(device.renderer);
+        for (const PaintOp& op : ops) annotator.paint(op);
+        voxels.push_back(annotator.document().mask.voxels_by_group());
+        pictures.push_back(device.renderer.render(session, camera));
+        CHECK(annotator.undo() != nullptr);
+        CHECK(annotator.undo() != nullptr);
+        pictures.push_back(device.renderer.render(session, camera));
+    }
+    CHECK(voxels[0][3] > 0);
+    CHECK(voxels[0] == voxels[1]);
+    CHECK(different_bits(pictures[0].image, pictures[2].image) == 0);
+    CHECK(different_bits(pictures[1].image, pictures[3].image) == 0);
+    CHECK(different_bits(pictures[0].image, pictures[1].image) > 0);
+}
+
+TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, and stop nothing")
+{
+    const Source source = std::make_shared<Broken>(with_levels(tubes({150, 131, 170}), uint64_t{1} << 30));
+    const Session session = session_of(0.1, true);
+    Budgeted device;
+    const Picture seen = device.picture(source, session, Paging::always, camera_looking("front", source->info()));
+    CHECK(!seen.complete);
+    REQUIRE(seen.warnings.size() == 1);
+    CHECK(seen.warnings[0] == "chunk 0.0.0: is torn");
+    CHECK(device.renderer.paged()->missing() > 0);
+    // Work on such a brick is refused in the same words.
+    Annotator annotator(device.renderer);
+    CHECK_THROWS_WITH(annotator.paint({.group = 1, .threshold = 0.0, .radius_voxels = 3.0, .path = {{10, 60, 60}}}),
+                      doctest::Contains("torn"));
+}
+
+TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corner")
+{
+    const Source source = open_procedural({.kind = "sphere", .size = Size3(65536)});
+    CHECK(source->levels() == 12);
+    const VolumeStatistics statistics = measure(*source);
+    Session session = session_of(0.2, true);
+    session.render.detail = 1.0;
+    session.render.size = {96, 96};
+    session.transfer_function = TransferFunction({{100.0, RED, 0.0}, {130.0, RED, 0.3}, {250.0, WHITE, 0.3}});
+    Budgeted device(64, 64);
+    device.renderer.load(source, statistics, session.render);
+    const Picture whole = device.renderer.render(session, camera_looking("front", source->info()));
+    CHECK(whole.complete);
+
+    // The same sphere in 512^3 voxels, of the same level: the picture is the same but for the step's length in voxels.
+    const Source small = open_procedural({.kind = "sphere", .size = Size3(512)});
+    const int level = device.renderer.paged()->tree()->finest_level;
+    Session same = session;
+    same.render.step_voxels = std::ldexp(session.render.step_voxels, level - 7);
+    // Opacities are per reference length: 128 times as many of them lie along a ray.
+    CHECK(level >= 7);
+    CHECK(device.renderer.memory().peak_device_bytes() <= uint64_t{64} << 20);
+    CHECK(device.counts().resident <= device.counts().slots);
+
+    // Level 0 in the corner: a camera 40 voxels before the last voxel looks at what no 32-bit count of voxels reaches.
+    Camera corner = camera_looking("right", source->info());
+    corner.projection = Camera::Projection::orthographic;
+    const glm::dvec3 end(65536.0);
+    corner.target = end - glm::dvec3(16.0);
+    corner.eye = corner.target + glm::dvec3(4.0, 0.0, 0.0);
+    corner.height = 24.0;
+    corner.far_distance = 20.0;
+    session.transfer_function = TransferFunction({{-1.0, GREEN, 0.05}, {250.0, GREEN, 0.05}});
+    const Picture near = device.renderer.render(session, corner);
+    CHECK(near.complete);
+    CHECK(device.renderer.paged()->tree()->finest_level == 0);
+    // Everything there is the sphere's outside: 20 voxels of one density, 0.05 opacity each.
+    const double through = std::pow(1.0 - 0.05, 20.0);
+    const Pixels pixels = pixels_of(near.image);
+    for (const size_t at : {size_t{0}, pixels.size() / 2, pixels.size() - 1}) {
+        CHECK(pixels[at].x == doctest::Approx((1.0 - through) * GREEN.x * 1.0 + through).epsilon(0.02));
+        CHECK(pixels[at].w == doctest::Approx(1.0));
+    }
 }

@@ -32,15 +32,15 @@ Members raycast_params()
             MEMBER(RaycastParams, spacing),       MEMBER(RaycastParams, inverse_spacing),
             MEMBER(RaycastParams, cell_counts),   MEMBER(RaycastParams, brick_counts),
             MEMBER(RaycastParams, mask_slots),    MEMBER(RaycastParams, page_counts),
-            MEMBER(RaycastParams, page_shift),    MEMBER(RaycastParams, step),
-            MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
-            MEMBER(RaycastParams, table_upper),   MEMBER(RaycastParams, table_scale),
-            MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, background),
-            MEMBER(RaycastParams, light),         MEMBER(RaycastParams, ambient),
-            MEMBER(RaycastParams, diffuse),       MEMBER(RaycastParams, specular),
-            MEMBER(RaycastParams, shininess),     MEMBER(RaycastParams, gradient_fade),
-            MEMBER(RaycastParams, probe_center),  MEMBER(RaycastParams, probe_radius),
-            MEMBER(RaycastParams, probe_color)};
+            MEMBER(RaycastParams, page_shift),    MEMBER(RaycastParams, page_depth),
+            MEMBER(RaycastParams, step),          MEMBER(RaycastParams, opacity_limit),
+            MEMBER(RaycastParams, table_lower),   MEMBER(RaycastParams, table_upper),
+            MEMBER(RaycastParams, table_scale),   MEMBER(RaycastParams, table_entries),
+            MEMBER(RaycastParams, background),    MEMBER(RaycastParams, light),
+            MEMBER(RaycastParams, ambient),       MEMBER(RaycastParams, diffuse),
+            MEMBER(RaycastParams, specular),      MEMBER(RaycastParams, shininess),
+            MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, probe_center),
+            MEMBER(RaycastParams, probe_radius),  MEMBER(RaycastParams, probe_color)};
 }
 
 Members occupancy_params()

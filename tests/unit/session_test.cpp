@@ -554,7 +554,7 @@ TEST_CASE("paths that open nothing are refused with what was expected")
         CHECK_THROWS_WITH_AS(open_session(path), doctest::Contains(sentence.c_str()), Error);
     };
     refused(folder.path / "absent.json", "absent.json: does not exist; expected a session file (.json)");
-    refused(folder.path, ": is a folder without shvr/session.json; expected a project folder");
+    refused(folder.path, ": is a folder without shvr/session.json and without a volume; expected a project");
     refused(folder.write("broken.json", "{"), "broken.json: is not JSON");
     refused(folder.write("large.json", std::string((16 << 20) + 1, ' ')), "large.json");
     refused(folder.write("wrong.json", with(R"("render": {"size": 3})")), "wrong.json: key render.size is 3");

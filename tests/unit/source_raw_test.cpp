@@ -217,6 +217,59 @@ TEST_CASE("a raw file cut short while it is open is an error, not a signal")
     CHECK(voxels_in<uint8_t>(*source, {Size3(0), Size3(8, 8, 1)}) == std::vector<uint8_t>(64, 'x'));
 }
 
+TEST_CASE("numbered files of one slice each are a volume, from the first one or from their folder")
+{
+    const TemporaryFolder folder;
+    const std::string bytes = marked_bytes();
+    const RawLayout layout{{5, 4, 3}, VoxelType::uint8, false, 2};
+    const std::pair<std::vector<std::string>, std::string> series[] = {
+        {{"quarter.9", "quarter.10", "quarter.11"}, "a"},
+        {{"s007x2.raw", "s007x3.raw", "s007x4.raw"}, "b"},
+        {{"s_099_8bit.raw", "s_100_8bit.raw", "s_101_8bit.raw"}, "c"},
+        {{"098", "099", "100"}, "d"},
+    };
+    for (const auto& [names, below] : series) {
+        CAPTURE(below);
+        fs::create_directory(folder.path / below);
+        folder.write(below + "/read me 12.txt", "not a slice");
+        for (size_t z = 0; z < 3; ++z) folder.write(below + "/" + names[z], "--" + bytes.substr(20 * z, 20));
+        check_marked(*open_raw(folder.path / below, layout));
+        CHECK(warns_of(*open_raw(folder.path / below, layout),
+                       "3 files, " + names[0] + " to " + names[2] + ", were read as slices"));
+        if (below != "c") check_marked(*open_raw(folder.path / below / names[0], layout));
+    }
+    CHECK(contains(error_of([&] { open_raw(folder.path / "a/quarter.10", layout); }), "quarter.12: cannot be opened"));
+    CHECK(contains(error_of([&] {
+                       open_raw(folder.path / "a", {{5, 4, 4}, VoxelType::uint8, false, 2});
+                   }),
+                   "is a folder with 3 files of 22 bytes; expected 4, one for each slice"));
+    folder.write("a/quarter.11", "short");
+    CHECK(contains(error_of([&] { open_raw(folder.path / "a/quarter.9", layout); }),
+                   "quarter.11: holds 5 bytes; expected 22, one slice, as quarter.9 does"));
+}
+
+TEST_CASE("where nobody states the byte order, what neighbours suggest is said, as a guess")
+{
+    const TemporaryFolder folder;
+    std::string little;
+    std::string big;
+    for (int i = 0; i < 40 * 30 * 20; ++i) {
+        const int voxel = 1000 + 7 * (i % 40) + 3 * (i / 40 % 30);
+        little += {static_cast<char>(voxel % 256), static_cast<char>(voxel / 256)};
+        big += {static_cast<char>(voxel / 256), static_cast<char>(voxel % 256)};
+    }
+    const RawLayout layout{{40, 30, 20}, VoxelType::uint16};
+    const auto plain = open_raw(folder.write("a.raw", little), layout);
+    CHECK(warns_of(*plain, "no byte order stated; little-endian assumed"));
+    CHECK_FALSE(warns_of(*plain, "guess"));
+    const auto other = open_raw(folder.write("a.raw", big), layout);
+    CHECK(warns_of(*other,
+                   "little-endian assumed, though neighbouring voxels are more alike as big-endian, which is a guess"));
+    CHECK(voxels_of<uint16_t>(*other)[0] == 0xe803);  // nothing is guessed into the voxels
+    CHECK_FALSE(warns_of(*open_raw(folder.path / "a.raw", {{40, 30, 20}, VoxelType::uint16, true}), "byte order"));
+    CHECK(warns_of(*open_volume(folder.write("b_40x30x20.raw", big)), "which is a guess"));
+}
+
 TEST_CASE("what is no file is refused in words, without waiting")
 {
     const TemporaryFolder folder;
@@ -229,8 +282,9 @@ TEST_CASE("what is no file is refused in words, without waiting")
         CHECK(refusal(path) == path.string() + ": is a pipe or device; expected a file");
         CHECK(error_of([&] { open_raw(path, layout); }) == path.string() + ": is a pipe or device; expected a file");
     }
-    CHECK(refusal(folder.path) == folder.path.string() + ": is a folder; expected a file");
-    CHECK(error_of([&] { open_raw(folder.path, layout); }) == folder.path.string() + ": is a folder; expected a file");
+    CHECK(contains(refusal(folder.path), ": is a folder without shvr/session.json and without a volume; expected"));
+    CHECK(error_of([&] { open_raw(folder.path, layout); }) ==
+          folder.path.string() + ": is a folder with 0 files of 4 bytes; expected 2, one for each slice");
     const fs::path missing = folder.path / "missing.raw";
     CHECK(refusal(missing) == missing.string() + ": cannot be opened: No such file or directory");
     CHECK(contains(refusal(folder.path / std::string(300, 'n')), "cannot be opened: File name too long"));
@@ -252,9 +306,10 @@ TEST_CASE("a raw file with nothing beside it says how to open it")
                                ": holds bare voxels and nothing beside it says their size and type; expected --raw "
                                "WxHxD:TYPE, as in --raw 512x512x300:uint16:little:0");
     const fs::path other = folder.write("a.xyz", marked_bytes());
-    CHECK(refusal(other) == other.string() +
-                                ": is in no format known here; expected NRRD, MetaImage, RAW with a side-car, or bare "
-                                "voxels with --raw WxHxD:TYPE");
+    CHECK(refusal(other) ==
+          other.string() +
+              ": is in no format known here; expected NRRD, MetaImage, NIfTI, RAW with a side-car, or bare "
+              "voxels with --raw WxHxD:TYPE");
 }
 
 TEST_CASE("a raw file opens by the JSON beside it, and the JSON opens the raw file")

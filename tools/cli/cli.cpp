@@ -55,7 +55,8 @@ void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");
     command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")->type_name("MIB");
-    command.add_option("--budget-host", common.budget_host_mib, "Mapped host memory SHVR may use")->type_name("MIB");
+    command.add_option("--budget-host", common.budget_host_mib, "Host memory SHVR may use for bricks and transfers")
+        ->type_name("MIB");
     add_input_options(command, common);
     command.add_option("--threads", common.threads, "Worker threads; 0: one a core")->check(CLI::Range(0, 1024));
 }
@@ -105,15 +106,31 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
     return opened;
 }
 
-Json bytes_of(gpu::Memory& memory)
+Json bytes_of(Renderer& renderer)
 {
+    const gpu::Memory& memory = renderer.memory();
     Json by_resource = Json::object();
     for (const auto& [name, bytes] : memory.bytes_by_name()) by_resource[name] = bytes;
     return {{"device", memory.device_bytes()},
-            {"host", memory.host_bytes()},
+            {"host", renderer.host_bytes()},
             {"peak_device", memory.peak_device_bytes()},
-            {"peak_host", memory.peak_host_bytes()},
+            {"peak_host", renderer.peak_host_bytes()},
             {"by_resource", by_resource}};
+}
+
+Json bricks_of(const Renderer& renderer)
+{
+    if (!renderer.paged()) return nullptr;
+    const PagedVolume::Counts counts = renderer.paged()->counts();
+    return {{"slots", counts.slots},
+            {"resident", counts.resident},
+            {"wanted", counts.reached},
+            {"missing", renderer.paged()->missing()},
+            {"finest_level", renderer.paged()->tree() ? renderer.paged()->tree()->finest_level : 0},
+            {"uploads", counts.uploads},
+            {"evictions", counts.evictions},
+            {"loads", counts.store.loads},
+            {"load_failures", counts.store.failures}};
 }
 
 Json counters_of(const std::vector<gpu::PassReport>& passes)

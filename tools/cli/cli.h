@@ -53,7 +53,9 @@ struct Opened {
 Opened open(const std::string& path, const Common& common, bool with_mask = true);
 
 /// {device, host, by_resource}
-Json bytes_of(gpu::Memory& memory);
+Json bytes_of(Renderer& renderer);
+/// What came and went, where bricks do; null otherwise.
+Json bricks_of(const Renderer& renderer);
 /// Work counters by name, summed over the passes.
 Json counters_of(const std::vector<gpu::PassReport>& passes);
 
@@ -61,6 +63,7 @@ Json counters_of(const std::vector<gpu::PassReport>& passes);
 void check_validation(Opened& opened);
 
 void add_info(CLI::App& program);
+void add_import(CLI::App& program);
 void add_render(CLI::App& program);
 void add_annotate(CLI::App& program);
 void add_compare(CLI::App& program);

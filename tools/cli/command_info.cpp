@@ -19,12 +19,15 @@ struct Described {
     VolumeStatistics statistics;
     std::vector<std::string> warnings;
     std::string mask;  ///< empty: none
+    int levels = 1;
 };
 
 Described describe(const Options& options)
 {
     const std::filesystem::path path = options.input;
-    const bool is_bare = std::filesystem::is_regular_file(path) && path.extension() != ".json";
+    std::error_code ignored;
+    const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
+    const bool is_bare = std::filesystem::exists(path, ignored) && !is_project && path.extension() != ".json";
     OpenedSession opened;
     // A session would make a transfer function for a bare volume, and say so: nobody asked.
     if (is_bare && options.common.settings.empty()) {
@@ -37,7 +40,8 @@ Described describe(const Options& options)
     Described described{.info = opened.source->info(),
                         .statistics = opened.statistics,
                         .warnings = std::move(opened.warnings),
-                        .mask = opened.session.mask_path.string()};
+                        .mask = opened.session.mask_path.string(),
+                        .levels = opened.source->levels()};
     for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
     return described;
 }
@@ -48,6 +52,11 @@ Json to_json(const Described& described, const std::string& input)
     const VolumeStatistics& statistics = described.statistics;
     const IntensityWindow window = window_for(info.type, statistics.range().lower, statistics.range().upper);
     const int64_t voxels = voxel_count(info);
+    Json directions = Json::array();  // of x, of y, of z
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3& direction = info.directions[axis];
+        directions.push_back({direction.x, direction.y, direction.z});
+    }
     return {{"input", input},
             {"name", info.name},
             {"format", info.format},
@@ -55,13 +64,16 @@ Json to_json(const Described& described, const std::string& input)
             {"type", name_of(info.type)},
             {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
             {"unit", info.unit},
+            {"frame", info.frame},
+            {"directions", directions},
+            {"origin", {info.origin.x, info.origin.y, info.origin.z}},
             {"min", statistics.minimum},
             {"max", statistics.maximum},
             {"mean", statistics.mean},
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
             {"bytes", voxels * int64_t(bytes_of(info.type))},
-            {"levels", 1},
+            {"levels", described.levels},
             {"histogram", statistics.histogram},
             {"window", {{"lower", window.lower}, {"upper", window.upper()}, {"codes_per_unit", window.codes_per_unit}}},
             {"mask", described.mask.empty() ? Json(nullptr) : Json(described.mask)},
@@ -106,6 +118,7 @@ void print_text(const Described& described)
     print_line("whole volume", sentence(extent.x, " x ", extent.y, " x ", extent.z, " ", plural(info.unit)));
     print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(voxels * int64_t(bytes_of(info.type)))));
     print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean));
+    if (described.levels > 1) print_line("levels", sentence(described.levels, ", each half as fine as the one before"));
     if (!described.mask.empty()) print_line("mask", described.mask);
     std::cout.flush();
     if (!std::cout) fail("standard output: cannot be written");

@@ -30,6 +30,8 @@ void run(Options options)
     else
         write_png(options.output, to_image8(picture.image));
     check_validation(opened);
+    warn(picture.warnings, options.common);
+    for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);
     if (!options.common.json) return say(options.common, options.output);
 
     Json passes = Json::array();
@@ -42,7 +44,8 @@ void run(Options options)
            {"device", opened.renderer->device().traits().name},
            {"passes", passes},
            {"counters", counters_of(picture.passes)},
-           {"bytes", bytes_of(opened.renderer->memory())},
+           {"bytes", bytes_of(*opened.renderer)},
+           {"bricks", bricks_of(*opened.renderer)},
            {"warnings", opened.warnings}});
 }
 

@@ -16,6 +16,7 @@ int run(int argc, char** argv)
     program.require_subcommand(1);
     program.footer("shvr alone opens the window. shvr COMMAND --help shows options and an example.");
     shvr::cli::add_info(program);
+    shvr::cli::add_import(program);
     shvr::cli::add_render(program);
     shvr::cli::add_annotate(program);
     shvr::cli::add_compare(program);

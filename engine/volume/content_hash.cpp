@@ -1,0 +1,91 @@
+#include "engine/volume/content_hash.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t PIECE_BYTES = int64_t{32} << 20;
+
+SliceHash canonical(const XXH128_hash_t& hash)
+{
+    XXH128_canonical_t bytes;
+    XXH128_canonicalFromHash(&bytes, hash);
+    SliceHash result;
+    static_assert(sizeof(bytes) == sizeof(result));
+    std::memcpy(result.data(), &bytes, sizeof(bytes));
+    return result;
+}
+
+}  // namespace
+
+struct SliceHasher::State {
+    State() : xxh(XXH3_createState()) { XXH3_128bits_reset(xxh); }
+    ~State() { XXH3_freeState(xxh); }
+    State(const State&) = delete;
+    XXH3_state_t* xxh;
+};
+
+SliceHasher::SliceHasher() : state_(std::make_unique<State>()) {}
+SliceHasher::~SliceHasher() = default;
+SliceHasher::SliceHasher(SliceHasher&&) noexcept = default;
+
+void SliceHasher::add(std::span<const std::byte> voxels)
+{
+    XXH3_128bits_update(state_->xxh, voxels.data(), voxels.size());
+}
+
+SliceHash SliceHasher::finish()
+{
+    const SliceHash hash = canonical(XXH3_128bits_digest(state_->xxh));
+    XXH3_128bits_reset(state_->xxh);
+    return hash;
+}
+
+std::string content_hash(std::span<const SliceHash> slices)
+{
+    const SliceHash hash = canonical(XXH3_128bits(slices.data(), slices.size_bytes()));
+    std::string text = "xxh3-128:";
+    for (const std::byte byte : hash) {
+        constexpr const char* DIGITS = "0123456789abcdef";
+        text += DIGITS[std::to_integer<int>(byte) >> 4];
+        text += DIGITS[std::to_integer<int>(byte) & 15];
+    }
+    return text;
+}
+
+std::string content_hash(const VolumeSource& source)
+{
+    const Size3 size = source.info().size;
+    const int64_t row_bytes = size.x * static_cast<int64_t>(bytes_of(source.info().type));
+    // Whole blocks along z at once, so that a chunked source decodes nothing twice.
+    const int64_t slices = std::min(size.z, source.block().z);
+    const int64_t rows = std::clamp<int64_t>(PIECE_BYTES / (row_bytes * slices), 1, size.y);
+    std::vector<SliceHash> hashes;
+    std::vector<SliceHasher> hashers(static_cast<size_t>(slices));
+    std::vector<std::byte> piece(static_cast<size_t>(row_bytes * rows * slices));
+    for (int64_t z = 0; z < size.z; z += slices) {
+        const int64_t end = std::min(size.z, z + slices);
+        for (int64_t y = 0; y < size.y; y += rows) {
+            const VoxelBox box{{0, y, z}, {size.x, std::min(size.y, y + rows), end}};
+            const auto slice_bytes = static_cast<size_t>(row_bytes * box.size().y);
+            const std::span<std::byte> voxels(piece.data(), slice_bytes * static_cast<size_t>(end - z));
+            source.read(box, voxels);
+            for (int64_t slice = 0; slice < end - z; ++slice) {
+                hashers[static_cast<size_t>(slice)].add(
+                    voxels.subspan(static_cast<size_t>(slice) * slice_bytes, slice_bytes));
+            }
+        }
+        for (int64_t slice = 0; slice < end - z; ++slice) {
+            hashes.push_back(hashers[static_cast<size_t>(slice)].finish());
+        }
+    }
+    return content_hash(hashes);
+}
+
+}  // namespace shvr

@@ -1,0 +1,56 @@
+#pragma once
+// What an import needs to go on after it was stopped, in one file that is checked as a whole: pieces of bytes in a fixed
+// order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
+
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+class StateWriter {
+public:
+    void put(std::span<const std::byte> piece);
+    void put(const std::string& text) { put(std::as_bytes(std::span(text))); }
+    template <class T>
+    void put_all(const std::vector<T>& elements)
+    {
+        put(std::as_bytes(std::span(elements)));
+    }
+
+    /// Replaces the file at once; what was written before is on the disk then.
+    void write(const std::filesystem::path& file) const;
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+class StateReader {
+public:
+    /// Fails where the file is damaged or of another version.
+    explicit StateReader(const std::filesystem::path& file);
+
+    /// The next piece; fails where there is none.
+    std::span<const std::byte> take();
+    std::string take_text();
+    /// Into elements that are there already: fails where their number is another.
+    template <class T>
+    void take_all(std::vector<T>& elements)
+    {
+        const std::span<const std::byte> piece = take();
+        if (piece.size() != elements.size() * sizeof(T)) refuse();
+        if (!piece.empty()) std::memcpy(elements.data(), piece.data(), piece.size());
+    }
+    [[noreturn]] void refuse() const;
+
+private:
+    std::filesystem::path file_;
+    std::vector<std::byte> bytes_;
+    size_t at_ = 0;
+};
+
+}  // namespace shvr

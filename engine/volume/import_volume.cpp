@@ -1,0 +1,438 @@
+#include "engine/volume/import_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "engine/base/error.h"
+#include "engine/volume/content_hash.h"
+#include "engine/volume/import_files.h"
+#include "engine/volume/import_pyramid.h"
+#include "engine/volume/part_folder.h"
+#include "engine/volume/project.h"
+#include "engine/volume/readers.h"
+#include "engine/volume/zarr_codec.h"
+#include "engine/volume/zarr_volume.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Bytes = std::span<const std::byte>;
+
+constexpr int64_t SIDE = IMPORT_CHUNK;
+/// Rows of a slab of 64 slices that are held at once, twice: one lot is read while the other is compressed.
+constexpr int64_t SLAB_BYTES = int64_t{64} << 20;
+/// The state is written when this many times the time it takes has gone by, so that it costs 5 %.
+constexpr double STATE_INTERVAL = 20.0;
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+int thread_count(int wanted)
+{
+    return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+bool is_empty(Bytes chunk)
+{
+    // Compared with itself, one byte on.
+    return chunk[0] == std::byte{0} && std::memcmp(chunk.data(), chunk.data() + 1, chunk.size() - 1) == 0;
+}
+
+/// Adds up how often each value occurs, in unsigned order.
+template <class T>
+void count_values(Bytes voxels, std::vector<int64_t>& counts)
+{
+    T value;
+    for (size_t at = 0; at < voxels.size(); at += sizeof(T)) {
+        std::memcpy(&value, voxels.data() + at, sizeof(T));
+        ++counts[value];
+    }
+}
+
+class Import {
+public:
+    Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options)
+        : origin_(fs::absolute(origin).lexically_normal()),
+          options_(options),
+          preparation_(make_preparation(source, options.preparation)),
+          info_(checked(preparation_->info())),
+          identity_(import_identity(source, origin_, options)),
+          folder_(project, options.overwrites),
+          threads_(thread_count(options.threads)),
+          pool_(threads_, [this] { poll(); })
+    {
+        begin_anew();
+        report_.was_resumed = resume(source.info().warnings);
+    }
+
+    const fs::path& folder() const { return folder_.path(); }
+
+    ImportReport run()
+    {
+        const auto voxel_bytes = static_cast<int64_t>(bytes_of(info_.type));
+        const int64_t rows = SLAB_BYTES / (SIDE * info_.size.x * voxel_bytes) / SIDE * SIDE;
+        rows_ = std::clamp(rows, std::min(SIDE, info_.size.y), info_.size.y);
+        const int64_t bands = (info_.size.y + rows_ - 1) / rows_;
+        const int64_t slabs = (info_.size.z + SIDE - 1) / SIDE;
+        chunks_of_plane_ = counts(0).x * counts(0).y;
+        chunks_done_ = slabs_done_ * chunks_of_plane_;
+        chunks_at_start_ = chunks_done_;
+        write_level_metadata();
+        begin_ = Clock::now();
+
+        const auto slab_of = [&](int64_t step) {
+            const int64_t z = step / bands * SIDE;
+            const int64_t y = step % bands * rows_;
+            return Preparation::Slab{z, std::min(info_.size.z, z + SIDE), y, std::min(info_.size.y, y + rows_)};
+        };
+        const int64_t first = slabs_done_ * bands;
+        for (int64_t step = first; step < slabs * bands; ++step) {
+            const auto place = static_cast<size_t>(step % 2);
+            if (step == first) read(slab_of(step), place);
+            const auto batch = start(slab_of(step), place);
+            if (step + 1 < slabs * bands) read(slab_of(step + 1), 1 - place);
+            pool_.wait(batch);
+            if (step % bands == bands - 1) finish_slab(step / bands, slabs);
+        }
+        finish_levels();
+        write_knowledge();
+        finish_folder();
+        return report_;
+    }
+
+private:
+    static const VolumeInfo& checked(const VolumeInfo& info)
+    {
+        static_cast<void>(voxel_count(info));
+        return info;
+    }
+
+    // ---- One slab ----
+
+    void read(const Preparation::Slab& slab, size_t place)
+    {
+        const int64_t voxels = info_.size.x * (slab.upper_row - slab.lower_row) * (slab.upper - slab.lower);
+        buffers_[place].resize(static_cast<size_t>(voxels) * bytes_of(info_.type));
+        preparation_->read(slab, buffers_[place], pool_);
+    }
+
+    /// Its chunks into files and levels, and its slices into hashes and counts.
+    std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
+    {
+        const std::byte* const voxels = buffers_[place].data();
+        const size_t row_bytes = static_cast<size_t>(info_.size.x) * bytes_of(info_.type);
+        const size_t slice_bytes = row_bytes * static_cast<size_t>(slab.upper_row - slab.lower_row);
+        const int64_t along_x = counts(0).x;
+        const int64_t along_y = (slab.upper_row - slab.lower_row + SIDE - 1) / SIDE;
+        const int64_t chunks = along_x * along_y;
+        const auto run = [=, this](int64_t task, int worker) {
+            if (task >= chunks) {
+                const auto slice = static_cast<size_t>(task - chunks);
+                add_rows(slice, Bytes(voxels + slice * slice_bytes, slice_bytes), worker);
+                return;
+            }
+            const Size3 chunk{task % along_x, slab.lower_row / SIDE + task / along_x, slab.lower / SIDE};
+            const Size3 origin = chunk * SIDE;
+            const size_t first = static_cast<size_t>(origin.y - slab.lower_row) * row_bytes +
+                                 static_cast<size_t>(origin.x) * bytes_of(info_.type);
+            store(0, chunk,
+                  pyramid_->add({.origin = origin,
+                                 .extent = glm::min(Size3(SIDE), info_.size - origin),
+                                 .voxels = voxels + first,
+                                 .row_bytes = row_bytes,
+                                 .slice_bytes = slice_bytes},
+                                worker));
+            ++chunks_done_;
+        };
+        return pool_.start(chunks + slab.upper - slab.lower, run);
+    }
+
+    void add_rows(size_t slice, Bytes voxels, int worker)
+    {
+        hashers_[slice].add(voxels);
+        std::vector<int64_t>& counts = counts_[static_cast<size_t>(worker)];
+        if (counts.size() == 256) count_values<uint8_t>(voxels, counts);
+        if (counts.size() == 65536) count_values<uint16_t>(voxels, counts);
+    }
+
+    void store(int level, const Size3& chunk, Bytes voxels)
+    {
+        Level& to = levels_[static_cast<size_t>(level)];
+        const auto index = static_cast<size_t>(to.volume.index_of(chunk));
+        if (is_empty(voxels)) {
+            to.checksums[index] = 0;
+            return;
+        }
+        const std::vector<std::byte> stored = compress_chunk(options_.compressor, voxels, bytes_of(info_.type));
+        write_part_file(to.volume.path_of(chunk), stored);
+        to.checksums[index] = checksum_of(stored);
+        bytes_ += static_cast<int64_t>(stored.size());
+    }
+
+    void finish_slab(int64_t slab, int64_t slabs)
+    {
+        const int64_t slices = std::min(info_.size.z, (slab + 1) * SIDE);
+        for (int64_t slice = slab * SIDE; slice < slices; ++slice) {
+            hashes_[static_cast<size_t>(slice)] = hashers_[static_cast<size_t>(slice % SIDE)].finish();
+        }
+        for (int level = 1; level < pyramid_->levels(); ++level) {
+            if (!pyramid_->completes_layer(level, slices)) continue;
+            write_layer(level, (size_of_level(Size3(slices), level).z - 1) / SIDE);
+            pyramid_->clear_layer(level);
+        }
+        slabs_done_ = slab + 1;
+        if (slabs_done_ == slabs || seconds_since(state_written_) < STATE_INTERVAL * state_seconds_) return;
+        const Clock::time_point begin = Clock::now();
+        write_state();
+        state_written_ = Clock::now();
+        state_seconds_ = seconds_since(begin);
+    }
+
+    void write_layer(int level, int64_t layer)
+    {
+        const Size3 chunks = counts(level);
+        pool_.run(chunks.x * chunks.y, [&](int64_t task, int worker) {
+            const Size3 chunk{task % chunks.x, task / chunks.x, layer};
+            store(level, chunk, pyramid_->gather(level, chunk, worker));
+        });
+    }
+
+    // ---- What is kept between runs ----
+
+    void begin_anew()
+    {
+        pyramid_ = make_import_pyramid(info_.size, info_.type, threads_);
+        levels_.clear();
+        for (int level = 0; level < pyramid_->levels(); ++level) {
+            ZarrVolume volume = import_level(folder_.path(), info_, level, options_.compressor);
+            const Size3 chunks = volume.counts();
+            levels_.push_back(
+                {std::move(volume), std::vector<uint64_t>(static_cast<size_t>(chunks.x * chunks.y * chunks.z))});
+        }
+        hashes_.assign(static_cast<size_t>(info_.size.z), SliceHash{});
+        hashers_.clear();
+        hashers_.resize(static_cast<size_t>(SIDE));
+        const size_t values = bytes_of(info_.type) <= 2 ? size_t{1} << (8 * bytes_of(info_.type)) : 0;
+        counts_.assign(static_cast<size_t>(threads_), std::vector<int64_t>(values));
+        slabs_done_ = 0;
+        bytes_ = 0;
+    }
+
+    void write_state()
+    {
+        folder_.sync();
+        StateWriter state;
+        state.put(identity_);
+        const std::vector<int64_t> numbers{slabs_done_, bytes_};
+        state.put_all(numbers);
+        state.put_all(hashes_);
+        state.put_all(total_counts());
+        for (const Level& level : levels_) state.put_all(level.checksums);
+        pyramid_->save(state);
+        state.write(folder_.state());
+    }
+
+    /// True where there was something to go on with. A state of something else, or a damaged one, is cleared.
+    bool resume(const std::vector<std::string>& warnings)
+    {
+        report_.warnings = warnings;
+        std::error_code ignored;
+        const bool is_begun = fs::exists(folder_.state(), ignored);
+        if (is_begun) {
+            folder_.clear_temporary();
+            try {
+                StateReader state(folder_.state());
+                if (state.take_text() == identity_) {
+                    load_state(state);
+                    return slabs_done_ > 0;
+                }
+                report_.warnings.push_back(sentence(
+                    folder_.path().string(), " was begun from another file or with other options; it is made anew"));
+            } catch (const Error& error) {
+                report_.warnings.push_back(sentence(error.what(), "; the import begins anew"));
+            }
+            begin_anew();
+        }
+        folder_.clear();
+        write_state();
+        return false;
+    }
+
+    void load_state(StateReader& state)
+    {
+        std::vector<int64_t> numbers(2);
+        state.take_all(numbers);
+        state.take_all(hashes_);
+        state.take_all(counts_[0]);
+        for (Level& level : levels_) state.take_all(level.checksums);
+        pyramid_->load(state);
+        slabs_done_ = numbers[0];
+        bytes_ = numbers[1];
+    }
+
+    std::vector<int64_t> total_counts() const
+    {
+        std::vector<int64_t> total = counts_[0];
+        for (size_t worker = 1; worker < counts_.size(); ++worker) {
+            for (size_t value = 0; value < total.size(); ++value) total[value] += counts_[worker][value];
+        }
+        return total;
+    }
+
+    // ---- The rest of the folder ----
+
+    void write_level_metadata()
+    {
+        for (int level = 0; level < pyramid_->levels(); ++level) {
+            write_text(sentence(level, "/.zarray"), to_text(levels_[static_cast<size_t>(level)].volume.metadata()));
+        }
+    }
+
+    void finish_levels()
+    {
+        pyramid_->finish();
+        for (int level = 6; level < pyramid_->levels(); ++level) {
+            for (int64_t layer = 0; layer < counts(level).z; ++layer) write_layer(level, layer);
+        }
+    }
+
+    void write_knowledge()
+    {
+        write_text(".zgroup", import_group());
+        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels()));
+        for (int level = 0; level < pyramid_->levels(); ++level) {
+            const Level& of = levels_[static_cast<size_t>(level)];
+            write(ranges_path({}, level), to_bytes({.kind = "ranges",
+                                                    .level = level,
+                                                    .element_bytes = 2 * bytes_of(info_.type),
+                                                    .counts = size_of_level(size_of_level(info_.size, level), 5),
+                                                    .elements = pyramid_->ranges(level)}));
+            const Bytes checksums = std::as_bytes(std::span(of.checksums));
+            write(checksums_path({}, level), to_bytes({.kind = "checksum",
+                                                       .level = level,
+                                                       .element_bytes = sizeof(uint64_t),
+                                                       .counts = of.volume.counts(),
+                                                       .elements = {checksums.begin(), checksums.end()}}));
+        }
+        ProjectRecord record{.info = info_, .levels = pyramid_->levels()};
+        record.statistics = statistics();
+        record.content_hash = content_hash(hashes_);
+        record.source = origin_.string();
+        record.preparation = to_text(options_.preparation);
+        write_text(PROJECT_RECORD, to_text(record));
+        write_text(PROJECT_SESSION, import_session());
+    }
+
+    /// Types with too many values to count each are measured in what was written, which needs no source.
+    VolumeStatistics statistics()
+    {
+        const std::vector<int64_t> counts = total_counts();
+        if (counts.empty()) return measure(*open_ome_zarr(folder_.path(), {}));
+        const bool is_signed = info_.type == VoxelType::int8 || info_.type == VoxelType::int16;
+        if (!is_signed) return statistics_of(counts, 0);
+        // Negative values come after the others where they are counted.
+        const auto half = static_cast<std::ptrdiff_t>(counts.size() / 2);
+        std::vector<int64_t> ascending(counts.begin() + half, counts.end());
+        ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
+        return statistics_of(ascending, -static_cast<int>(half));
+    }
+
+    void finish_folder()
+    {
+        report_.info = info_;
+        report_.levels = pyramid_->levels();
+        for (const Level& level : levels_) {
+            report_.bricks += static_cast<int64_t>(level.checksums.size());
+            report_.bricks_stored += static_cast<int64_t>(
+                std::ranges::count_if(level.checksums, [](uint64_t checksum) { return checksum != 0; }));
+        }
+        report_.bytes = bytes_ + other_bytes_;
+        folder_.finish();
+        report_.project = folder_.path();
+    }
+
+    void write(const fs::path& file, Bytes content)
+    {
+        write_part_file(folder_.path() / file, content);
+        other_bytes_ += static_cast<int64_t>(content.size());
+    }
+    void write_text(const fs::path& file, const std::string& text) { write(file, std::as_bytes(std::span(text))); }
+
+    // ---- While others work ----
+
+    void poll()
+    {
+        if (options_.cancel != nullptr && *options_.cancel) throw ImportStopped("stopped");
+        if (!options_.progress || seconds_since(told_) < 0.1) return;
+        told_ = Clock::now();
+        const auto all = static_cast<double>(chunks_of_plane_ * counts(0).z);
+        const auto done = static_cast<double>(chunks_done_ - chunks_at_start_);
+        const auto left = all - static_cast<double>(chunks_done_);
+        const double seconds = seconds_since(begin_);
+        if (!(all > 0.0) || !(done > 0.0)) return;
+        const auto voxels = static_cast<double>(voxel_count(info_));
+        options_.progress({.fraction = static_cast<double>(chunks_done_) / all,
+                           .voxels_per_second = done / all * voxels / seconds,
+                           .seconds_left = left / done * seconds});
+    }
+
+    Size3 counts(int level) const { return levels_[static_cast<size_t>(level)].volume.counts(); }
+
+    struct Level {
+        ZarrVolume volume;  ///< names and places; nothing is read through it
+        std::vector<uint64_t> checksums;
+    };
+
+    fs::path origin_;
+    const ImportOptions& options_;
+    std::unique_ptr<Preparation> preparation_;
+    VolumeInfo info_;
+    std::string identity_;
+    PartFolder folder_;  ///< made last: where one of the above fails, there is none
+    int threads_;
+    ImportReport report_;
+
+    std::unique_ptr<ImportPyramid> pyramid_;
+    std::vector<Level> levels_;
+    std::vector<SliceHash> hashes_;             ///< by slice
+    std::vector<SliceHasher> hashers_;          ///< of the slices of a slab
+    std::vector<std::vector<int64_t>> counts_;  ///< by worker, then by value; no values where there are too many
+    int64_t slabs_done_ = 0;
+    std::atomic<int64_t> bytes_ = 0;  ///< of chunks
+    int64_t other_bytes_ = 0;
+    int64_t rows_ = 0;  ///< of a slab that are held at once
+    std::array<std::vector<std::byte>, 2> buffers_;
+
+    int64_t chunks_of_plane_ = 0;
+    int64_t chunks_at_start_ = 0;
+    std::atomic<int64_t> chunks_done_ = 0;
+    Clock::time_point begin_{}, told_{}, state_written_{};
+    double state_seconds_ = 0.0;
+
+    WorkPool pool_;  ///< last: its tasks use all of the above
+};
+
+}  // namespace
+
+ImportReport import_volume(const VolumeSource& source, const fs::path& origin, const fs::path& project,
+                           const ImportOptions& options)
+{
+    Import job(source, origin, project, options);
+    constexpr const char* KEPT = "; what is done is kept, and the same command goes on from there";
+    try {
+        return job.run();
+    } catch (const ImportStopped&) {
+        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped", KEPT));
+    } catch (const Error& error) {
+        fail(error.what(), KEPT);
+    }
+}
+
+}  // namespace shvr

@@ -1,0 +1,154 @@
+#include "engine/volume/rescaled.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+/// Voxels pass through doubles in blocks; those hold every value of every type.
+constexpr size_t BLOCK = 512;
+
+template <class T>
+void load(const std::byte* voxels, std::span<double> values)
+{
+    for (size_t i = 0; i < values.size(); ++i) {
+        T voxel;
+        std::memcpy(&voxel, voxels + i * sizeof(T), sizeof(T));
+        values[i] = static_cast<double>(voxel);
+    }
+}
+
+template <class T>
+void store(std::span<const double> values, std::byte* voxels)
+{
+    for (size_t i = 0; i < values.size(); ++i) {
+        const T voxel = static_cast<T>(values[i]);
+        std::memcpy(voxels + i * sizeof(T), &voxel, sizeof(T));
+    }
+}
+
+void load(VoxelType type, const std::byte* voxels, std::span<double> values)
+{
+    switch (type) {
+        case VoxelType::uint8: return load<uint8_t>(voxels, values);
+        case VoxelType::int8: return load<int8_t>(voxels, values);
+        case VoxelType::uint16: return load<uint16_t>(voxels, values);
+        case VoxelType::int16: return load<int16_t>(voxels, values);
+        case VoxelType::uint32: return load<uint32_t>(voxels, values);
+        case VoxelType::int32: return load<int32_t>(voxels, values);
+        case VoxelType::float32: return load<float>(voxels, values);
+        case VoxelType::float64: return load<double>(voxels, values);
+    }
+}
+
+void store(VoxelType type, std::span<const double> values, std::byte* voxels)
+{
+    switch (type) {
+        case VoxelType::uint8: return store<uint8_t>(values, voxels);
+        case VoxelType::int8: return store<int8_t>(values, voxels);
+        case VoxelType::uint16: return store<uint16_t>(values, voxels);
+        case VoxelType::int16: return store<int16_t>(values, voxels);
+        case VoxelType::uint32: return store<uint32_t>(values, voxels);
+        case VoxelType::int32: return store<int32_t>(values, voxels);
+        case VoxelType::float32: return store<float>(values, voxels);
+        case VoxelType::float64: return store<double>(values, voxels);
+    }
+}
+
+template <class T>
+ValueRange range_of()
+{
+    return {double{std::numeric_limits<T>::min()}, double{std::numeric_limits<T>::max()}};
+}
+
+/// Of integers.
+ValueRange range_of(VoxelType type)
+{
+    switch (type) {
+        case VoxelType::uint8: return range_of<uint8_t>();
+        case VoxelType::int8: return range_of<int8_t>();
+        case VoxelType::uint16: return range_of<uint16_t>();
+        case VoxelType::int16: return range_of<int16_t>();
+        case VoxelType::uint32: return range_of<uint32_t>();
+        case VoxelType::int32: return range_of<int32_t>();
+        case VoxelType::float32:
+        case VoxelType::float64: break;
+    }
+    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    return {};
+}
+
+VolumeInfo rescaled(VolumeInfo info, const Rescale& rescale)
+{
+    const VoxelType stored = std::exchange(info.type, rescaled_type(info.type, rescale));
+    if (!is_float(stored) && is_float(info.type)) {
+        info.warnings.push_back(sentence("intensities are ", rescale.slope, " times what is stored, plus ",
+                                         rescale.intercept, "; ", name_of(stored), " became ", name_of(info.type)));
+    }
+    return info;
+}
+
+class RescaledSource final : public VolumeSource {
+public:
+    RescaledSource(std::unique_ptr<VolumeSource> source, const Rescale& rescale)
+        : VolumeSource(rescaled(source->info(), rescale)), source_(std::move(source)), rescale_(rescale)
+    {
+        SHVR_CHECK(source_->levels() == 1, source_->levels());
+    }
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        const VoxelType stored = source_->info().type;
+        const size_t from_bytes = bytes_of(stored);
+        const size_t to_bytes = bytes_of(info().type);
+        const size_t count = voxels.size() / to_bytes;
+        // Stored voxels are not larger: they are read to the end of the same memory, and none is overwritten before its
+        // turn.
+        const std::span<std::byte> tail = voxels.last(count * from_bytes);
+        source_->read(box, tail);
+        double values[BLOCK];
+        for (size_t at = 0; at < count; at += BLOCK) {
+            const std::span<double> block(values, std::min(BLOCK, count - at));
+            load(stored, tail.data() + at * from_bytes, block);
+            for (double& value : block) value = rescale_.slope * value + rescale_.intercept;
+            store(info().type, block, voxels.data() + at * to_bytes);
+        }
+    }
+
+private:
+    std::unique_ptr<VolumeSource> source_;
+    Rescale rescale_;
+};
+
+}  // namespace
+
+VoxelType rescaled_type(VoxelType stored, const Rescale& rescale)
+{
+    if (rescale.changes_nothing()) return stored;
+    if (!is_float(stored) && rescale.slope == 1.0 && rescale.intercept == std::floor(rescale.intercept)) {
+        const ValueRange possible = rescale.stored.value_or(range_of(stored));
+        for (const VoxelType type : {stored, VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
+                                     VoxelType::uint32, VoxelType::int32}) {
+            const ValueRange range = range_of(type);
+            const bool fits =
+                possible.lower + rescale.intercept >= range.lower && possible.upper + rescale.intercept <= range.upper;
+            if (fits && bytes_of(type) >= bytes_of(stored)) return type;
+        }
+    }
+    const bool is_narrow = bytes_of(stored) <= 2 || stored == VoxelType::float32;
+    return is_narrow ? VoxelType::float32 : VoxelType::float64;
+}
+
+std::unique_ptr<VolumeSource> rescaled(std::unique_ptr<VolumeSource> source, const Rescale& rescale)
+{
+    if (rescale.changes_nothing()) return source;
+    SHVR_CHECK(std::isfinite(rescale.slope) && rescale.slope != 0.0 && std::isfinite(rescale.intercept));
+    return std::make_unique<RescaledSource>(std::move(source), rescale);
+}
+
+}  // namespace shvr

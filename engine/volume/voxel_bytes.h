@@ -1,0 +1,43 @@
+#pragma once
+// The bytes in which a file keeps its voxels, one after the other: bare in a file, deflated, or spread over several
+// files. source_raw.cpp makes voxels of them.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/base/file.h"
+
+namespace shvr {
+
+class VoxelBytes {
+public:
+    virtual ~VoxelBytes() = default;
+    /// Fills `bytes` with those from `offset` on. Throws `Error` where they are not there. Any thread may call it.
+    virtual void read(int64_t offset, std::span<std::byte> bytes) const = 0;
+};
+
+/// A regular file, open for reading.
+struct InputFile {
+    std::filesystem::path path{};
+    FileDescriptor descriptor;
+    int64_t bytes = 0;
+
+    /// Reads what there is of `bytes` from `offset` on; the number of bytes read is smaller at the end of the file.
+    size_t read_some(int64_t offset, std::span<std::byte> buffer) const;
+};
+/// Fails for folders, pipes and devices, and never waits for one.
+InputFile open_input_file(const std::filesystem::path& path);
+
+/// The bytes of `file` from `offset` on. Read with pread, never mapped: a file cut short while it is open is an `Error`,
+/// not a signal.
+std::unique_ptr<VoxelBytes> bytes_of_file(InputFile file, int64_t offset);
+
+/// `count` shares of `share_bytes` each, one after the other; `open(i)` opens the one of number i when it is needed. A
+/// few are kept open.
+std::unique_ptr<VoxelBytes> bytes_of_parts(size_t count, int64_t share_bytes,
+                                           std::function<std::unique_ptr<VoxelBytes>(size_t)> open);
+
+}  // namespace shvr

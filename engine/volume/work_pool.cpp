@@ -1,0 +1,104 @@
+#include "engine/volume/work_pool.h"
+
+#include <algorithm>
+
+namespace shvr {
+
+class WorkPool::Batch {
+public:
+    Task run;
+    int64_t next = 0;     ///< the first task that has not begun
+    int64_t end = 0;      ///< tasks from here on are none, or dropped
+    int64_t running = 0;  ///< begun and not finished
+    std::exception_ptr failure;
+
+    bool is_finished() const { return next >= end && running == 0; }
+};
+
+WorkPool::WorkPool(int threads, std::function<void()> poll) : poll_(std::move(poll))
+{
+    for (int worker = 0; worker < std::max(1, threads); ++worker) {
+        threads_.emplace_back([this, worker] { work(worker); });
+    }
+}
+
+WorkPool::~WorkPool()
+{
+    {
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+        for (auto* queue : {&urgent_, &normal_}) {
+            for (const auto& batch : *queue) batch->end = batch->next;
+        }
+    }
+    begun_.notify_all();
+    threads_.clear();
+}
+
+std::shared_ptr<WorkPool::Batch> WorkPool::start(int64_t tasks, Task run, Urgency urgency)
+{
+    auto batch = std::make_shared<Batch>();
+    batch->run = std::move(run);
+    batch->end = tasks;
+    if (tasks > 0) {
+        const std::lock_guard lock(mutex_);
+        (urgency == Urgency::urgent ? urgent_ : normal_).push_back(batch);
+    }
+    begun_.notify_all();
+    return batch;
+}
+
+void WorkPool::wait(const std::shared_ptr<Batch>& batch)
+{
+    std::unique_lock lock(mutex_);
+    while (!finished_.wait_for(lock, std::chrono::milliseconds(50), [&] { return batch->is_finished(); })) {
+        if (!poll_) continue;
+        lock.unlock();
+        std::exception_ptr failure;
+        try {
+            poll_();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        lock.lock();
+        if (!failure) continue;
+        // What its tasks use may go away with the caller.
+        batch->end = std::min(batch->end, batch->next);
+        finished_.wait(lock, [&] { return batch->is_finished(); });
+        std::rethrow_exception(failure);
+    }
+    if (batch->failure) std::rethrow_exception(batch->failure);
+}
+
+void WorkPool::work(int worker)
+{
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        begun_.wait(lock, [&] { return is_ending_ || !urgent_.empty() || !normal_.empty(); });
+        if (is_ending_) return;
+        std::deque<std::shared_ptr<Batch>>& queue = urgent_.empty() ? normal_ : urgent_;
+        const std::shared_ptr<Batch> batch = queue.front();
+        if (batch->next >= batch->end) {
+            queue.pop_front();
+            continue;
+        }
+        const int64_t task = batch->next++;
+        ++batch->running;
+        lock.unlock();
+        std::exception_ptr failure;
+        try {
+            batch->run(task, worker);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        lock.lock();
+        --batch->running;
+        if (failure) {
+            if (!batch->failure) batch->failure = failure;
+            batch->end = std::min(batch->end, batch->next);
+        }
+        if (batch->is_finished()) finished_.notify_all();
+    }
+}
+
+}  // namespace shvr

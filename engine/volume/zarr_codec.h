@@ -1,0 +1,24 @@
+#pragma once
+// Chunks of Zarr version 2 in and out of their compressors: blosc, zstd, zlib, gzip, or none. What is stored comes from
+// strangers: it must say, or turn out, to be exactly as large as the metadata promise. Any thread may call these.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/volume/zarr_metadata.h"
+
+namespace shvr {
+
+/// No compressor makes more of a chunk: what is longer is refused before it is read.
+int64_t longest_stored(int64_t chunk_bytes);
+
+/// Fills `chunk` exactly, or fails with `name`, which is the chunk's.
+void decompress_chunk(ZarrCompressor::Kind kind, std::span<const std::byte> stored, std::span<std::byte> chunk,
+                      const std::string& name);
+
+/// The same bytes for the same input. Blosc and none only: that is what we write.
+std::vector<std::byte> compress_chunk(const ZarrCompressor& compressor, std::span<const std::byte> chunk,
+                                      size_t voxel_bytes);
+
+}  // namespace shvr

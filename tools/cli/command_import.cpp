@@ -1,0 +1,279 @@
+// shvr import: makes a project of a volume. Needs no Vulkan device.
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iomanip>
+#include <iostream>
+
+#include "engine/volume/import_volume.h"
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+namespace {
+
+struct Options {
+    Common common;
+    std::string volume, project, crop, blur = "0", raw, spacing, unit;
+    OpenOptions choice;
+    int downscale = 1;
+    bool reverse = false;
+    bool overwrite = false;
+};
+
+// ---- Numbers of options ---------------------------------------------------------------------------------------------
+
+/// "1,2,3"; nothing where one of them is no number.
+template <class Value>
+std::vector<Value> numbers_of(const std::string& text)
+{
+    std::vector<Value> values;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (;;) {
+        Value value{};
+        const auto result = std::from_chars(at, end, value);
+        if (result.ec != std::errc()) return {};
+        values.push_back(value);
+        if (result.ptr == end) return values;
+        if (*result.ptr != ',') return {};
+        at = result.ptr + 1;
+    }
+}
+
+[[noreturn]] void refuse(const char* option, const std::string& text, const std::string& expected)
+{
+    throw UsageError(sentence(option, " is '", text, "'; expected ", expected));
+}
+
+std::optional<VoxelBox> parse_crop(const std::string& text)
+{
+    if (text.empty()) return std::nullopt;
+    const std::vector<int64_t> sides = numbers_of<int64_t>(text);
+    if (sides.size() != 6) {
+        refuse("--crop", text, "X0,Y0,Z0,X1,Y1,Z1 in voxels, the last ones not included, as in 0,0,100,512,512,300");
+    }
+    return VoxelBox{{sides[0], sides[1], sides[2]}, {sides[3], sides[4], sides[5]}};
+}
+
+glm::dvec3 parse_blur(const std::string& text)
+{
+    const std::string expected =
+        sentence("one sigma or three, X,Y,Z, in voxels, each 0 to ", LARGEST_SIGMA, ", as in 1.5 or 1.5,1.5,0.5");
+    const std::vector<double> sigmas = numbers_of<double>(text);
+    for (const double sigma : sigmas) {
+        if (!(sigma >= 0.0 && sigma <= LARGEST_SIGMA)) refuse("--blur", text, expected);
+    }
+    if (sigmas.size() == 1) return glm::dvec3(sigmas[0]);
+    if (sigmas.size() != 3) refuse("--blur", text, expected);
+    return {sigmas[0], sigmas[1], sigmas[2]};
+}
+
+std::optional<glm::dvec3> parse_spacing(const std::string& text)
+{
+    if (text.empty()) return std::nullopt;
+    const std::vector<double> sides = numbers_of<double>(text);
+    bool fits = sides.size() == 3;
+    for (const double side : sides) fits = fits && side >= 1e-12 && side <= 1e12;
+    if (!fits) refuse("--spacing", text, "X,Y,Z, the size of a voxel, each above 0, as in 0.8,0.8,1.2");
+    return glm::dvec3(sides[0], sides[1], sides[2]);
+}
+
+// ---- What the person says of the volume -----------------------------------------------------------------------------
+
+/// The source with the spacing and unit that were given, if any.
+class Restated final : public VolumeSource {
+public:
+    Restated(std::unique_ptr<VolumeSource> source, VolumeInfo info)
+        : VolumeSource(std::move(info)), source_(std::move(source))
+    {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { source_->read(box, voxels); }
+    Size3 block() const override { return source_->block(); }
+    std::optional<VolumeStatistics> statistics() const override { return source_->statistics(); }
+
+private:
+    std::unique_ptr<VolumeSource> source_;
+};
+
+std::unique_ptr<VolumeSource> open_as_told(const Options& options)
+{
+    const std::optional<glm::dvec3> spacing = parse_spacing(options.spacing);
+    if (!options.raw.empty()) {
+        RawLayout layout = parse_raw_layout(options.raw);
+        if (spacing) layout.spacing = *spacing;
+        if (!options.unit.empty()) layout.unit = options.unit;
+        return open_raw(options.volume, layout);
+    }
+    std::unique_ptr<VolumeSource> source = open_volume(options.volume, options.choice);
+    if (!spacing && options.unit.empty()) return source;
+    VolumeInfo info = source->info();
+    // What was missing in the file is known now.
+    std::erase_if(info.warnings,
+                  [](const std::string& warning) { return warning.find("spacing") != std::string::npos; });
+    if (spacing) info.spacing = *spacing;
+    if (!options.unit.empty()) info.unit = options.unit;
+    return std::make_unique<Restated>(std::move(source), std::move(info));
+}
+
+// ---- While it runs --------------------------------------------------------------------------------------------------
+
+std::atomic<bool> stop_requested = false;
+
+extern "C" void request_stop(int signal_number)
+{
+    stop_requested = true;
+    std::signal(signal_number, SIG_DFL);  // a second one ends the program at once
+}
+
+void handle_signals()
+{
+    static_assert(std::atomic<bool>::is_always_lock_free);
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
+}
+
+std::string time_text(double seconds)
+{
+    const auto whole = static_cast<int64_t>(std::ceil(seconds));
+    if (whole < 60) return sentence(whole, " s");
+    if (whole < 3600) return sentence(whole / 60, " min ", whole % 60, " s");
+    return sentence(whole / 3600, " h ", whole / 60 % 60, " min");
+}
+
+/// One line that is written over on a terminal; elsewhere a line every 10 %.
+class ProgressLine {
+public:
+    ProgressLine(const Common& common, size_t voxel_bytes)
+        : is_quiet_(common.quiet),
+          is_terminal_(::isatty(STDERR_FILENO) == 1),
+          voxel_bytes_(static_cast<double>(voxel_bytes))
+    {}
+    ~ProgressLine() { clear(); }
+
+    void show(const ImportProgress& progress)
+    {
+        if (is_quiet_) return;
+        const auto tenth = static_cast<int>(progress.fraction * 10.0);
+        if (!is_terminal_ && tenth <= last_tenth_) return;
+        last_tenth_ = tenth;
+        const double rate = progress.voxels_per_second * voxel_bytes_ / 1e6;
+        const std::string line = sentence(static_cast<int>(progress.fraction * 100.0), " %, ", std::fixed,
+                                          std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s, ",
+                                          time_text(progress.seconds_left), " left");
+        if (is_terminal_) {
+            std::cerr << "\r\x1b[K" << line << std::flush;
+            is_shown_ = true;
+        } else {
+            std::cerr << line << '\n';
+        }
+    }
+    void clear()
+    {
+        if (is_shown_) std::cerr << "\r\x1b[K" << std::flush;
+        is_shown_ = false;
+    }
+
+private:
+    bool is_quiet_, is_terminal_;
+    double voxel_bytes_;
+    int last_tenth_ = 0;
+    bool is_shown_ = false;
+};
+
+double peak_rss_mib()
+{
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void run(const Options& options)
+{
+    ImportOptions wanted{.preparation = {.crop = parse_crop(options.crop),
+                                         .reverse = options.reverse,
+                                         .blur_sigma_voxels = parse_blur(options.blur),
+                                         .downscale = options.downscale},
+                         .choice = sentence(options.choice.channel, "\n", options.choice.frame, "\n", options.raw),
+                         .overwrites = options.overwrite,
+                         .threads = options.common.threads};
+    const auto begin = std::chrono::steady_clock::now();
+    const std::unique_ptr<VolumeSource> source = open_as_told(options);
+    ProgressLine line(options.common, bytes_of(source->info().type));
+    wanted.progress = [&](const ImportProgress& progress) { line.show(progress); };
+    wanted.cancel = &stop_requested;
+    handle_signals();
+    const ImportReport report = import_volume(*source, options.volume, options.project, wanted);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    line.clear();
+    warn(report.warnings, options.common);
+
+    const VolumeInfo& info = report.info;
+    const double megabytes =
+        static_cast<double>(voxel_count(info)) * static_cast<double>(bytes_of(info.type)) / seconds / 1e6;
+    if (!options.common.json) {
+        return say(options.common,
+                   sentence(report.project.string(), ": ", info.size.x, " x ", info.size.y, " x ", info.size.z,
+                            " voxels in ", report.levels, " levels, ", std::fixed, std::setprecision(1),
+                            static_cast<double>(report.bytes) / 1048576.0, " MiB, ", seconds, " s"));
+    }
+    print({{"project", report.project.string()},
+           {"size", {info.size.x, info.size.y, info.size.z}},
+           {"type", name_of(info.type)},
+           {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
+           {"unit", info.unit},
+           {"levels", report.levels},
+           {"bricks", report.bricks},
+           {"bricks_stored", report.bricks_stored},
+           {"bytes", report.bytes},
+           {"seconds", seconds},
+           {"megabytes_per_second", megabytes},
+           {"peak_rss_mib", peak_rss_mib()},
+           {"resumed", report.was_resumed},
+           {"warnings", report.warnings}});
+}
+
+}  // namespace
+
+void add_import(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("import", "Makes a project of a volume");
+    command->add_option("VOLUME", options->volume, "Volume file or folder")->required();
+    command->add_option("PROJECT", options->project, "Folder to make; an OME-Zarr 0.4 image")->required();
+    command
+        ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+    command->add_flag("--reverse", options->reverse, "Exchange dark and bright");
+    command->add_option("--blur", options->blur, "Gaussian blur: sigma in voxels, of all axes or of each")
+        ->type_name("S|SX,SY,SZ");
+    command->add_option("--downscale", options->downscale, "Make it N times smaller along every axis")
+        ->type_name("N")
+        ->check(CLI::Range(1, LARGEST_DOWNSCALE));
+    command->add_option("--raw", options->raw, "How a file of bare voxels is laid out")
+        ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
+    command->add_option("--spacing", options->spacing, "Size of a voxel, instead of what the file says")
+        ->type_name("X,Y,Z");
+    command->add_option("--unit", options->unit, "Unit of it, as in um");
+    command->add_option("--channel", options->choice.channel, "What to take from a file with channels")
+        ->type_name("NAME|N");
+    command->add_option("--frame", options->choice.frame, "Which point in time to take from a file with several")
+        ->type_name("N");
+    command->add_flag("--overwrite", options->overwrite,
+                      "Replace the project PROJECT, with all annotations in it, once the new one is complete");
+    command->add_option("--threads", options->common.threads, "Worker threads; 0: one a core")
+        ->check(CLI::Range(0, 1024));
+    add_output_options(*command, options->common);
+    command->footer(
+        "The order is: crop, reverse, blur, downscale. An import that was stopped goes on when it is called again.\n"
+        "Example:\n  shvr import scan.nhdr scan --blur 1 --downscale 2 --json\n  shvr view scan");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace shvr::cli
