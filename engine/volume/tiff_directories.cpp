@@ -212,17 +212,15 @@ public:
         fields_.append(reinterpret_cast<const char*>(parts), sizeof(parts));
         if (field.tag == NEW_SUBFILE_TYPE) is_reduced_ |= (value & 1) != 0 || (value & 4) != 0;
         if (field.tag == SUBFILE_TYPE) is_reduced_ |= value == 2;
-        has_width_ |= field.tag == IMAGE_WIDTH;
-        has_length_ |= field.tag == IMAGE_LENGTH;
+        if (field.tag == IMAGE_WIDTH) width_ = value;
+        if (field.tag == IMAGE_LENGTH) length_ = value;
     }
 
     /// The kind of the directory whose fields were looked at since the last call.
     uint32_t finish(const TiffFile& file, std::vector<TiffKind>& kinds, size_t page)
     {
-        if (!has_width_ || !has_length_) {
-            fail(file.path().string(), ": page ", page, ": ", has_width_ ? "ImageLength" : "ImageWidth",
-                 " is missing; expected a whole number from 1 to ", MOST_TIFF_PAGES);
-        }
+        check_side(file, page, "ImageWidth", width_);
+        check_side(file, page, "ImageLength", length_);
         // Pages mostly are as the one before.
         if (last_ >= kinds.size() || kinds[last_].fields != fields_) {
             const auto found =
@@ -235,17 +233,26 @@ public:
             }
         }
         fields_.clear();
-        is_reduced_ = has_width_ = has_length_ = false;
+        is_reduced_ = false;
+        width_.reset();
+        length_.reset();
         return static_cast<uint32_t>(last_);
     }
 
 private:
     static constexpr size_t MOST_KINDS = 64;
+    static constexpr uint64_t LARGEST_SIDE = uint64_t{1} << 20;
+
+    static void check_side(const TiffFile& file, size_t page, const char* name, const std::optional<uint64_t>& side)
+    {
+        if (side && *side >= 1 && *side <= LARGEST_SIDE) return;
+        fail(file.path().string(), ": page ", page, ": ", name, " is ", side ? std::to_string(*side) : "missing",
+             "; expected 1 to ", LARGEST_SIDE);
+    }
 
     std::string fields_;
     bool is_reduced_ = false;
-    bool has_width_ = false;
-    bool has_length_ = false;
+    std::optional<uint64_t> width_, length_;
     size_t last_ = 0;
 };
 
