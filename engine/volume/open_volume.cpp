@@ -18,6 +18,7 @@ constexpr Reader READERS[] = {
     {"NRRD", open_nrrd},
     {"MetaImage", open_mhd},
     {"NIfTI", open_nifti},
+    {"DICOM", open_dicom, true},
     {"RAW with a side-car", open_raw_with_side_car},
 };
 

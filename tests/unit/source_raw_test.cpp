@@ -308,7 +308,7 @@ TEST_CASE("a raw file with nothing beside it says how to open it")
     const fs::path other = folder.write("a.xyz", marked_bytes());
     CHECK(refusal(other) ==
           other.string() +
-              ": is in no format known here; expected NRRD, MetaImage, NIfTI, RAW with a side-car, or bare "
+              ": is in no format known here; expected NRRD, MetaImage, NIfTI, DICOM, RAW with a side-car, or bare "
               "voxels with --raw WxHxD:TYPE");
 }
 
