@@ -40,6 +40,8 @@ THIRD_PARTIES = {
     "nlohmann/json": (r"nlohmann/(?!json_fwd\.hpp)", r".*\.cpp|tools/|tests/"),
     "zlib": (r"zlib\.h", r"engine/volume/.*\.cpp|tests/"),
     "blosc": (r"blosc", r"engine/volume/zarr_codec\.cpp"),
+    "libtiff": (r"tiff(io)?\.h", r"engine/volume/.*tiff.*\.cpp|tests/unit/tiff_files\.h"),
+    "pugixml": (r"pugixml", r"engine/volume/.*\.cpp"),
     "xxHash": (r"xxhash", r"engine/volume/"),
     "CLI11": (r"CLI/", r"tools/cli/"),
     "doctest": (r"doctest", r"tests/"),
