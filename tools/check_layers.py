@@ -38,6 +38,7 @@ THIRD_PARTIES = {
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/"),
     # 25,000 lines that every reader of a header would compile; json_fwd.hpp is small.
     "nlohmann/json": (r"nlohmann/(?!json_fwd\.hpp)", r".*\.cpp|tools/|tests/"),
+    "GDCM": (r"gdcm", r"engine/volume/dicom_file\.cpp|tests/unit/source_dicom_test\.cpp"),
     "zlib": (r"zlib\.h", r"engine/volume/.*\.cpp|tests/"),
     "blosc": (r"blosc", r"engine/volume/zarr_codec\.cpp"),
     "libtiff": (r"tiff(io)?\.h", r"engine/volume/.*tiff.*\.cpp|tests/unit/tiff_files\.h"),

@@ -1,6 +1,7 @@
 #include "engine/scene/paged_volume.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -14,7 +15,8 @@ namespace {
 constexpr size_t TEXELS = size_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
 constexpr size_t CELLS = size_t{gpu::BRICK_CELLS} * gpu::BRICK_CELLS * gpu::BRICK_CELLS;
 constexpr uint64_t SLOT_BYTES = TEXELS * sizeof(uint16_t) + CELLS * (sizeof(uint32_t) + 1);
-constexpr size_t BATCH = 64;  // bricks per upload: 5 MiB of staging
+constexpr size_t BATCH = 32;  // bricks per upload: twice 2.5 MiB of staging
+constexpr size_t CODE_BYTES = TEXELS * sizeof(uint16_t), RANGE_BYTES = CELLS * sizeof(BrickTexels::Range);
 /// A region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
 constexpr uint64_t FEWEST_SLOTS = 64;
 /// Levels of no more bricks than this are always there.
@@ -59,6 +61,9 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
                                                      : image_desc(Format::r32_uint, codes / glm::uvec3(2, 1, 1)));
     cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, atlas_slots_ * gpu::BRICK_CELLS));
     cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_slots_ * gpu::BRICK_CELLS));
+    for (Staging& staging : staging_)
+        staging.bytes =
+            memory.create("brick staging", buffer_desc(BATCH * (CODE_BYTES + RANGE_BYTES)), gpu::Placement::upload);
     for (uint32_t slot = uint32_t(slots_.size()) - 1; slot > 0; --slot) unused_.push_back(slot);
     pin_coarse_levels();
 }
@@ -213,10 +218,12 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, con
     }
     if (std::exchange(directory_is_stale_, false)) {
         fill_directory();
+        // Whole powers of two: views differ, and buffers of a frame are used again where they are of the same size.
+        entries_.resize(std::bit_ceil(entries_.size()));
         const uint64_t bytes = entries_.size() * sizeof(uint32_t);
         if (!directory_ || directory_.desc().bytes < bytes) {
             directory_.reset();
-            directory_ = memory_.create("page directory", buffer_desc(bytes + bytes / 2));
+            directory_ = memory_.create("page directory", buffer_desc(bytes));
         }
         volume.pages->directory =
             graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
@@ -224,7 +231,7 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, con
     } else {
         volume.pages->directory = graph.import("page directory", directory_.import());
     }
-    const uint64_t words = feedback ? (tree_->entries.size() + 31) / 32 : 1;
+    const uint64_t words = feedback ? std::bit_ceil((tree_->entries.size() + 31) / 32) : 1;
     volume.pages->reached =
         graph.fill(graph.create("reached", buffer_desc(words * sizeof(uint32_t))), 0, "clear reached");
     return volume;
@@ -321,9 +328,12 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
     if (!slot) return false;
     slots_[*slot] = {.key = key, .used = stamp_, .pinned = std::ranges::find(coarse_, key) != coarse_.end()};
     resident_[key] = *slot;
-    uploads_.push_back({key, *slot});
-    staged_codes_.insert(staged_codes_.end(), texels.codes.begin(), texels.codes.end());
-    staged_ranges_.insert(staged_ranges_.end(), texels.cell_ranges.begin(), texels.cell_ranges.end());
+    Staging& staging = staging_[filling_];
+    if (staging.copy) static_cast<void>(staging.copy.finish());
+    std::byte* bytes = staging.bytes.mapped().data();
+    std::memcpy(bytes + uploads_.size() * CODE_BYTES, texels.codes.data(), CODE_BYTES);
+    std::memcpy(bytes + BATCH * CODE_BYTES + uploads_.size() * RANGE_BYTES, texels.cell_ranges.data(), RANGE_BYTES);
+    uploads_.push_back(*slot);
     leap_jobs_.push_back(key);
     directory_is_stale_ = true;
     if (uploads_.size() == BATCH) flush_uploads();
@@ -336,24 +346,22 @@ void PagedVolume::flush_uploads()
     const glm::uvec3 codes_per_texel(options_.filtered ? 1 : 2, 1, 1);
     std::vector<ImageRegion> atlas_regions, cell_regions;
     for (size_t i = 0; i < uploads_.size(); ++i) {
-        const glm::uvec3 slot = gpu::unpack_slot(packed(uploads_[i].slot));
-        atlas_regions.push_back({i * TEXELS * sizeof(uint16_t), gpu::BRICK_TEXELS * slot / codes_per_texel,
+        const glm::uvec3 slot = gpu::unpack_slot(packed(uploads_[i]));
+        atlas_regions.push_back({i * CODE_BYTES, gpu::BRICK_TEXELS * slot / codes_per_texel,
                                  glm::uvec3(gpu::BRICK_TEXELS) / codes_per_texel});
-        cell_regions.push_back({i * CELLS * sizeof(uint32_t), gpu::BRICK_CELLS * slot, glm::uvec3(gpu::BRICK_CELLS)});
+        cell_regions.push_back(
+            {BATCH * CODE_BYTES + i * RANGE_BYTES, gpu::BRICK_CELLS * slot, glm::uvec3(gpu::BRICK_CELLS)});
     }
     FrameGraph graph;
-    static_cast<void>(graph.copy_to_image(graph.upload<uint16_t>("brick codes", staged_codes_),
-                                          graph.import("atlas", atlas_.import()), std::move(atlas_regions),
-                                          "upload bricks"));
-    static_cast<void>(graph.copy_to_image(graph.upload<BrickTexels::Range>("brick ranges", staged_ranges_),
-                                          graph.import("cell ranges", cell_ranges_.import()), std::move(cell_regions),
-                                          "upload cell ranges"));
-    std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
-    in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
+    const Resource staged = graph.import("brick staging", staging_[filling_].bytes.import());
+    static_cast<void>(
+        graph.copy_to_image(staged, graph.import("atlas", atlas_.import()), std::move(atlas_regions), "upload bricks"));
+    static_cast<void>(graph.copy_to_image(staged, graph.import("cell ranges", cell_ranges_.import()),
+                                          std::move(cell_regions), "upload cell ranges"));
+    staging_[filling_].copy = executor_.submit(std::move(graph), {.timestamps = false});
+    filling_ = 1 - filling_;
     upload_count_ += uploads_.size();
     uploads_.clear();
-    staged_codes_.clear();
-    staged_ranges_.clear();
 }
 
 void PagedVolume::update_wants()

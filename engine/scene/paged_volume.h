@@ -140,14 +140,14 @@ private:
     std::vector<BrickKey> coarse_;                       ///< that are to be there always
     std::vector<BrickKey> leap_jobs_;
 
-    struct Upload {
-        BrickKey key;
-        uint32_t slot = 0;
+    /// Two, of which one is filled while the device copies from the other.
+    struct Staging {
+        gpu::Storage bytes;  ///< codes of all bricks, then their ranges
+        gpu::Submission copy;
     };
-    std::vector<Upload> uploads_;
-    std::vector<uint16_t> staged_codes_;
-    std::vector<BrickTexels::Range> staged_ranges_;
-    std::vector<gpu::Submission> in_flight_;
+    std::array<Staging, 2> staging_;
+    size_t filling_ = 0;             ///< of staging_
+    std::vector<uint32_t> uploads_;  ///< slots of the bricks in it
     uint64_t upload_count_ = 0, evictions_ = 0;
 
     BrickStore store_;  ///< last: its loaders end before what they read

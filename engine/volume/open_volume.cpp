@@ -16,7 +16,8 @@ struct Reader {
 /// In this order: a header is asked before the bare voxels that it may describe.
 constexpr Reader READERS[] = {
     {"OME-Zarr", open_ome_zarr, true}, {"TIFF", open_tiff, true}, {"NRRD", open_nrrd},
-    {"MetaImage", open_mhd},           {"NIfTI", open_nifti},     {"RAW with a side-car", open_raw_with_side_car},
+    {"MetaImage", open_mhd},           {"NIfTI", open_nifti},     {"DICOM", open_dicom, true},
+    {"RAW with a side-car", open_raw_with_side_car},
 };
 
 [[noreturn]] void refuse_layout(const std::string& text)

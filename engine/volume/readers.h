@@ -21,6 +21,9 @@ std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const 
 /// NIfTI-1 and NIfTI-2: .nii, .nii.gz, .hdr with .img, by their first bytes or their extension.
 std::unique_ptr<VolumeSource> open_nifti(const std::filesystem::path& path, const OpenOptions& options);
 
+/// DICOM: a folder of slices, one slice of a series, or one file of many frames.
+std::unique_ptr<VolumeSource> open_dicom(const std::filesystem::path& path, const OpenOptions& options);
+
 /// Bare voxels described by what lies beside them, or the side-car itself (source_side_car.cpp lists what is known).
 std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path, const OpenOptions& options);
 

@@ -1,5 +1,6 @@
 #include "engine/volume/rescaled.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -104,20 +105,12 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         const VoxelType stored = source_->info().type;
-        const size_t from_bytes = bytes_of(stored);
-        const size_t to_bytes = bytes_of(info().type);
-        const size_t count = voxels.size() / to_bytes;
+        const size_t count = voxels.size() / bytes_of(info().type);
         // Stored voxels are not larger: they are read to the end of the same memory, and none is overwritten before its
         // turn.
-        const std::span<std::byte> tail = voxels.last(count * from_bytes);
+        const std::span<std::byte> tail = voxels.last(count * bytes_of(stored));
         source_->read(box, tail);
-        double values[BLOCK];
-        for (size_t at = 0; at < count; at += BLOCK) {
-            const std::span<double> block(values, std::min(BLOCK, count - at));
-            load(stored, tail.data() + at * from_bytes, block);
-            for (double& value : block) value = rescale_.slope * value + rescale_.intercept;
-            store(info().type, block, voxels.data() + at * to_bytes);
-        }
+        rescale_voxels(stored, tail, rescale_, info().type, voxels);
     }
 
 private:
@@ -130,18 +123,36 @@ private:
 VoxelType rescaled_type(VoxelType stored, const Rescale& rescale)
 {
     if (rescale.changes_nothing()) return stored;
-    if (!is_float(stored) && rescale.slope == 1.0 && rescale.intercept == std::floor(rescale.intercept)) {
-        const ValueRange possible = rescale.stored.value_or(range_of(stored));
+    const bool is_whole =
+        rescale.slope == std::floor(rescale.slope) && rescale.intercept == std::floor(rescale.intercept);
+    if (!is_float(stored) && is_whole) {
+        const ValueRange numbers = rescale.stored.value_or(range_of(stored));
+        const double one_end = rescale.slope * numbers.lower + rescale.intercept;
+        const double other_end = rescale.slope * numbers.upper + rescale.intercept;
         for (const VoxelType type : {stored, VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
                                      VoxelType::uint32, VoxelType::int32}) {
             const ValueRange range = range_of(type);
             const bool fits =
-                possible.lower + rescale.intercept >= range.lower && possible.upper + rescale.intercept <= range.upper;
+                std::min(one_end, other_end) >= range.lower && std::max(one_end, other_end) <= range.upper;
             if (fits && bytes_of(type) >= bytes_of(stored)) return type;
         }
     }
     const bool is_narrow = bytes_of(stored) <= 2 || stored == VoxelType::float32;
     return is_narrow ? VoxelType::float32 : VoxelType::float64;
+}
+
+void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
+                    std::span<std::byte> intensities)
+{
+    const size_t count = stored.size() / bytes_of(from);
+    SHVR_CHECK(intensities.size() == count * bytes_of(to), intensities.size(), " ", stored.size());
+    double values[BLOCK];
+    for (size_t at = 0; at < count; at += BLOCK) {
+        const std::span<double> block(values, std::min(BLOCK, count - at));
+        load(from, stored.data() + at * bytes_of(from), block);
+        for (double& value : block) value = rescale.slope * value + rescale.intercept;
+        store(to, block, intensities.data() + at * bytes_of(to));
+    }
 }
 
 std::unique_ptr<VolumeSource> rescaled(std::unique_ptr<VolumeSource> source, const Rescale& rescale)

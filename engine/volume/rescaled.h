@@ -2,6 +2,7 @@
 // Intensities that a file stores as numbers with a slope and an intercept (NIfTI, DICOM). Any thread may call these.
 
 #include <memory>
+#include <span>
 
 #include "engine/volume/source.h"
 
@@ -16,9 +17,14 @@ struct Rescale {
     bool changes_nothing() const { return slope == 1.0 && intercept == 0.0; }
 };
 
-/// The type that holds the intensities, never smaller than the stored one. Integers stay integers where the slope is 1
-/// and the intercept is whole; else 8 and 16 bits and float32 become float32, the larger ones float64.
+/// The type that holds the intensities, never smaller than the stored one. Integers stay integers where slope and
+/// intercept are whole; else 8 and 16 bits and float32 become float32, the larger ones float64.
 VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
+
+/// `stored` to `intensities`, which may be the end and the whole of the same memory where `to` is not smaller than
+/// `from`. `to` must hold what comes out.
+void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
+                    std::span<std::byte> intensities);
 
 /// `source`, which has one level, in its intensities; itself where nothing changes. A warning says where integers become
 /// floats.

@@ -306,10 +306,10 @@ TEST_CASE("a raw file with nothing beside it says how to open it")
                                ": holds bare voxels and nothing beside it says their size and type; expected --raw "
                                "WxHxD:TYPE, as in --raw 512x512x300:uint16:little:0");
     const fs::path other = folder.write("a.xyz", marked_bytes());
-    CHECK(refusal(other) ==
-          other.string() +
-              ": is in no format known here; expected NRRD, MetaImage, NIfTI, RAW with a side-car, or bare "
-              "voxels with --raw WxHxD:TYPE");
+    CHECK(refusal(other) == other.string() +
+                                ": is in no format known here; expected OME-Zarr, TIFF, NRRD, MetaImage, NIfTI, DICOM, RAW "
+                                "with a side-car, or bare "
+                                "voxels with --raw WxHxD:TYPE");
 }
 
 TEST_CASE("a raw file opens by the JSON beside it, and the JSON opens the raw file")

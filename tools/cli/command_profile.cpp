@@ -63,7 +63,7 @@ Profile measure_frames(const Options& options, Opened& opened)
                                   .passes = std::move(picture.passes)});
         profile.graph = std::move(picture.graph);
     }
-    profile.bytes = bytes_of(renderer.memory());
+    profile.bytes = bytes_of(renderer);
     // Counting costs time, so it has a frame of its own.
     profile.counted = renderer.render(opened.session, camera, {.count_work = true}).passes;
     return profile;

@@ -1,0 +1,65 @@
+#include "engine/volume/work_pool.h"
+
+#include <atomic>
+
+#include <doctest/doctest.h>
+
+#include "tests/unit/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+TEST_CASE("every task of a batch runs once, and what one fails with is thrown")
+{
+    WorkPool pool(3);
+    std::vector<std::atomic<int>> runs(1000);
+    pool.run(1000, [&](int64_t task, int worker) {
+        CHECK_UNARY(worker >= 0 && worker < pool.workers());
+        ++runs[static_cast<size_t>(task)];
+    });
+    for (const auto& count : runs) REQUIRE(count == 1);
+    pool.run(0, [](int64_t, int) { fail("not called"); });
+
+    std::atomic<int> later = 0;
+    const std::string said = error_of([&] {
+        pool.run(100000, [&](int64_t task, int) {
+            if (task == 5) fail("task 5");
+            ++later;
+        });
+    });
+    CHECK(said == "task 5");
+    CHECK(later < 99999);
+    pool.run(10, [&](int64_t, int) {});  // it goes on
+}
+
+TEST_CASE("urgent batches go before others, and who waits may end them")
+{
+    int polls = 0;
+    WorkPool pool(1, [&] {
+        if (++polls == 2) fail("enough");
+    });
+    std::vector<int> order;
+    std::atomic<bool> goes_on = false;
+    const auto first = pool.start(1, [&](int64_t, int) {
+        while (!goes_on) std::this_thread::yield();
+    });
+    const auto normal = pool.start(2, [&](int64_t, int) { order.push_back(1); });
+    const auto urgent = pool.start(
+        2, [&](int64_t, int) { order.push_back(2); }, WorkPool::Urgency::urgent);
+    goes_on = true;
+    pool.wait(first);
+    pool.wait(urgent);
+    pool.wait(normal);
+    CHECK(order == std::vector<int>{2, 2, 1, 1});
+
+    std::atomic<int> done = 0;
+    CHECK(error_of([&] {
+              pool.run(1000000, [&](int64_t, int) {
+                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                  ++done;
+              });
+          }) == "enough");
+    const int at_return = done;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK(done == at_return);
+}
