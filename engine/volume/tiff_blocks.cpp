@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/volume/tiff_numbers.h"
+#include "engine/volume/byte_order.h"
 
 namespace shvr {
 namespace {
@@ -75,7 +75,7 @@ public:
             }
         }
         finish_run();
-        if (layout_.is_bare() && is_plain_) swap_bytes(voxels);
+        if (layout_.is_bare() && is_plain_) put_in_order(voxels);
         exchange_bits(recipe_, voxels);
     }
 
@@ -143,7 +143,7 @@ private:
             const std::span<std::byte> read =
                 std::span(rows).first(static_cast<size_t>((part.bottom - part.top) * row_bytes));
             file_.read(offset, read);
-            if (!is_plain_) swap_bytes(read);
+            if (!is_plain_) put_in_order(read);
             unpack(part, read, part.voxels);
             offset += static_cast<int64_t>(read.size());
             part.voxels += (part.bottom - part.top) * row_pitch_;
@@ -160,10 +160,10 @@ private:
         }
     }
 
-    void swap_bytes(std::span<std::byte> bytes) const
+    /// What libtiff decodes has this machine's byte order already.
+    void put_in_order(std::span<std::byte> samples) const
     {
-        if (!file_.is_big_endian() || layout_.bits % 8 != 0) return;
-        change_each_of(static_cast<size_t>(layout_.bits / 8), bytes, [](auto bits) { return swapped(bits); });
+        if (file_.is_big_endian() && layout_.bits % 8 == 0) swap_bytes(samples, static_cast<size_t>(layout_.bits / 8));
     }
 
     const TiffFile& file_;

@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "engine/base/error.h"
-#include "engine/volume/tiff_numbers.h"
 
 namespace shvr {
 namespace {
@@ -51,6 +50,17 @@ void gather(std::span<const std::byte> row, int64_t first, int64_t step, std::sp
     const std::byte* from = row.data() + static_cast<size_t>(first) * sizeof(Bits);
     for (size_t at = 0; at < voxels.size(); at += sizeof(Bits), from += static_cast<size_t>(step) * sizeof(Bits)) {
         std::memcpy(voxels.data() + at, from, sizeof(Bits));
+    }
+}
+
+template <class Bits>
+void exchange_each(uint64_t exchanged, std::span<std::byte> voxels)
+{
+    for (size_t at = 0; at < voxels.size(); at += sizeof(Bits)) {
+        Bits bits;
+        std::memcpy(&bits, voxels.data() + at, sizeof(Bits));
+        bits = static_cast<Bits>(bits ^ static_cast<Bits>(exchanged));
+        std::memcpy(voxels.data() + at, &bits, sizeof(Bits));
     }
 }
 
@@ -126,9 +136,11 @@ void unpack_row(const TiffLayout& layout, const TiffRecipe& recipe, const std::v
 void exchange_bits(const TiffRecipe& recipe, std::span<std::byte> voxels)
 {
     if (recipe.exchanged_bits == 0) return;
-    change_each_of(bytes_of(recipe.type), voxels, [&](auto bits) {
-        return static_cast<decltype(bits)>(bits ^ static_cast<decltype(bits)>(recipe.exchanged_bits));
-    });
+    switch (bytes_of(recipe.type)) {
+        case 1: return exchange_each<uint8_t>(recipe.exchanged_bits, voxels);
+        case 2: return exchange_each<uint16_t>(recipe.exchanged_bits, voxels);
+        default: return exchange_each<uint32_t>(recipe.exchanged_bits, voxels);
+    }
 }
 
 void mirror(const TiffRecipe& recipe, int64_t width, std::span<std::byte> voxels)

@@ -189,7 +189,7 @@ TEST_CASE("a folder of one TIFF is that TIFF, and one without TIFFs is no volume
     CHECK(is_chirality_phantom(*open_volume(folder.path)));
     const TemporaryFolder empty;
     empty.write("notes.txt", "nothing");
-    CHECK(error_of([&] { open_volume(empty.path); }) == empty.path.string() + ": is a folder; expected a file");
+    CHECK(contains(error_of([&] { open_volume(empty.path); }), ": is a folder without"));
 }
 
 TEST_CASE("a folder of many slices keeps few files open")
