@@ -10,12 +10,13 @@ namespace {
 
 const char* const WINDOW_CAMERA = "window";
 
-/// A session file is saved where it was; a bare volume gets one beside it.
+/// A session file is saved where it was; a volume, file or folder, gets one beside it.
 std::filesystem::path session_path_of(const std::filesystem::path& input)
 {
-    if (std::filesystem::is_directory(input)) return input / "shvr" / "session.json";
+    std::filesystem::path of_project = input / "shvr" / "session.json";
+    if (std::filesystem::exists(of_project)) return of_project;
     if (input.extension() == ".json") return input;
-    std::filesystem::path beside = input;
+    std::filesystem::path beside = input.has_filename() ? input : input.parent_path();
     return beside.replace_extension(".session.json");
 }
 

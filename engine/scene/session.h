@@ -119,8 +119,8 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
-/// Writes what `parse_session` reads: every key, paths inside `folder` relative to it and others absolute. Colours are
-/// rounded to the 8 bits of their spelling.
+/// Writes what `parse_session` reads: every key, paths inside `folder` (if that is a project's shvr: inside the project)
+/// relative to it and others absolute. Colours are rounded to the 8 bits of their spelling.
 std::string to_text(const Session& session, const std::filesystem::path& folder);
 
 }  // namespace shvr

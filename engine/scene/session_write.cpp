@@ -21,9 +21,13 @@ std::string color_text(const glm::dvec3& linear)
 
 std::string path_text(const std::filesystem::path& path, const std::filesystem::path& folder)
 {
-    const std::filesystem::path relative =
-        path.lexically_relative(std::filesystem::absolute(folder / ".").lexically_normal());
-    const bool is_inside = !relative.empty() && relative.begin()->string() != "..";
+    const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
+    const std::filesystem::path relative = path.lexically_relative(whole);
+    // What belongs to a project lies beside or around its folder shvr, and moves with it.
+    const bool is_project = whole.parent_path().filename() == "shvr";
+    auto step = relative.begin();
+    if (is_project && step != relative.end() && *step == "..") ++step;
+    const bool is_inside = !relative.empty() && (step == relative.end() || *step != "..");
     return (is_inside ? relative : path).generic_string();
 }
 

@@ -277,7 +277,7 @@ Knowledge read_knowledge(const fs::path& folder, VolumeInfo& info, std::vector<Z
         [&] {
             ProjectRecord record = read_project_record(file);
             const bool fits = record.info.size == info.size && record.info.type == info.type &&
-                              record.levels == static_cast<int>(volumes.size());
+                              record.levels >= static_cast<int>(volumes.size());
             if (!fits) fail(file.string(), ": describes another volume; expected that of this folder");
             knowledge.record = std::move(record);
         },

@@ -241,6 +241,21 @@ TEST_CASE("relative paths are relative to the file, and paths inside its folder 
     CHECK(parse_session(with(""), "", "s.json").volume_path == fs::current_path() / "a.nhdr");
 }
 
+TEST_CASE("what lies in a project is written relative to its folder shvr, so that it can be moved")
+{
+    const auto written = [](const char* volume) {
+        const std::string text = sentence(R"({"shvr_session": 1, "volume": {"path": ")", volume, R"("}})");
+        return to_text(parse_session(text, "/data/project/shvr", "s.json"), "/data/project/shvr");
+    };
+    CHECK(written("../scan.nhdr").find("\"../scan.nhdr\"") != std::string::npos);
+    CHECK(written("below/scan.nhdr").find("\"below/scan.nhdr\"") != std::string::npos);
+    CHECK(written("../../scan.nhdr").find("\"/data/scan.nhdr\"") != std::string::npos);
+    CHECK(written("/other/scan.nhdr").find("\"/other/scan.nhdr\"") != std::string::npos);
+    const std::string image = written("..");
+    CHECK(image.find("/data") == std::string::npos);
+    CHECK(parse_session(image, "/elsewhere/shvr", "s.json").volume_path.parent_path() == "/elsewhere");
+}
+
 TEST_CASE("keys that are not known are refused by their full name, with those that are")
 {
     CHECK(refusal(with(R"("render": {"step": 1})")) ==

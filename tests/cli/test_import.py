@@ -1,0 +1,374 @@
+"""shvr import: projects, as python3-zarr and the other commands see them; what happens when an import ends early."""
+import json
+import math
+import os
+import random
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
+
+# Runs in an interpreter that has python3-zarr, which need not be the one that runs this file. Every level is read by
+# python3-zarr, made anew from the level before, and compared; level 0 is compared with bare voxels.
+ZARR = """
+import json, sys
+import numpy, zarr
+group = zarr.open_group(sys.argv[1], "r")
+entry = group.attrs["multiscales"][0]
+levels = [group[dataset["path"]] for dataset in entry["datasets"]]
+arrays = [level[:] for level in levels]
+bare = numpy.fromfile(sys.argv[2], arrays[0].dtype).reshape(arrays[0].shape)
+problems = [] if numpy.array_equal(bare, arrays[0]) else ["level 0 differs"]
+for number, (fine, coarse) in enumerate(zip(arrays, arrays[1:])):
+    size = [(side + 1) // 2 for side in fine.shape]
+    pad = [(0, 2 * half - side) for half, side in zip(size, fine.shape)]
+    halves = lambda a: numpy.pad(a, pad).reshape(size[0], 2, size[1], 2, size[2], 2).sum((1, 3, 5))
+    mean = halves(fine.astype("f8")) / halves(numpy.ones(fine.shape))
+    if fine.dtype.kind != "f":
+        mean = numpy.rint(mean)
+    if not numpy.array_equal(mean.astype(fine.dtype), coarse):
+        problems.append(f"level {number + 1} is not the mean of level {number}")
+transformations = [[t.get("scale", t.get("translation")) for t in d["coordinateTransformations"]]
+                   for d in entry["datasets"]]
+# As our reader gives them: x fastest, level after level.
+for number, array in enumerate(arrays):
+    array.astype(array.dtype.newbyteorder("<")).tofile(f"{sys.argv[3]}-{number}")
+print(json.dumps({"problems": problems, "axes": entry["axes"], "transformations": transformations,
+                  "types": [level.dtype.str for level in levels], "chunks": levels[0].chunks}))
+"""
+
+
+def python_with_zarr():
+    for python in (sys.executable, "/usr/bin/python3"):
+        if os.path.exists(python) and subprocess.run([python, "-c", "import zarr"], capture_output=True).returncode == 0:
+            return python
+    return None
+
+
+def content_of(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
+
+
+class Import(CliTest):
+    def project(self):
+        return self.folder / "project"
+
+    def read_by_zarr(self, bare, prefix="level"):
+        python = python_with_zarr()
+        if python is None:
+            self.skipTest("no interpreter here has python3-zarr")
+        result = subprocess.run([python, "-c", ZARR, self.project(), bare, self.folder / prefix], capture_output=True,
+                                text=True, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(result.stdout)
+        self.assertEqual(found["problems"], [])
+        return found
+
+    def test_the_report_and_what_info_says_of_the_project(self):
+        header = Volume.noise((70, 66, 65), seed=1, high=3000, voxel_type="int16", spacing=(0.5, 0.5, 2)).write(self.folder)
+        report = self.check_json("import", header, self.project())
+        self.assert_keys(report, ["project", "size", "levels", "bricks", "bricks_stored", "bytes", "seconds",
+                                  "megabytes_per_second", "peak_rss_mib"])
+        self.assertEqual(report["project"], str(self.project()))
+        self.assertEqual((report["size"], report["levels"], report["bricks"]), ([70, 66, 65], 3, 8 + 1 + 1))
+        self.assertEqual(report["bytes"], sum(map(len, content_of(self.project()).values())))
+        before = self.check_json("info", header)
+        after = self.check_json("info", self.project())
+        self.assertEqual((after["format"], after["levels"]), ("ome-zarr", 3))
+        for key in ("size", "type", "spacing", "unit", "min", "max", "mean", "histogram", "voxels"):
+            self.assertEqual(after[key], before[key], key)
+
+    def test_python_zarr_reads_every_level(self):
+        for voxel_type, high in (("uint8", 255), ("int16", 30000), ("uint16", 65535), ("float", 1000)):
+            with self.subTest(voxel_type=voxel_type):
+                header = Volume.noise((67, 33, 130), seed=2, high=high, voxel_type=voxel_type,
+                                      spacing=(0.5, 0.75, 2)).write(self.folder)
+                self.check("import", header, self.project(), "--overwrite", "--unit", "um", "--quiet")
+                found = self.read_by_zarr(self.folder / "volume.raw")
+                self.assertEqual([axis["name"] for axis in found["axes"]], ["z", "y", "x"])
+                self.assertEqual({axis["unit"] for axis in found["axes"]}, {"micrometer"})
+                self.assertEqual(found["chunks"], [64, 64, 64])
+                for level, (scale, translation) in enumerate(found["transformations"]):
+                    self.assertEqual(scale, [2 ** level * side for side in (2, 0.75, 0.5)])
+                    self.assertEqual(translation, [0.5 * (2 ** level - 1) * side for side in (2, 0.75, 0.5)])
+
+    def test_python_zarr_and_we_read_the_same(self):
+        header = Volume.noise((50, 40, 70), seed=3, high=60000, voxel_type="uint16").write(self.folder)
+        self.check("import", header, self.project(), "--quiet")
+        levels = len(self.read_by_zarr(self.folder / "volume.raw")["types"])
+        for level in range(levels):
+            size = [-(-side // 2 ** level) for side in (50, 40, 70)]
+            bare = "x".join(map(str, size)) + ":uint16"
+            told = self.check_json("info", self.folder / f"level-{level}", "--set", f"volume.raw={bare}")
+            # The level's array by itself.
+            ours = self.check_json("info", self.project() / str(level))
+            for key in ("size", "type", "min", "max", "mean", "histogram"):
+                self.assertEqual(ours[key], told[key], (level, key))
+
+    def test_the_chirality_phantom_comes_back(self):
+        for name in ("attached.nrrd", "detached.mhd", "side_car.json"):
+            self.check("import", Path("tests/data/chirality") / name, self.project(), "--overwrite", "--quiet")
+            bare = self.folder / "bare"
+            values = [x + 10 * y + 100 * z - 99 for z in range(3) for y in range(4) for x in range(5)]
+            bare.write_bytes(struct.pack("<60h", *values))
+            self.read_by_zarr(bare)
+            info = self.check_json("info", self.project())
+            self.assertEqual((info["spacing"], info["unit"]), ([0.5, 0.5, 1.25], "mm"))
+
+    def test_empty_bricks_are_not_stored(self):
+        values = [0] * (128 * 64 * 64)
+        values[5] = 200
+        header = Volume((128, 64, 64), values).write(self.folder)
+        report = self.check_json("import", header, self.project())
+        self.assertEqual((report["bricks"], report["bricks_stored"]), (2 + 1 + 1, 3))
+        self.assertFalse((self.project() / "0/0/0/1").exists())
+        self.read_by_zarr(self.folder / "volume.raw")
+
+    def test_preparation_is_done_in_its_order_and_told(self):
+        volume = Volume.noise((20, 18, 16), seed=4)
+        header = volume.write(self.folder)
+        report = self.check_json("import", header, self.project(), "--crop", "2,4,6,12,14,16", "--reverse",
+                                 "--downscale", 2, "--spacing", "1,2,3", "--unit", "mm")
+        self.assertEqual((report["size"], report["spacing"], report["unit"]), ([5, 5, 5], [2, 4, 6], "mm"))
+        expected = []
+        for z, y, x in [(z, y, x) for z in range(6, 16, 2) for y in range(4, 14, 2) for x in range(2, 12, 2)]:
+            block = [255 - volume.values[volume.index((x + i, y + j, z + k))]
+                     for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+            expected.append(round(sum(block) / 8))
+        (self.folder / "expected").write_bytes(bytes(expected))
+        self.read_by_zarr(self.folder / "expected")
+        record = json.loads((self.project() / "shvr/volume.json").read_text())
+        self.assertEqual(record["preparation"],
+                         "cropped to voxels 2,4,6 to 12,14,16, intensities reversed, made 2 times smaller")
+        self.assertEqual(record["source"], str(header))
+
+    def test_a_blur_keeps_what_is_constant_and_can_be_of_one_axis(self):
+        flat = Volume((20, 10, 10), [77] * 2000).write(self.folder, "flat")
+        self.check("import", flat, self.project(), "--blur", "1.5", "--quiet")
+        info = self.check_json("info", self.project())
+        self.assertEqual((info["min"], info["max"]), (77, 77))
+        planes = Volume((10, 10, 10), [x * 20 for _ in range(100) for x in range(10)]).write(self.folder, "planes")
+        self.check("import", planes, self.project(), "--blur", "0,2,3", "--overwrite", "--quiet")
+        self.read_by_zarr(self.folder / "planes.raw")
+
+    def test_bare_voxels_and_spacing_are_described_on_the_command_line(self):
+        (self.folder / "bare.raw").write_bytes(struct.pack(">60H", *range(1000, 1060)))
+        info = self.check_json("import", self.folder / "bare.raw", self.project(), "--raw", "5x4x3:uint16:big",
+                               "--spacing", "1,1,2.5", "--unit", "micron")
+        self.assertEqual((info["spacing"], info["unit"], info["warnings"]), ([1, 1, 2.5], "um", []))
+        info = self.check_json("info", self.project())
+        self.assertEqual((info["min"], info["max"], info["spacing"]), (1000, 1059, [1, 1, 2.5]))
+
+    def test_a_project_can_be_imported_drawn_and_painted(self):
+        header = Volume.noise((40, 40, 40), seed=5).write(self.folder)
+        self.check("import", header, self.project(), "--quiet")
+        self.check("import", self.project(), self.folder / "second", "--crop", "0,0,0,33,33,33", "--quiet")
+        self.assertEqual(self.check_json("info", self.folder / "second")["size"], [33, 33, 33])
+        arguments = ["--size", "24x16", "--quiet", "--set", "transfer_function.points=" + json.dumps(
+            [{"intensity": 100, "opacity": 0}, {"intensity": 200, "opacity": 1}])]
+        self.check("render", header, "-o", self.folder / "a.png", *arguments)
+        self.check("render", self.project(), "-o", self.folder / "b.png", *arguments)
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
+        script = self.write_script("s.jsonl", [{"op": "paint", "brush": "fill", "region": "ball", "group": 3,
+                                                "threshold": 0, "radius": 3, "path": [[20, 20, 20]]}, {"op": "save"}])
+        painted = self.check_json("annotate", self.project(), "--script", script)
+        self.assertGreater(painted["voxels_changed"], 50)
+        self.assertTrue((self.project() / "shvr/paint.mask").exists())
+        # Without its session it is still an OME-Zarr that opens.
+        (self.project() / "shvr/session.json").unlink()
+        self.check("render", self.project(), "-o", self.folder / "c.png", *arguments)
+        self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "c.png").read_bytes())
+
+    def test_a_moved_project_still_opens(self):
+        header = Volume.noise((9, 8, 7), seed=6).write(self.folder)
+        self.check("import", header, self.project(), "--quiet")
+        self.project().rename(self.folder / "elsewhere")
+        header.unlink()
+        self.assertEqual(self.check_json("info", self.folder / "elsewhere")["size"], [9, 8, 7])
+
+    def test_progress_is_told_in_tenths(self):
+        header = Volume.noise((64, 64, 640), seed=7).write(self.folder)
+        lines = self.check("import", header, self.project()).stderr.splitlines()
+        for line in lines:
+            self.assertRegex(line, r"^(\d+ %, [\d.]+ MB/s, .* left|warning: .*|.*: 64 x 64 x 640 voxels in 6 levels, .*)$")
+        self.assertEqual(self.check("import", header, self.project(), "--overwrite", "--quiet").stderr, "")
+
+
+class Refusals(CliTest):
+    def test_wrong_usage(self):
+        header = Volume.noise((9, 8, 7), seed=1).write(self.folder)
+        project = self.folder / "project"
+        for option, values in {"--crop": ["1,2,3", "a,b,c,d,e,f", "1,2,3,4,5,6,7", ""], "--blur": ["-1", "nan", "1,2", "101", "x"],
+                               "--downscale": ["0", "65", "x"], "--spacing": ["1,1", "0,1,1", "1,1,inf", "x"],
+                               "--raw": ["9x8", "9x8x7:uint7"], "--threads": ["-1"]}.items():
+            for value in values:
+                if option == "--crop" and value == "":
+                    continue
+                with self.subTest(option=option, value=value):
+                    self.check_refused("import", header, project, f"{option}={value}", status=2)
+        self.check_refused("import", header, status=2)
+        self.assertFalse(project.exists() or (self.folder / "project.part").exists())
+
+    def test_the_world(self):
+        header = Volume.noise((9, 8, 7), seed=1).write(self.folder)
+        project = self.folder / "project"
+        self.check_refused("import", self.folder / "missing.nhdr", project, says=["missing.nhdr"])
+        self.check_refused("import", header, project, "--crop", "0,0,0,9,8,8", says=["0,0,0 to 9,8,7"])
+        self.check_refused("import", header, self.folder / "no/project", says=["no/project.part", "No such file"])
+        self.check("import", header, project, "--quiet")
+        self.check_refused("import", header, project, says=["is there already", "--overwrite"])
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine/text").write_text("keep")
+        self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is no project"])
+        self.assertEqual((self.folder / "mine/text").read_text(), "keep")
+        with open(self.folder / "volume.raw", "r+b") as voxels:
+            voxels.truncate(100)
+        self.check_refused("import", header, self.folder / "other", says=["100", "504"])
+
+    def test_channels_are_chosen(self):
+        several = Path("tests/data/zarr/image_tczyx")
+        self.check_refused("import", several, self.folder / "project", says=["3 channels", "DAPI"])
+        self.check("import", several, self.folder / "project", "--channel", "GFP", "--frame", 2, "--quiet")
+        self.assertEqual(self.check_json("info", self.folder / "project")["min"], 1500 - 99)
+
+
+class EndingEarly(CliTest):
+    """A part of a project is never a project, and the same command goes on from it."""
+
+    def setUp(self):
+        super().setUp()
+        # Enough slabs of 64 slices for several states on the way.
+        size = (80, 70, 64 * 20)
+        self.header = Volume(size, [], voxel_type="uint16").write(self.folder)
+        (self.folder / "volume.raw").write_bytes(random.Random(8).randbytes(2 * math.prod(size)))
+        self.arguments = [self.header, self.folder / "project", "--blur", "0.6", "--threads", "2"]
+        self.check("import", *self.arguments, "--quiet")
+        self.expected = content_of(self.folder / "project")
+        self.clear()
+
+    def clear(self):
+        for name in ("project", "project.part"):
+            shutil.rmtree(self.folder / name, ignore_errors=True)
+
+    def start(self, **options):
+        return subprocess.Popen([SHVR, "import", *map(str, self.arguments)], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **options)
+
+    def chunks(self):
+        return sum(len(files) for _, _, files in os.walk(self.folder / "project.part"))
+
+    def wait_for_chunks(self, process, chunks):
+        while process.poll() is None and self.chunks() < chunks:
+            time.sleep(0.002)
+
+    def check_finished(self):
+        result = self.check_json("import", *self.arguments)
+        self.assertEqual(content_of(self.folder / "project"), self.expected)
+        self.assertFalse((self.folder / "project.part").exists())
+        return result
+
+    def test_killed_anywhere_it_goes_on_and_gives_the_same_bytes(self):
+        resumed = killed = 0
+        for chunks in (1, 3, 8, 15, 22, 30, 38, 46, 60, 80):
+            with self.subTest(chunks=chunks):
+                process = self.start()
+                self.wait_for_chunks(process, chunks)
+                process.kill()
+                process.communicate()
+                killed += process.returncode == -signal.SIGKILL
+                if not (self.folder / "project").exists():
+                    resumed += self.check_finished()["resumed"]
+                self.clear()
+        self.assertGreater(killed, 3)
+        self.assertGreater(resumed, 2)
+
+    def test_killed_again_and_again_it_gets_there(self):
+        for _ in range(30):
+            process = self.start()
+            self.wait_for_chunks(process, self.chunks() + 10)
+            process.kill()
+            process.communicate()
+            if (self.folder / "project").exists():
+                break
+        if not (self.folder / "project").exists():
+            self.check_finished()
+        self.assertEqual(content_of(self.folder / "project"), self.expected)
+
+    def test_ctrl_c_leaves_what_is_done_and_says_so(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.start()
+            self.wait_for_chunks(process, 20)
+            process.send_signal(number)
+            output, said = process.communicate(timeout=60)
+            if process.returncode == 0:  # it was faster
+                self.clear()
+                continue
+            self.assertEqual((process.returncode, output), (1, ""))
+            said = [line for line in said.splitlines() if line.startswith("shvr: ")]
+            self.assertEqual(said, [f"shvr: {self.folder}/project.part: the import was stopped; what is done is kept, "
+                                    "and the same command goes on from there"])
+            self.assertFalse((self.folder / "project").exists())
+            self.check_finished()
+            self.clear()
+
+    def test_files_that_may_not_grow_are_one_sentence(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (200000, 200000))
+
+        process = self.start(preexec_fn=limit)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(said.splitlines()[-1], r"^shvr: .*/project.part/0/.*: cannot be written: File too large; "
+                                                r"what is done is kept, and the same command goes on from there$")
+        self.check_finished()
+
+    def test_a_full_disk_is_one_sentence(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", disk], capture_output=True)
+        if mount.returncode != 0:
+            self.skipTest("this process may not mount a file system")
+        try:
+            self.arguments[1] = disk / "project"
+            said = self.check_refused("import", *self.arguments, "--quiet",
+                                      says=["disk/project.part/", "cannot be written: No space left on device", "kept"])
+            self.assertEqual(len(said.splitlines()), 1)
+            self.assertEqual([path.name for path in disk.iterdir()], ["project.part"])
+            subprocess.run(["mount", "-o", "remount,size=64m", disk], check=True)
+            self.check("import", *self.arguments, "--quiet")
+            self.assertEqual({name: content for name, content in content_of(disk / "project").items()}, self.expected)
+        finally:
+            subprocess.run(["umount", disk], check=True)
+
+    def test_two_at_once_are_one_and_a_sentence(self):
+        process = self.start()
+        self.wait_for_chunks(process, 2)
+        os.kill(process.pid, signal.SIGSTOP)
+        try:
+            if (self.folder / "project.part").exists():
+                self.check_refused("import", *self.arguments, says=["another process is working on it"])
+        finally:
+            os.kill(process.pid, signal.SIGCONT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(content_of(self.folder / "project"), self.expected)
+
+
+class Usage(CliTest):
+    def test_help_shows_an_example_and_the_order(self):
+        text = self.check("import", "--help").stdout
+        self.assertIn("Example:\n  shvr import ", text)
+        for word in ("--json", "--quiet", "crop, reverse, blur, downscale"):
+            self.assertIn(word, text)
+        self.assertEqual(run("import").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
