@@ -171,7 +171,7 @@ class Import(CliTest):
         self.check("import", header, self.project(), "--quiet")
         self.check("import", self.project(), self.folder / "second", "--crop", "0,0,0,33,33,33", "--quiet")
         self.assertEqual(self.check_json("info", self.folder / "second")["size"], [33, 33, 33])
-        arguments = ["--size", "24x16", "--quiet", "--set", "transfer_function.points=" + json.dumps(
+        arguments = ["--size", "24x16", "--quiet", "--set", "render.detail=0", "--set", "transfer_function.points=" + json.dumps(
             [{"intensity": 100, "opacity": 0}, {"intensity": 200, "opacity": 1}])]
         self.check("render", header, "-o", self.folder / "a.png", *arguments)
         self.check("render", self.project(), "-o", self.folder / "b.png", *arguments)
