@@ -8,6 +8,7 @@
 #include "engine/scene/annotator.h"
 #include "engine/scene/view.h"
 #include "engine/volume/pyramid_source.h"
+#include "shaders/counters.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;
@@ -274,5 +275,39 @@ TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corn
     for (const size_t at : {size_t{0}, pixels.size() / 2, pixels.size() - 1}) {
         CHECK(pixels[at].x == doctest::Approx((1.0 - through) * GREEN.x * 1.0 + through).epsilon(0.02));
         CHECK(pixels[at].w == doctest::Approx(1.0));
+    }
+}
+
+TEST_CASE("work and bricks follow the picture, not the volume")
+{
+    std::vector<uint64_t> samples, wanted;
+    for (const int64_t side : {256, 512, 1024, 2048, 4096}) {
+        int levels = 1;
+        while (side >> levels >= 32) ++levels;
+        const Source source = open_procedural({.kind = "sphere", .size = Size3(side), .levels = levels});
+        Session session = session_of(0.05, true);
+        session.render.detail = 1.0;
+        session.render.size = {128, 128};
+        session.render.paging = Paging::always;
+        // Opacities are per voxel of the finest level: as see-through at every size.
+        const double opacity = 0.2 * 256.0 / double(side);
+        session.transfer_function =
+            TransferFunction({{100.0, RED, 0.0}, {130.0, RED, opacity}, {250.0, WHITE, opacity}});
+        Budgeted device(64, 64);
+        device.renderer.load(source, BYTES, session.render);
+        const Picture picture =
+            device.renderer.render(session, camera_looking("front", source->info()), {.count_work = true});
+        CHECK(picture.complete);
+        for (const gpu::PassReport& pass : picture.passes)
+            if (pass.name == "raycast") samples.push_back(pass.counters[gpu::COUNTER_SAMPLES]);
+        wanted.push_back(device.counts().reached);
+        MESSAGE(side, "^3: ", samples.back(), " samples, ", wanted.back(), " bricks of level ",
+                device.renderer.paged()->tree()->finest_level, " or coarser");
+    }
+    // Sides are powers of two, so every picture is made of bricks of the same share of the volume. What differs is the
+    // coarse voxels' own values at the surface.
+    for (size_t i = 1; i < samples.size(); ++i) {
+        CHECK(double(samples[i]) <= 1.1 * double(samples[0]));
+        CHECK(double(wanted[i]) <= 1.1 * double(wanted[0]));
     }
 }
