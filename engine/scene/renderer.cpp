@@ -184,7 +184,7 @@ bool Renderer::pages(const VolumeSource& source, Paging paging) const
 void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                     const RenderSettings& settings)
 {
-    const IntensityWindow window = window_for(source->info().type, statistics.range().lower, statistics.range().upper);
+    const IntensityWindow window = window_for(source->info().type, statistics);
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;

@@ -227,6 +227,17 @@ private:
     int level_;
 };
 
+int level_to_measure(const VolumeSource& source)
+{
+    int level = 0;
+    const auto voxels = [&] {
+        const Size3 size = size_of_level(source.info().size, level);
+        return static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
+    };
+    while (level + 1 < source.levels() && voxels() > static_cast<double>(MOST_MEASURED)) ++level;
+    return level;
+}
+
 }  // namespace
 
 VolumeStatistics measure_level(const VolumeSource& source, int level)
@@ -262,6 +273,11 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
 VolumeStatistics measure(const VolumeSource& source)
 {
     if (std::optional<VolumeStatistics> known = source.statistics()) return *std::move(known);
+    if (const int level = level_to_measure(source); level > 0) {
+        VolumeStatistics statistics = measure_level(source, level);
+        statistics.measured_level = level;
+        return statistics;
+    }
     static_cast<void>(voxel_count(source.info()));
     switch (source.info().type) {
         case VoxelType::uint8: return measure_integers<uint8_t>(source);
@@ -289,6 +305,12 @@ std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
                                     statistics.bulk->upper, ", where all others are (they reach from ",
                                     statistics.minimum, " to ", statistics.maximum,
                                     "), and are shown as if they were at its ends"));
+    }
+    if (statistics.measured_level > 0) {
+        warnings.push_back(sentence("intensities were measured on level ", statistics.measured_level,
+                                    ", whose voxels are means of ", int64_t{1} << (3 * statistics.measured_level),
+                                    "; single voxels may lie beyond ", statistics.range().lower, " to ",
+                                    statistics.range().upper));
     }
     return warnings;
 }

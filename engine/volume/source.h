@@ -60,15 +60,18 @@ private:
 /// One pass over the whole volume (types of 32 and 64 bits: a second one for the histogram, whose range the first one
 /// finds, and a third one where a few voxels are left out of that range) in slabs of bounded size: at most 32 MiB, at
 /// least one row. A volume without a finite voxel has minimum = maximum = mean = 0. What the source knows itself is
-/// taken from it.
+/// taken from it. Of a volume of more than MOST_MEASURED voxels that has coarser levels, the finest level of no more is
+/// measured instead, or the coarsest (VolumeStatistics::measured_level).
 VolumeStatistics measure(const VolumeSource& source);
+inline constexpr int64_t MOST_MEASURED = int64_t{1} << 27;
 
 /// The same of a level, always by going through its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level);
 /// The statistics of integers of 8 or 16 bits, of which `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
-/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers.
+/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers,
+/// and that they were not all looked at.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

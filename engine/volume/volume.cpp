@@ -163,4 +163,11 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
     return {lower, range > 0.0 ? std::min(LARGEST_CODE / range, LARGEST_END) : LARGEST_CODE};
 }
 
+IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
+{
+    if (statistics.measured_level > 0 && type == VoxelType::uint16) return window_for(type, 0.0, 65535.0);
+    if (statistics.measured_level > 0 && type == VoxelType::int16) return window_for(type, -32768.0, 32767.0);
+    return window_for(type, statistics.range().lower, statistics.range().upper);
+}
+
 }  // namespace shvr

@@ -79,6 +79,7 @@ struct VolumeStatistics {
     /// apart: the extremes without those few. Never so where every integer has a code of its own.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;  ///< those few
+    int measured_level = 0;   ///< that all this is of; means over voxels, where it is not level 0
 
     /// What pictures, thresholds and the histogram span.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
@@ -99,7 +100,9 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// The window over VolumeStatistics::range().
+/// The window over VolumeStatistics::range(). Of 16-bit integers of which only a coarser level was measured: over all
+/// of the type's values, since level 0 may reach farther than its means.
+IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 
 }  // namespace shvr

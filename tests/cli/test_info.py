@@ -3,7 +3,7 @@ import unittest
 
 from harness import CliTest, Volume, run
 
-KEYS = ["format", "size", "type", "spacing", "unit", "frame", "directions", "origin", "min", "max", "mean", "voxels", "levels", "warnings",
+KEYS = ["format", "size", "type", "spacing", "unit", "frame", "directions", "origin", "min", "max", "mean", "measured_level", "voxels", "levels", "warnings",
         "histogram", "window"]
 
 

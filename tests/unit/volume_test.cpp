@@ -270,3 +270,41 @@ TEST_CASE("measuring reads at most 32 MiB at a time, also where one slice is lar
     CHECK(wide.largest <= size_t{32} << 20);
     CHECK(wide.total == size_t{80} << 20);
 }
+
+TEST_CASE("of a volume too large to go through, a coarser level is measured and said")
+{
+    /// Level 0 is all 7; level 1 all 9: told apart by what is measured.
+    class Levels : public VolumeSource {
+    public:
+        explicit Levels(int64_t side) : VolumeSource(info_of(side)) {}
+        void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+        int levels() const override { return 2; }
+        void read_level(int level, const VoxelBox&, std::span<std::byte> voxels) const override
+        {
+            const auto value = static_cast<uint16_t>(level == 0 ? 7 : 9);
+            for (size_t i = 0; i < voxels.size(); i += 2) std::memcpy(&voxels[i], &value, 2);
+        }
+        static VolumeInfo info_of(int64_t side)
+        {
+            VolumeInfo info;
+            info.size = {side, side, 2};
+            info.type = VoxelType::uint16;
+            return info;
+        }
+    };
+    const VolumeStatistics fits = measure(Levels(int64_t{1} << 8));
+    CHECK(fits.measured_level == 0);
+    CHECK(fits.mean == 7.0);
+    CHECK(window_for(VoxelType::uint16, fits).lower == 7.0);
+
+    static_assert(2 * ((int64_t{1} << 13) + 2) * ((int64_t{1} << 13) + 2) > MOST_MEASURED);
+    const VolumeStatistics large = measure(Levels((int64_t{1} << 13) + 2));
+    CHECK(large.measured_level == 1);
+    CHECK(large.mean == 9.0);
+    REQUIRE(warnings_of(large).size() == 1);
+    CHECK(contains(warnings_of(large)[0], "measured on level 1, whose voxels are means of 8"));
+    // Single voxels may have any value of the type.
+    const IntensityWindow window = window_for(VoxelType::uint16, large);
+    CHECK(window.lower == 0.0);
+    CHECK(window.upper() == 65535.0);
+}

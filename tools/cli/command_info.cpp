@@ -50,7 +50,7 @@ Json to_json(const Described& described, const std::string& input)
 {
     const VolumeInfo& info = described.info;
     const VolumeStatistics& statistics = described.statistics;
-    const IntensityWindow window = window_for(info.type, statistics.range().lower, statistics.range().upper);
+    const IntensityWindow window = window_for(info.type, statistics);
     const int64_t voxels = voxel_count(info);
     Json directions = Json::array();  // of x, of y, of z
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,6 +70,7 @@ Json to_json(const Described& described, const std::string& input)
             {"min", statistics.minimum},
             {"max", statistics.maximum},
             {"mean", statistics.mean},
+            {"measured_level", statistics.measured_level},
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
             {"bytes", voxels * int64_t(bytes_of(info.type))},
