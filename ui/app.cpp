@@ -71,6 +71,8 @@ void App::say(const std::string& status)
 
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
+    opened_s_ = window_.now_s();
+    report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
     OpenedSession opened = open_session(path, settings);
     document_.reset();  // its volume gives way before the next takes memory
     std::string device_said;
@@ -143,6 +145,9 @@ bool App::something_moves() const
 /// When the interface should be drawn next, as far as is known: at once, a little later, or not at all.
 double App::next_reason_to_draw_s() const
 {
+    // Until there is something to see, the device is there for the first picture.
+    const bool waits_for_picture = document_ && !document_->view.shown_camera() && viewport_.pixels().x > 0;
+    if (waits_for_picture && unanswered_s_.empty()) return last_begun_s_ + SHARPEN_S;
     if (something_moves()) return 0.0;
     const bool sharpens_or_tells =
         document_ && (document_->view.revision() != drawn_revision_ || document_->assistance);
@@ -263,7 +268,11 @@ void App::draw_ui()
     was_moving_ = moves;
     last_begun_s_ = begun;
     ++report_.frames;
-    presented_.push_back({window_.frames_presented(), begun, std::exchange(unanswered_s_, {})});
+    presented_.push_back({.frame = window_.frames_presented(),
+                          .begun_s = begun,
+                          .inputs_s = std::exchange(unanswered_s_, {}),
+                          .shows_picture = !layers.empty(),
+                          .shows_sharp_picture = !layers.empty() && document_->view.complete()});
 }
 
 void App::note_presented()
@@ -274,6 +283,9 @@ void App::note_presented()
     std::erase_if(presented_, [&](const Presented& frame) {
         if (frame.frame > done) return false;
         report_.frame_ms.push_back((now - frame.begun_s) * 1e3);
+        const double since_open_ms = (now - opened_s_) * 1e3;
+        if (frame.shows_picture && !report_.first_picture_ms) report_.first_picture_ms = since_open_ms;
+        if (frame.shows_sharp_picture && !report_.sharp_picture_ms) report_.sharp_picture_ms = since_open_ms;
         for (double input : frame.inputs_s) report_.input_ms.push_back((now - input) * 1e3);
         return true;
     });

@@ -36,6 +36,8 @@ struct AppReport {
     std::vector<double> frame_ms;      ///< one interface frame: from its first call to the device being done with it
     std::vector<double> interval_ms;   ///< between two frames while something was moving
     std::vector<double> input_ms;      ///< from a key or button to the frame that shows it being done
+    /// From opening the last volume to the frame that first showed anything of it, and all of it sharp, being done.
+    std::optional<double> first_picture_ms, sharp_picture_ms;
     std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it
     uint64_t view_submissions = 0;
     bool view_complete = false;
@@ -129,6 +131,7 @@ private:
     double next_frame_s_ = 0.0;
     double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
     double last_keys_s_ = 0.0;
+    double opened_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     glm::dvec3 drawn_probe_voxel_{0.0};
     std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
@@ -136,6 +139,7 @@ private:
         uint64_t frame = 0;
         double begun_s = 0.0;
         std::vector<double> inputs_s;
+        bool shows_picture = false, shows_sharp_picture = false;
     };
     std::vector<Presented> presented_;
     double last_begun_s_ = 0.0;

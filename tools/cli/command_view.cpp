@@ -35,6 +35,11 @@ Json summary(const TimeHistogram& histogram)
             {"max_us", double(histogram.worst_ns) * 1e-3}};
 }
 
+Json json_of(const std::optional<double>& value)
+{
+    return value ? Json(*value) : Json(nullptr);
+}
+
 Json json_of(const ui::AppReport& report)
 {
     Json groups = Json::object();
@@ -46,6 +51,8 @@ Json json_of(const ui::AppReport& report)
             {"ui_frame_ms", summary(report.frame_ms)},
             {"ui_interval_ms", summary(report.interval_ms)},
             {"input_to_screen_ms", summary(report.input_ms)},
+            {"first_picture_ms", json_of(report.first_picture_ms)},
+            {"sharp_picture_ms", json_of(report.sharp_picture_ms)},
             {"relevance_ms", summary(report.relevance_ms)},
             {"servo",
              {{"ticks", report.servo.ticks},
