@@ -32,10 +32,10 @@ struct AppOptions {
 /// Measured over a run, for people who profile and for tests.
 struct AppReport {
     std::string gpu_name;
-    uint64_t frames = 0;               ///< of the user interface
-    std::vector<double> frame_ms;      ///< one interface frame: from its first call to the device being done with it
-    std::vector<double> interval_ms;   ///< between two frames while something was moving
-    std::vector<double> input_ms;      ///< from a key or button to the frame that shows it being done
+    uint64_t frames = 0;              ///< of the user interface
+    std::vector<double> frame_ms;     ///< one interface frame: from its first call to the device being done with it
+    std::vector<double> interval_ms;  ///< between two frames while something was moving
+    std::vector<double> input_ms;     ///< from a key or button to the frame that shows it being done
     /// From opening the last volume to the frame that first showed anything of it, and all of it sharp, being done.
     std::optional<double> first_picture_ms, sharp_picture_ms;
     std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it

@@ -123,7 +123,7 @@ TEST_CASE("pictures are the same at every budget, and the budget holds")
         CHECK(expected.complete);
         if (detail == 0.0)
             CHECK(different_bits(unlimited.picture(source, session, Paging::never, camera).image, expected.image) == 0);
-        for (const uint64_t mib : {24, 64}) {
+        for (const uint64_t mib : {24, 64, 256}) {
             Budgeted small(mib, mib);
             const Picture seen = small.picture(source, session, Paging::always, camera);
             CAPTURE(mib);
