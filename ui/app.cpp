@@ -230,6 +230,9 @@ void App::work()
     }
     if (std::exchange(look_is_stale_, false) && viewport_.pixels().x > 0 && viewport_.pixels().y > 0)
         document.view.look(document.session, document.camera, viewport_.pixels());
+    // A running stroke or touch names what it needs itself.
+    if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
+        renderer_->paged()->prefer(document.voxels_around_probe());
     document.view.show_probe(document.probe_look());
     document.view.advance();
     if (renderer_->paged())

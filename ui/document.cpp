@@ -77,6 +77,14 @@ ProbeLook Document::probe_look() const
     return {.center = touch.probe(), .radius = probe_radius(), .color = color};
 }
 
+VoxelBox Document::voxels_around_probe() const
+{
+    const glm::dvec3 size(volume().size), reach = probe_radius() / volume().spacing;
+    const glm::dvec3 lower = glm::clamp(glm::floor(probe_voxel() - reach), glm::dvec3(0.0), size - 1.0);
+    const glm::dvec3 upper = glm::clamp(glm::ceil(probe_voxel() + reach), lower + 1.0, size);
+    return {Size3(lower), Size3(upper)};
+}
+
 Session Document::saved_session() const
 {
     Session saved = session;

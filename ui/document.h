@@ -36,6 +36,8 @@ struct Document {
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
     double probe_radius() const { return brush.radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
+    /// The probe's ball, of at least one voxel of the volume.
+    VoxelBox voxels_around_probe() const;
     /// The session as it would be saved: with the camera, the probe and the thresholds of the moment.
     Session saved_session() const;
     /// Writes the mask, then the session; each file appears whole or not at all.

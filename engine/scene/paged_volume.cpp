@@ -435,23 +435,37 @@ size_t PagedVolume::missing() const
 
 // ---- Work on level 0 ------------------------------------------------------------------------------------------------
 
-std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wait)
+std::vector<BrickKey> PagedVolume::set_region(const RegionBricks& region)
 {
-    RegionBricks region = bricks_around(voxels);
     std::vector<BrickKey> keys;
     for (uint32_t z = 0; z < region.counts.z; ++z)
         for (uint32_t y = 0; y < region.counts.y; ++y)
             for (uint32_t x = 0; x < region.counts.x; ++x)
                 keys.push_back({0, glm::ivec3(region.begin + glm::uvec3(x, y, z))});
-    if (keys.size() + coarse_.size() >= slots_.size())
-        fail("the region around the probe needs ", keys.size(), " bricks on the device and there is room for ",
-             slots_.size() - std::min(slots_.size(), coarse_.size() + 1),
-             "; expected a smaller radius or a larger budget");
     std::unordered_set<BrickKey, BrickKeyHash> wanted(keys.begin(), keys.end());
     if (region_ != wanted) {
         region_ = std::move(wanted);
         wants_are_stale_ = evictable_is_stale_ = true;
     }
+    return keys;
+}
+
+void PagedVolume::prefer(const VoxelBox& voxels)
+{
+    const RegionBricks region = bricks_around(voxels);
+    const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
+    if (4 * bricks <= slots_.size()) static_cast<void>(set_region(region));
+}
+
+std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wait)
+{
+    RegionBricks region = bricks_around(voxels);
+    const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
+    if (bricks + coarse_.size() >= slots_.size())
+        fail("the region around the probe needs ", bricks, " bricks on the device and there is room for ",
+             slots_.size() - std::min(slots_.size(), coarse_.size() + 1),
+             "; expected a smaller radius or a larger budget");
+    const std::vector<BrickKey> keys = set_region(region);
     bool all_there = true;
     for (const BrickKey& key : keys) {
         if (!resident_.contains(key) && wait) {

@@ -70,6 +70,9 @@ public:
 
     VolumeBinding atlas(FrameGraph& graph) const override;
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+    /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that takes
+    /// more than a quarter of the room. Until the next call, or that of region().
+    void prefer(const VoxelBox& voxels);
     /// These bricks of level 0 have been painted, or are no longer.
     void note_painted(const Mask& mask, std::span<const int64_t> bricks);
 
@@ -103,6 +106,7 @@ private:
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
     void flush_uploads();
     void update_wants();
+    std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
     void fill_directory();
     uint32_t packed(uint32_t slot) const;

@@ -184,6 +184,25 @@ TEST_CASE("a view of bricks that come and go comes to rest on the direct picture
     CHECK(seen.counts().store.loads == counts.store.loads);
 }
 
+TEST_CASE("what lies around the probe is loaded before what is seen, where it takes little room")
+{
+    const Source source = tubes({200, 180, 220});
+    const Session session = session_of(0.1, true);
+    Budgeted device;
+    device.load(source, session, Paging::always);
+    PagedVolume& volume = *device.renderer.paged();
+    const VoxelBox around{{90, 90, 90}, {100, 100, 100}};
+    volume.prefer(around);
+    CHECK(volume.advance(true).size() >= 8);  // two bricks along each axis, and coarse levels
+    const std::optional<RegionBricks> bricks = volume.region(around, false);
+    REQUIRE(bricks.has_value());
+    CHECK(bricks->slots.size() == 8);
+    // All of level 0 is too much to ask for in advance: what was asked before stays.
+    volume.prefer({Size3(0), source->info().size});
+    static_cast<void>(volume.advance(true));
+    CHECK(volume.counts().resident < 100);
+}
+
 TEST_CASE("what is painted is the same on bricks that come and go, and is seen the same")
 {
     const Source source = tubes({150, 131, 170});
