@@ -1,5 +1,82 @@
-// How far rays may leap within bricks that come and go.
+// One brick per workgroup: which of its cells can show something, and how far the nearest of those is (pages.h).
+// MASKED: a cell is occupied, too, where a voxel of a visible group is.
+// variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "brick_leap_body.glsl"
+#include "pages.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Push { BrickLeapParams params; };
+layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;   // of slots: minimum | maximum << 16
+layout(binding = 1, scalar) readonly buffer Jobs { BrickLeapJob list[]; } jobs;
+layout(binding = 2, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
+layout(binding = 3, r8ui) uniform writeonly uimage3D cell_leap;
+#ifdef MASKED
+layout(binding = 4, r8ui) uniform readonly uimage3D mask;
+layout(binding = 5, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
+#endif
+
+#include "occupancy.glsl"
+
+shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
+
+#ifdef MASKED
+bool paint_shows(const BrickLeapJob job, uvec3 cell)
+{
+    // A coarse cell holds too many voxels to look at: some of its brick are painted, so some of it may be.
+    if (job.level > 0u) return true;
+    const uvec3 base = mask_slot_origin(job.mask_slot, params.mask_slots) + CELL_SIZE * cell;
+    uint seen = 0u;
+    for (uint i = 0u; i < CELL_SIZE * CELL_SIZE * CELL_SIZE; ++i) {
+        const uvec3 voxel = base + uvec3(i % CELL_SIZE, (i / CELL_SIZE) % CELL_SIZE, i / (CELL_SIZE * CELL_SIZE));
+        const uint group = imageLoad(mask, ivec3(voxel)).x;
+        seen |= visible_groups.bits[group >> 5] >> (group & 31u) & 1u;
+    }
+    return seen != 0u;
+}
+#endif
+
+// One axis of the Chebyshev distance; what lies outside the brick does not count.
+uint nearer(uint source, uint at, uint stride, uint position)
+{
+    uint best = distances[source][at];
+    for (uint k = 1u; k < BRICK_CELLS && k < best; ++k) {
+        const uint below = k <= position ? distances[source][at - k * stride] : best;
+        const uint above = position + k < BRICK_CELLS ? distances[source][at + k * stride] : best;
+        best = min(best, max(k, min(below, above)));
+    }
+    return best;
+}
+
+void main()
+{
+    const BrickLeapJob job = jobs.list[gl_WorkGroupID.x];
+    const uvec2 column = gl_LocalInvocationID.xy;
+    const uvec3 origin = BRICK_CELLS * unpack_slot(job.slot);
+    for (uint z = 0u; z < BRICK_CELLS; ++z) {
+        const uvec3 cell = uvec3(column, z);
+        bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(origin + cell)).x);
+#ifdef MASKED
+        const bool shows = job.mask_slot != 0u && paint_shows(job, cell);
+        occupied = occupied || shows;
+#endif
+        distances[0][grid_index(cell, uvec3(BRICK_CELLS))] = occupied ? 0u : BRICK_CELLS;
+    }
+    barrier();
+    for (uint z = 0u; z < BRICK_CELLS; ++z) {
+        const uint at = grid_index(uvec3(column, z), uvec3(BRICK_CELLS));
+        distances[1][at] = nearer(0u, at, 1u, column.x);
+    }
+    barrier();
+    for (uint z = 0u; z < BRICK_CELLS; ++z) {
+        const uint at = grid_index(uvec3(column, z), uvec3(BRICK_CELLS));
+        distances[0][at] = nearer(1u, at, BRICK_CELLS, column.y);
+    }
+    barrier();
+    for (uint z = 0u; z < BRICK_CELLS; ++z) {
+        const uint at = grid_index(uvec3(column, z), uvec3(BRICK_CELLS));
+        const uint distance = nearer(0u, at, BRICK_CELLS * BRICK_CELLS, z);
+        imageStore(cell_leap, ivec3(origin + uvec3(column, z)), uvec4(distance));
+    }
+}

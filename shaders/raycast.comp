@@ -1,5 +1,315 @@
-// Emission-absorption ray-casting through the leap grid: one pixel per thread.
+// Emission-absorption ray-casting of a volume of bricks: one pixel per thread. Its variants differ in what they bind:
+//   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
+//   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
+//   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
+// variants: PAGED FILTERED MASKED
+//
+// Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
+// last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
+// bits with skipping on or off. There is no cap on the number of steps.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "raycast_body.glsl"
+#include "raycast.h"
+#ifdef PAGED
+#include "pages.h"
+#endif
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(constant_id = 0) const uint SHADED = 1u;
+layout(constant_id = 1) const uint COUNT_WORK = 0u;
+// A group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels; rows of bricks lie along x in memory, so a wider
+// group uses more of each cache line on devices whose images are linear.
+layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
+layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
+layout(constant_id = 4) const uint PROBE = 0u;
+// Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
+layout(constant_id = 5) const uint PICK = 0u;
+// Notes which bricks rays reach. A picture that is complete does without.
+layout(constant_id = 6) const uint FEEDBACK = 0u;
+
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+#ifndef PAGED
+layout(binding = 1, r32ui) uniform readonly uimage3D leap;
+#endif
+#ifdef FILTERED
+layout(binding = 2) uniform sampler3D atlas;
+#else
+layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
+#endif
+layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB, opacity of a full step
+layout(binding = 4, rgba32f) uniform writeonly image3D color;
+#ifdef MASKED
+layout(binding = 5, r8ui) uniform readonly uimage3D mask;
+layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;   // per brick: slot + 1, 0 = none
+layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups;
+#endif
+
+#include "counters.glsl"
+#ifdef MASKED
+#ifdef PAGED
+#define MASK_TABLE_HASHED
+#endif
+#include "mask.glsl"
+#endif
+#ifdef FILTERED
+#include "density_filtered.glsl"
+#else
+#include "density_exact.glsl"
+#endif
+#include "shade.glsl"
+
+#ifdef PAGED
+#include "pages.glsl"
+#else
+// Where a position is: in nothing visible (distance > 0), or in a brick.
+struct Place {
+    uint distance;   // in cells
+    uint slot;
+};
+
+Place place_at(const RaycastParams params, vec3 position)
+{
+    const uint entry = imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
+    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK);
+}
+#endif
+
+struct Ray {
+    vec3 origin;      // voxel space, at length 0
+    vec3 direction;   // voxels per reference length
+    vec3 inverse;     // 1 / direction; a large number where the ray stands still
+    vec3 ahead;       // 1 where the direction is positive, else 0
+    vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
+};
+
+struct Work {
+    uint samples, shaded, leaps, bricks;
+    uint last_slot;
+    uint last_entry;
+};
+
+// An image, not a buffer: one load for four components.
+vec4 table_entry(uint entry)
+{
+    return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
+}
+
+// Colour and opacity of a full step for a density; the table is linear between its entries and nothing outside.
+vec4 classify(const RaycastParams params, float density)
+{
+    const float last = float(params.table_entries - 1u);
+    const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
+    const uint entry = uint(min(at, last - 1.0));
+    vec4 look = mix(table_entry(entry), table_entry(entry + 1u), at - float(entry));
+    look.a = density >= params.table_lower && density <= params.table_upper ? look.a : 0.0;
+    return look;
+}
+
+#ifdef MASKED
+// A painted voxel has the look of its group, whatever its density; the lookup is nearest, never interpolated.
+vec4 painted(const RaycastParams params, vec3 position, vec4 look)
+{
+    const uvec3 voxel = uvec3(position);
+    const uint slot = mask_slot_of(voxel / BRICK_SIZE, params.brick_counts);
+    if (slot == 0u) return look;
+    const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
+    if (group == 0u) return look;
+    return vec4(groups.looks[group].color, groups.looks[group].opacity);
+}
+#endif
+
+// Colour (shaded) and opacity of a full step at a position in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const Place place, inout Work work)
+{
+    // Cell and fraction come from the global position, and only the whole number moves into the brick: a bricked volume
+    // gives the same bits as one in a single texture.
+#ifdef PAGED
+    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
+    const uvec3 brick = uvec3(position) >> place.level + 5u;
+#else
+    const vec3 lattice = position - 0.5;
+    const uvec3 brick = uvec3(position) / BRICK_SIZE;
+#endif
+    const vec3 corner = floor(lattice);
+    const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
+    const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
+    vec4 look = classify(params, value_of(density));
+#ifdef MASKED
+    look = painted(params, position, look);
+#endif
+    if (COUNT_WORK != 0u) {
+        ++work.samples;
+        work.bricks += uint(place.slot != work.last_slot);
+        work.last_slot = place.slot;
+    }
+    if (SHADED != 0u) {
+        if (COUNT_WORK != 0u) ++work.shaded;
+        look.rgb = shade(params, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
+    }
+    return look;
+}
+
+// Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is held.
+vec3 position_at(const RaycastParams params, const Ray ray, float s)
+{
+    return min(ray.origin + s * ray.direction, params.position_limit);
+}
+
+// How many whole steps a ray may go from `position` without leaving the empty cube around its cell.
+uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
+{
+    const float reach = float(place.distance);
+#ifdef PAGED
+    const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
+    const vec3 box = vec3(uvec3(position) >> place.box_shift);
+    const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
+    // What is known of a brick ends with it.
+    const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
+                             box_size * (box + 1.0));
+#else
+    const vec3 cell = vec3(uvec3(position) / CELL_SIZE);
+    const vec3 bound = float(CELL_SIZE) * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead));
+#endif
+    const vec3 lengths = (bound - position) * ray.inverse;
+    const float exit = min(lengths.x, min(lengths.y, lengths.z));
+    // The guard keeps a sample that rounding puts on the border from being leapt over.
+    return 1u + uint(max(exit / params.step - 0.01, 0.0));
+}
+
+void note(const Place place, inout Work work)
+{
+#ifdef PAGED
+    if (FEEDBACK != 0u && place.entry != work.last_entry) {
+        note_reached(place);
+        work.last_entry = place.entry;
+    }
+#endif
+}
+
+void accumulate(inout vec4 sum, vec4 look)
+{
+    const float weight = (1.0 - sum.a) * look.a;
+    sum.rgb += weight * look.rgb;
+    sum.a += weight;
+}
+
+// Length along the ray to the probe's ball; far beyond any volume where the ray misses it.
+float length_to_probe(const RaycastParams params, const Ray ray)
+{
+    const vec3 direction = ray.direction * params.spacing;  // of length 1
+    const vec3 from_center = (ray.origin - params.probe_center) * params.spacing;
+    const float middle = -dot(from_center, direction);
+    // From the ray's nearest point, not from the origin: b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
+    const vec3 nearest = from_center + middle * direction;
+    const float half_chord_squared = params.probe_radius * params.probe_radius - dot(nearest, nearest);
+    const float half_chord = sqrt(max(half_chord_squared, 0.0));
+    return half_chord_squared < 0.0 || middle + half_chord < 0.0 ? 1e30 : max(middle - half_chord, 0.0);
+}
+
+vec4 probe_look(const RaycastParams params, const Ray ray, float s)
+{
+    const vec3 at = (ray.origin + s * ray.direction - params.probe_center) * params.spacing;
+    return vec4(lit(params, params.probe_color, at / params.probe_radius, 1.0, ray.half_way), 1.0);
+}
+
+uint bricks_between(vec3 a, vec3 b)
+{
+    const ivec3 d = abs(ivec3(a) / int(BRICK_SIZE) - ivec3(b) / int(BRICK_SIZE));
+    return uint(d.x + d.y + d.z) + 1u;
+}
+
+void main()
+{
+    const RaycastParams params = params_block.data;
+    const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);
+    const uvec2 in_group = uvec2(gl_LocalInvocationIndex % GROUP_WIDTH, gl_LocalInvocationIndex / GROUP_WIDTH);
+    const uvec2 in_part = gl_WorkGroupID.xy * group_size + in_group;
+    const uvec2 pixel = params.pixel_begin + in_part;
+    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
+
+    const vec2 centre = vec2(pixel) + 0.5;
+    const vec3 near = params.near_corner + centre.x * params.near_dx + centre.y * params.near_dy;
+    const vec3 far = params.far_corner + centre.x * params.far_dx + centre.y * params.far_dy;
+    const vec3 physical = (far - near) * params.spacing;
+    const float length_to_far = length(physical);
+    Ray ray;
+    ray.origin = near;
+    ray.direction = (far - near) / length_to_far;
+    ray.half_way = half_way(params.light, -physical / length_to_far);
+    const bvec3 still = equal(ray.direction, vec3(0.0));
+    ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
+    ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
+
+    // Slabs; an axis the ray does not move along is an inside test (0 / 0 has no part in it).
+    const vec3 a = (params.box_lower - near) / ray.direction;
+    const vec3 b = (params.box_upper - near) / ray.direction;
+    const vec3 entry = mix(min(a, b), vec3(0.0), still);
+    const vec3 exit = mix(max(a, b), vec3(length_to_far), still);
+    const bool misses = any(bvec3(still.x && (near.x < params.box_lower.x || near.x > params.box_upper.x),
+                                  still.y && (near.y < params.box_lower.y || near.y > params.box_upper.y),
+                                  still.z && (near.z < params.box_lower.z || near.z > params.box_upper.z)));
+    const float begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
+    float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
+    const float probe = PROBE != 0u ? length_to_probe(params, ray) : 1e30;
+    if (PROBE != 0u) end = min(end, max(probe, begin));
+
+    const float extent = max(end - begin, 0.0);
+    const uint steps = uint(extent / params.step);
+    vec4 sum = vec4(0.0);
+    Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
+
+    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
+    // loop of its own, and lanes meet again at the costly sample.
+    uint i = 0u;
+    while (i < steps && sum.a < params.opacity_limit) {
+        vec3 position;
+        Place place;
+        do {
+            position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
+            place = place_at(params, position);
+            note(place, work);
+            if (place.distance > 0u) {
+                i += steps_to_leave(params, ray, position, place);
+                if (COUNT_WORK != 0u) ++work.leaps;
+            }
+        } while (place.distance > 0u && i < steps);
+        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
+        if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
+        ++i;
+    }
+
+    // The rest of the ray is a step of its own, shorter and so more transparent.
+    const float rest = extent - float(steps) * params.step;
+    if (rest > 0.0 && sum.a < params.opacity_limit) {
+        const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
+        const Place place = place_at(params, position);
+        note(place, work);
+        if (place.distance == 0u) {
+            vec4 look = sample_look(params, ray, position, place, work);
+            look.a = opacity_of_part(look.a, rest / params.step);
+            accumulate(sum, look);
+        }
+    }
+
+    if (PROBE != 0u && probe < length_to_far && sum.a < params.opacity_limit) accumulate(sum, probe_look(params, ray, probe));
+
+    if (PICK != 0u) {
+        const vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
+        imageStore(color, ivec3(params.target + in_part, 0), sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
+        return;
+    }
+    const float through = (1.0 - sum.a) * params.background.a;
+    imageStore(color, ivec3(params.target + in_part, 0), vec4(sum.rgb + through * params.background.rgb, sum.a + through));
+
+    if (COUNT_WORK != 0u && extent > 0.0) {
+        const uint crossed = bricks_between(position_at(params, ray, begin), position_at(params, ray, end));
+        count(COUNTER_RAYS, 1u);
+        count(COUNTER_SAMPLES, work.samples);
+        count(COUNTER_SHADED, work.shaded);
+        count(COUNTER_LEAPS, work.leaps);
+        count(COUNTER_BRICKS_VISITED, work.bricks);
+        count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
+        count(COUNTER_TERMINATED, uint(sum.a >= params.opacity_limit));
+    }
+}

@@ -1,6 +1,0 @@
-// How far rays may leap within bricks that come and go, where voxels are painted.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
-#define MASKED
-#include "brick_leap_body.glsl"

@@ -1,7 +1,0 @@
-// The ray caster with the device's own trilinear filter and a segmentation mask.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
-#define FILTERED
-#define MASKED
-#include "raycast_body.glsl"

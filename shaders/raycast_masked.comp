@@ -1,6 +1,0 @@
-// The ray caster with a segmentation mask.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
-#define MASKED
-#include "raycast_body.glsl"

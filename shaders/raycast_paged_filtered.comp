@@ -1,7 +1,0 @@
-// The ray caster of bricks that come and go, sampled by the device's filter.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
-#define PAGED
-#define FILTERED
-#include "raycast_body.glsl"
