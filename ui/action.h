@@ -50,7 +50,7 @@ struct SetTransferFunction {
 };
 struct SetGroup {
     uint8_t group = 1;
-    ColorGroup look;
+    GroupSettings settings;
 };
 struct SetShaded {
     bool shaded = true;

@@ -112,7 +112,7 @@ void App::apply(const SetTransferFunction& action)
 
 void App::apply(const SetGroup& action)
 {
-    document_->session.groups[action.group] = action.look;
+    document_->session.groups[action.group] = action.settings;
     document_->is_saved = false;
     look_again();
 }
@@ -172,7 +172,7 @@ void App::apply(const ChooseGroup& action)
     document_->brush.group = action.group;
     say(action.group == 0
             ? std::string("Eraser: painting takes voxels out of their group")
-            : sentence("Group ", int(action.group), ": ", group_of(document_->session, action.group).name));
+            : sentence("Group ", int(action.group), ": ", group_of(document_->session.groups, action.group).name));
 }
 
 void App::apply(const SetHapticThreshold& action)

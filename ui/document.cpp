@@ -73,7 +73,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 ProbeLook Document::probe_look() const
 {
     const glm::dvec3 eraser(0.5);
-    const glm::dvec3 color = brush.group == 0 ? eraser : group_of(session, brush.group).color;
+    const glm::dvec3 color = brush.group == 0 ? eraser : group_of(session.groups, brush.group).color;
     return {.center = touch.probe(), .radius = probe_radius(), .color = color};
 }
 

@@ -172,7 +172,7 @@ void paint_menu(const Model& model, Actions& actions)
     key_item("Next brush", model, actions);
     ImGui::Separator();
     for (int group = 1; group <= 9; ++group) {
-        const std::string name = group_of(model.session, uint8_t(group)).name;
+        const std::string name = group_of(model.session.groups, uint8_t(group)).name;
         const std::string label = name + "##" + std::to_string(group);
         if (ImGui::MenuItem(label.c_str(), std::to_string(group).c_str(), int{model.brush.group} == group))
             actions.push_back(ChooseGroup{uint8_t(group)});

@@ -49,7 +49,7 @@ std::array<uint32_t, 8> visible_groups(const Session& session)
 {
     std::array<uint32_t, 8> bits{};
     for (uint32_t group = 1; group < 256; ++group) {
-        const ColorGroup look = group_of(session, uint8_t(group));
+        const ColorGroup look = group_of(session.groups, uint8_t(group));
         if (look.visible && look.opacity > 0.0) bits[group / 32] |= 1u << group % 32;
     }
     return bits;
@@ -59,7 +59,7 @@ std::vector<gpu::GroupLook> group_looks(const Session& session, double step_voxe
 {
     std::vector<gpu::GroupLook> looks(256);
     for (uint32_t group = 1; group < 256; ++group) {
-        const ColorGroup look = group_of(session, uint8_t(group));
+        const ColorGroup look = group_of(session.groups, uint8_t(group));
         const double opacity = look.visible ? opacity_of_step(look.opacity, step_voxels) : 0.0;
         looks[group] = {glm::vec3(look.color), float(opacity)};
     }

@@ -15,8 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t LARGEST_SESSION_FILE = int64_t{16} << 20;
-constexpr const char* GROUP_COLORS[] = {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
-                                        "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"};
 
 bool is_session_file(const fs::path& path)
 {
@@ -43,19 +41,6 @@ nlohmann::json document_for_volume(const fs::path& path)
 }
 
 }  // namespace
-
-ColorGroup default_group(uint8_t group)
-{
-    if (group == 0) return {.name = "unpainted", .opacity = 0.0};
-    const char* color = GROUP_COLORS[(group - 1u) % std::size(GROUP_COLORS)];
-    return {.name = sentence("group ", int{group}), .color = glm::dvec3(color_of(color).value())};
-}
-
-ColorGroup group_of(const Session& session, uint8_t group)
-{
-    const auto found = session.groups.find(group);
-    return found == session.groups.end() ? default_group(group) : found->second;
-}
 
 std::unique_ptr<VolumeSource> open_source(const Session& session)
 {

@@ -9,20 +9,12 @@
 
 #include "engine/annotation/script.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/groups.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/open_volume.h"
 #include "engine/volume/source_procedural.h"
 
 namespace shvr {
-
-/// Colour groups override the transfer function where a voxel is painted.
-struct ColorGroup {
-    std::string name;
-    glm::dvec3 color{1.0};  ///< linear light
-    double opacity = 1.0;   ///< per reference length
-    bool visible = true;    ///< a hidden group's voxels are not drawn at all
-    bool operator==(const ColorGroup&) const = default;
-};
 
 struct Light {
     bool shaded = true;
@@ -82,17 +74,13 @@ struct Session {
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
     TransferFunction transfer_function;
-    std::map<uint8_t, ColorGroup> groups;  ///< 1 ... 255; a group without an entry has `default_group`
+    Groups groups;
     Light light;
     RenderSettings render;
     CutBox cut;
     ProbeSettings probe;
     std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
 };
-
-/// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
-ColorGroup default_group(uint8_t group);
-ColorGroup group_of(const Session& session, uint8_t group);
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
 /// it: its path, and a transfer function from its statistics, which the caller is told of in `warnings`).

@@ -120,21 +120,23 @@ uint8_t group_number(const JsonNode& groups, const std::string& name)
     return group;
 }
 
-std::map<uint8_t, ColorGroup> read_groups(const JsonNode& node)
+Groups read_groups(const JsonNode& node)
 {
-    std::map<uint8_t, ColorGroup> groups;
+    Groups groups;
     if (!node.exists()) return groups;
     for (const std::string& name : node.names()) {
         const uint8_t number = group_number(node, name);
         const JsonNode entry = node[name];
-        entry.expect_object({"name", "color", "opacity", "visible"});
-        ColorGroup group = default_group(number);
-        group.name = entry["name"].text(group.name);
-        group.color = entry["color"].color(group.color);
-        group.opacity = entry["opacity"].number(group.opacity, SHARE);
-        group.visible = entry["visible"].flag(group.visible);
-        groups[number] = group;
+        entry.expect_object({"name", "parent", "color", "opacity", "visible"});
+        GroupSettings& group = groups[number];
+        group.name = entry["name"].text("");
+        group.parent = uint8_t(entry["parent"].whole(0, 0, 255));
+        if (entry["color"].exists()) group.color = entry["color"].color(glm::dvec3(0.0));
+        if (entry["opacity"].exists()) group.opacity = entry["opacity"].number(0.0, SHARE);
+        group.visible = entry["visible"].flag(true);
     }
+    if (const std::optional<uint8_t> group = group_in_cycle(groups))
+        node[std::to_string(*group)]["parent"].refuse("a group that is not the group itself or below it");
     return groups;
 }
 

@@ -102,10 +102,12 @@ json write_groups(const Session& session)
 {
     json groups = json::object();
     for (const auto& [number, group] : session.groups) {
-        groups[std::to_string(number)] = {{"name", group.name},
-                                          {"color", color_text(group.color)},
-                                          {"opacity", group.opacity},
-                                          {"visible", group.visible}};
+        json& entry = groups[std::to_string(number)];
+        entry["visible"] = group.visible;
+        if (!group.name.empty()) entry["name"] = group.name;
+        if (group.parent != 0) entry["parent"] = group.parent;
+        if (group.color) entry["color"] = color_text(*group.color);
+        if (group.opacity) entry["opacity"] = *group.opacity;
     }
     return groups;
 }

@@ -133,7 +133,7 @@ reference::Scene scene_of(const Session& session, const VolumeSource& source, co
     if (!session.mask_path.empty() && std::filesystem::exists(session.mask_path)) {
         scene.labels = labels(session.mask_path, info.size);
         for (size_t i = 1; i < scene.groups.size(); ++i) {
-            const ColorGroup group = group_of(session, uint8_t(i));
+            const ColorGroup group = group_of(session.groups, uint8_t(i));
             scene.groups[i] = {group.color, group.opacity, group.visible};
         }
     }

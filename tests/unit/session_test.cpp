@@ -69,7 +69,7 @@ const std::string EVERYTHING = R"({
   },
   "transfer_function": {"points": [{"intensity": 900.25, "color": "#ffffff", "opacity": 1},
                                    {"intensity": -200, "color": "#d03020", "opacity": 0.125}]},
-  "groups": {"1": {"name": "aorta", "color": "#c02020", "opacity": 0.9, "visible": false}, "255": {"opacity": 0.5}},
+  "groups": {"1": {"name": "aorta", "color": "#c02020", "opacity": 0.9, "visible": false}, "255": {"parent": 1, "opacity": 0.5}},
   "light": {"shaded": false, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "shininess": 4, "direction": [1, 2, 3],
             "gradient_fade": 0.5},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
@@ -122,10 +122,8 @@ TEST_CASE("every key of a session is read")
     REQUIRE(session.transfer_function.points().size() == 2);
     CHECK(session.transfer_function.points()[0] == ControlPoint{-200, color("#d03020"), 0.125});
     CHECK(session.transfer_function.points()[1] == ControlPoint{900.25, glm::dvec3(1), 1});
-    CHECK(session.groups.at(1) == ColorGroup{"aorta", color("#c02020"), 0.9, false});
-    ColorGroup last = default_group(255);
-    last.opacity = 0.5;
-    CHECK(session.groups.at(255) == last);
+    CHECK(session.groups.at(1) == GroupSettings{"aorta", 0, color("#c02020"), 0.9, false});
+    CHECK(session.groups.at(255) == GroupSettings{.name = "", .parent = 1, .color = {}, .opacity = 0.5});
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render ==
@@ -318,6 +316,9 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
              Case{R"("groups": {"1": {"opacity": 2}})", "groups.1.opacity is 2; expected a number from 0 to 1"},
              Case{R"("groups": {"1": {"color": "#ffffff80"}})", "groups.1.color is \"#ffffff80\"; expected a colour"},
              Case{R"("groups": {"1": {"name": 7}})", "groups.1.name is 7; expected a text that is not empty"},
+             Case{R"("groups": {"3": {"parent": 3}})",
+                  "groups.3.parent is 3; expected a group that is not the group itself"},
+             Case{R"("groups": {"3": {"parent": 4}, "4": {"parent": 5}, "5": {"parent": 3}})", "groups.3.parent is 4;"},
              Case{R"("groups": [])", "groups is []; expected an object"},
              Case{R"("cut": {"lower": [5, 0, 0], "upper": [4, 9, 9]})", "cut is {"},
              Case{R"("probe": {"connectivity": 18})", "probe.connectivity is 18; expected 6 or 26"},
@@ -477,8 +478,35 @@ TEST_CASE("groups without an entry have ten colours in turn")
     CHECK(default_group(12).name == "group 12");
     CHECK(default_group(0).opacity == 0.0);
     const Session session = parse(EVERYTHING);
-    CHECK(group_of(session, 1).name == "aorta");
-    CHECK(group_of(session, 2) == default_group(2));
+    CHECK(group_of(session.groups, 1).name == "aorta");
+    CHECK(group_of(session.groups, 2) == default_group(2));
+}
+
+TEST_CASE("what is not set for a group comes from its parent, and a hidden parent hides all below it")
+{
+    const glm::dvec3 red(1.0, 0.0, 0.0), blue(0.0, 0.0, 1.0);
+    Groups groups;
+    groups[1] = {.name = "stem", .color = red, .opacity = 0.5};
+    groups[2] = {.name = "leaf", .parent = 1, .color = blue};
+    groups[3] = {.parent = 2, .opacity = 0.25};
+    groups[4] = {.parent = 9};
+    CHECK(group_of(groups, 2) == ColorGroup{"leaf", blue, 0.5, true});
+    CHECK(group_of(groups, 3) == ColorGroup{"group 3", blue, 0.25, true});
+    // A parent that has no entry itself looks as groups do.
+    CHECK(group_of(groups, 4) == ColorGroup{"group 4", default_group(9).color, 1.0, true});
+    groups[1].visible = false;
+    for (const uint8_t group : {1, 2, 3}) CHECK_FALSE(group_of(groups, group).visible);
+    CHECK(group_of(groups, 4).visible);
+    groups[1] = {.visible = true};
+    CHECK(group_of(groups, 3) == ColorGroup{"group 3", blue, 0.25, true});
+    groups.erase(2);
+    CHECK(group_of(groups, 3) == ColorGroup{"group 3", default_group(2).color, 0.25, true});
+    CHECK(is_within(groups, 3, 2));
+    CHECK(is_within(groups, 3, 3));
+    CHECK_FALSE(is_within(groups, 2, 3));
+    CHECK_FALSE(group_in_cycle(groups));
+    groups[2].parent = 3;
+    CHECK(group_in_cycle(groups) == uint8_t{2});
 }
 
 TEST_CASE("the automatic transfer function shows the brighter class and hides the background")

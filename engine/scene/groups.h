@@ -1,0 +1,45 @@
+#pragma once
+// Colour groups override the transfer function where a voxel is painted. They form a tree: what is not set for a group comes
+// from its parent, and hiding a group hides all below it. Changing a group touches no voxel.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <glm/vec3.hpp>
+
+namespace shvr {
+
+/// What a person has set for a group.
+struct GroupSettings {
+    std::string name;                 ///< empty: "group N"
+    uint8_t parent = 0;               ///< 0: none
+    std::optional<glm::dvec3> color;  ///< linear light; the parent's, or one of ten in turn
+    std::optional<double> opacity;    ///< per reference length; the parent's, or 1
+    bool visible = true;              ///< false: neither its voxels nor those of groups below it are drawn
+    bool operator==(const GroupSettings&) const = default;
+};
+using Groups = std::map<uint8_t, GroupSettings>;  ///< 1 ... 255; a group without an entry has nothing set
+
+/// What comes of that.
+struct ColorGroup {
+    std::string name;
+    glm::dvec3 color{1.0};
+    double opacity = 1.0;
+    bool visible = true;
+    bool operator==(const ColorGroup&) const = default;
+};
+
+/// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
+ColorGroup default_group(uint8_t group);
+ColorGroup group_of(const Groups& groups, uint8_t group);
+
+/// 0 where the group has none.
+uint8_t parent_of(const Groups& groups, uint8_t group);
+/// Whether `group` is `above`, or below it in the tree. `above` may not become the child of such a group.
+bool is_within(const Groups& groups, uint8_t group, uint8_t above);
+/// A group whose ancestors come back to it; nothing where there is none. Only trees are asked for anything else.
+std::optional<uint8_t> group_in_cycle(const Groups& groups);
+
+}  // namespace shvr
