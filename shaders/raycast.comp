@@ -27,6 +27,7 @@ layout(constant_id = 4) const uint PROBE = 0u;
 layout(constant_id = 5) const uint PICK = 0u;
 // Notes which bricks rays reach. A picture that is complete does without.
 layout(constant_id = 6) const uint FEEDBACK = 0u;
+layout(constant_id = 7) const uint DISTANCE_BLEND = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
@@ -147,6 +148,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const
         if (COUNT_WORK != 0u) ++work.shaded;
         look.rgb = shade(params, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
+    if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
     return look;
 }
 

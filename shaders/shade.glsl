@@ -41,6 +41,15 @@ vec3 shade(const RaycastParams params, vec3 color, vec3 slope, vec3 half_way)
     return lit(params, color, normal, surface, half_way);
 }
 
+// Distance colour blending (Rheingans and Ebert 2001, Volume illustration): the farther, the more of another colour.
+vec3 blended(const RaycastParams params, vec3 color, vec3 position)
+{
+    const float depth = clamp(dot(params.depth_plane.xyz, position) + params.depth_plane.w, 0.0, 1.0);
+    // pow() leaves 0^0 undefined; it is 1.
+    const float grown = params.blend_rate == 0.0 ? 1.0 : depth <= 0.0 ? 0.0 : exp2(params.blend_rate * log2(depth));
+    return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
+}
+
 // 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series has none
 // and converges fast for small `a`.
 float opacity_of_part(float a, float part)

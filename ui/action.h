@@ -52,8 +52,11 @@ struct SetGroup {
     uint8_t group = 1;
     GroupSettings settings;
 };
-struct SetShaded {
-    bool shaded = true;
+struct SetBlend {
+    DistanceBlend blend;
+};
+struct SetLight {
+    Light light;
 };
 
 // ---- The probe
@@ -104,8 +107,8 @@ struct Quit {};
 
 using Action =
     std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction, SetGroup,
-                 SetShaded, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold,
-                 Assist, SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+                 SetLight, SetBlend, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint,
+                 SetHapticThreshold, Assist, SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

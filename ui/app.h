@@ -91,7 +91,8 @@ private:
     void apply(const ResetCuts& action);
     void apply(const SetTransferFunction& action);
     void apply(const SetGroup& action);
-    void apply(const SetShaded& action);
+    void apply(const SetLight& action);
+    void apply(const SetBlend& action);
     void apply(const ProbeTo& action);
     void apply(const ProbeOnto& action);
     void apply(const PushProbe& action);

@@ -117,11 +117,20 @@ void App::apply(const SetGroup& action)
     look_again();
 }
 
-void App::apply(const SetShaded& action)
+void App::apply(const SetBlend& action)
 {
-    document_->session.light.shaded = action.shaded;
+    document_->session.blend = action.blend;
+    document_->is_saved = false;
+    say(sentence("Distance blending: size ", action.blend.size, ", rate ", action.blend.rate));
     look_again();
-    say(action.shaded ? "Shading on" : "Shading off");
+}
+
+void App::apply(const SetLight& action)
+{
+    if (action.light.shaded != document_->session.light.shaded) say(action.light.shaded ? "Shading on" : "Shading off");
+    document_->session.light = action.light;
+    document_->is_saved = false;
+    look_again();
 }
 
 // ---- The probe ------------------------------------------------------------------------------------------------------

@@ -17,6 +17,8 @@ constexpr double CLIP_SHARE = 0.01;
 constexpr double PROBE_FACTOR = 1.1;
 
 constexpr double SLOWED = 0.2;
+constexpr double BLEND_STEP = 0.05;
+constexpr double MOST_BLEND = 20.0;
 constexpr double TAPS_PER_SECOND = 5.0;  ///< of a key that is held
 constexpr double LONGEST_FRAME_S = 0.5;  ///< a frame that hung must not throw the view away
 constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and its like
@@ -94,6 +96,29 @@ Action move_clip(const Model&, double amount)
     return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
 }
 
+/// Steps of a twentieth; what is nearly 0 is 0, which costs nothing.
+double stepped(double value, double amount)
+{
+    const double next = std::clamp(value + BLEND_STEP * amount, 0.0, MOST_BLEND);
+    return next < 1e-9 ? 0.0 : next;
+}
+
+template <int DIRECTION>
+Action blend_size(const Model& model, double amount)
+{
+    DistanceBlend blend = model.session.blend;
+    blend.size = stepped(blend.size, DIRECTION * amount);
+    return SetBlend{blend};
+}
+
+template <int DIRECTION>
+Action blend_rate(const Model& model, double amount)
+{
+    DistanceBlend blend = model.session.blend;
+    blend.rate = stepped(blend.rate, DIRECTION * amount);
+    return SetBlend{blend};
+}
+
 // ---- The table
 
 using Act = Action (*)(const Model&, double);
@@ -113,7 +138,8 @@ constexpr KeyBinding hold(int key, int mods, const char* group, const char* name
 
 constexpr int CTRL = GLFW_MOD_CONTROL, ALT = GLFW_MOD_ALT, SHIFT = GLFW_MOD_SHIFT;
 constexpr const char *WORK = "Work", *PAINTING = "Painting", *PROBE = "Probe", *TURN = "Turn the view",
-                     *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes";
+                     *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes",
+                     *BLEND = "Distance blending";
 
 constexpr KeyBinding BINDINGS[] = {
     tap(GLFW_KEY_Z, CTRL, WORK, "Undo", undo),
@@ -172,6 +198,11 @@ constexpr KeyBinding BINDINGS[] = {
     hold(GLFW_KEY_J, CTRL, CUT, "Far y cut outwards", move_cut<1, Plane::upper, 1>),
     hold(GLFW_KEY_K, 0, CUT, "Far z cut inwards", move_cut<2, Plane::upper, -1>),
     hold(GLFW_KEY_K, CTRL, CUT, "Far z cut outwards", move_cut<2, Plane::upper, 1>),
+
+    hold(GLFW_KEY_T, 0, BLEND, "More distance blending", blend_size<1>),
+    hold(GLFW_KEY_T, CTRL, BLEND, "Less distance blending", blend_size<-1>),
+    hold(GLFW_KEY_R, 0, BLEND, "Blending sets in later", blend_rate<1>),
+    hold(GLFW_KEY_R, CTRL, BLEND, "Blending sets in sooner", blend_rate<-1>),
 
     hold(GLFW_KEY_C, 0, CLIP, "Near clip plane away", move_clip<false, 1>),
     hold(GLFW_KEY_C, CTRL, CLIP, "Near clip plane closer", move_clip<false, -1>),

@@ -145,8 +145,9 @@ void view_menu(const Model& model, Actions& actions)
     key_buttons("Turn the view", model, actions);
     key_buttons("Move the view", model, actions);
     ImGui::Separator();
-    const bool shaded = model.session.light.shaded;
-    if (ImGui::MenuItem("Shading", nullptr, shaded)) actions.push_back(SetShaded{!shaded});
+    Light light = model.session.light;
+    if (ImGui::MenuItem("Shading", nullptr, &light.shaded)) actions.push_back(SetLight{light});
+    key_buttons("Distance blending", model, actions);
     cut_menu(model, actions);
     key_buttons("Clip planes", model, actions);
     ImGui::EndMenu();

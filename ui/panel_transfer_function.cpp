@@ -330,8 +330,8 @@ void curve(const Model& model, WidgetState& state, Actions& actions)
 /// The line below the curve.
 void shading_and_help(const Model& model, Actions& actions)
 {
-    bool shaded = model.session.light.shaded;
-    if (ImGui::Checkbox("Shading", &shaded)) actions.push_back(SetShaded{shaded});
+    Light light = model.session.light;
+    if (ImGui::Checkbox("Shading", &light.shaded)) actions.push_back(SetLight{light});
     hint("Light from over your shoulder. Without it, colours are as chosen above.");
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
     ImGui::TextDisabled("How to edit (?)");

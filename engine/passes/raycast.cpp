@@ -43,6 +43,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("PROBE", input.probe);
     pass.constant("PICK", input.pick);
+    pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.
     const glm::uvec2 group(input.group_width, 64 / input.group_width);
     pass.dispatch(glm::uvec3((pixels + group - 1u) / group * 8u, 1),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -112,6 +113,25 @@ Camera camera_of_view(const SideView& view, const VolumeInfo& volume)
 }
 
 }  // namespace
+
+glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
+                       const glm::dvec3& spacing)
+{
+    check_camera(camera);
+    const glm::dvec3 forward = axes_of(camera)->forward;
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::bvec3 far(corner & 1, corner & 2, corner & 4);
+        const double depth = glm::dot(glm::mix(lower, upper, far) * spacing - camera.eye, forward);
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+    }
+    const bool is_perspective = camera.projection == Camera::Projection::perspective;
+    if (is_perspective || camera.near_distance > 0.0) nearest = std::max(nearest, camera.near_distance);
+    const double extent = farthest - nearest;
+    if (!(extent > 0.0)) return glm::dvec4(0.0);
+    return {forward * spacing / extent, -(glm::dot(camera.eye, forward) + nearest) / extent};
+}
 
 void check_camera(const Camera& camera)
 {

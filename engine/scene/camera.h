@@ -50,6 +50,11 @@ struct RayPlanes {
 /// spacing before the eye). Fails as `check_camera` does.
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);
 
+/// The depth of a voxel position along the view, as a share: dot(xyz, voxel) + w is 0 where the box `lower` ... `upper`
+/// (voxels) begins in front of the eye, or of the near clip plane, and 1 where it ends. Fails as `check_camera` does.
+glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
+                       const glm::dvec3& spacing);
+
 /// Fails where the camera is degenerate (eye at target, up parallel to the view, angle outside (0, 180), not finite).
 void check_camera(const Camera& camera);
 

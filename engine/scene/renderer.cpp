@@ -114,6 +114,12 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.specular = float(session.light.specular);
     params.shininess = float(session.light.shininess);
     params.gradient_fade = float(session.light.gradient_fade * codes_range);
+    if (session.blend.size > 0.0) {
+        params.depth_plane = depth_plane(camera, params.box_lower, params.box_upper, info.spacing);
+        params.blend_color = session.blend.color.value_or(glm::dvec3(session.render.background));
+        params.blend_size = float(session.blend.size);
+        params.blend_rate = float(session.blend.rate);
+    }
     if (part.probe) {
         params.probe_center = part.probe->center / info.spacing;
         params.probe_radius = float(part.probe->radius / reference_length(info));

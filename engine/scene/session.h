@@ -29,6 +29,16 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
+/// Distance colour blending (Rheingans and Ebert 2001): the farther, the more of another colour. Its share at depth d,
+/// 0 where what is drawn of the volume's box begins along the view and 1 where it ends, is clamp(size d^rate, 0, 1),
+/// with 0^0 = 1. Size 0: none. What is transparent stays so.
+struct DistanceBlend {
+    double size = 0.0;
+    double rate = 1.0;
+    std::optional<glm::dvec3> color;  ///< linear light; the background's
+    bool operator==(const DistanceBlend&) const = default;
+};
+
 enum class Sampling { automatic, exact, hardware };
 
 /// Whether bricks come and go on the device. Automatic: where there are levels to choose from, or the budget asks for it.
@@ -76,6 +86,7 @@ struct Session {
     TransferFunction transfer_function;
     Groups groups;
     Light light;
+    DistanceBlend blend;
     RenderSettings render;
     CutBox cut;
     ProbeSettings probe;

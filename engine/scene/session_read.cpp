@@ -157,6 +157,17 @@ Light read_light(const JsonNode& node)
     return light;
 }
 
+DistanceBlend read_blend(const JsonNode& node)
+{
+    DistanceBlend blend;
+    if (!node.exists()) return blend;
+    node.expect_object({"size", "rate", "color"});
+    blend.size = node["size"].number(blend.size, range(0.0, 1000.0));
+    blend.rate = node["rate"].number(blend.rate, range(0.0, 1000.0));
+    if (node["color"].exists()) blend.color = node["color"].color(glm::dvec3(0.0));
+    return blend;
+}
+
 glm::uvec2 read_picture_size(const JsonNode& node, const glm::uvec2& fallback)
 {
     if (!node.exists()) return fallback;
@@ -296,7 +307,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
 {
     const JsonNode document(json, origin);
     document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "render", "cut", "probe", "annotation"});
+                            "blend", "render", "cut", "probe", "annotation"});
     document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
     Session session;
     read_volume(document.required("volume", "an object with path or procedural"), folder, session);
@@ -305,6 +316,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.transfer_function = read_transfer_function(document["transfer_function"]);
     session.groups = read_groups(document["groups"]);
     session.light = read_light(document["light"]);
+    session.blend = read_blend(document["blend"]);
     session.render = read_render(document["render"]);
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);

@@ -123,6 +123,13 @@ json write_light(const Light& light)
             {"gradient_fade", light.gradient_fade}};
 }
 
+json write_blend(const DistanceBlend& blend)
+{
+    json node{{"size", blend.size}, {"rate", blend.rate}};
+    if (blend.color) node["color"] = color_text(*blend.color);
+    return node;
+}
+
 const char* name_of(Paging paging)
 {
     switch (paging) {
@@ -205,6 +212,7 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["transfer_function"] = {{"points", write_points(session.transfer_function)}};
     document["groups"] = write_groups(session);
     document["light"] = write_light(session.light);
+    document["blend"] = write_blend(session.blend);
     document["render"] = write_render(session.render);
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
     document["probe"] = write_probe(session.probe);

@@ -40,7 +40,9 @@ Members raycast_params()
             MEMBER(RaycastParams, ambient),       MEMBER(RaycastParams, diffuse),
             MEMBER(RaycastParams, specular),      MEMBER(RaycastParams, shininess),
             MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, probe_center),
-            MEMBER(RaycastParams, probe_radius),  MEMBER(RaycastParams, probe_color)};
+            MEMBER(RaycastParams, probe_radius),  MEMBER(RaycastParams, probe_color),
+            MEMBER(RaycastParams, depth_plane),   MEMBER(RaycastParams, blend_color),
+            MEMBER(RaycastParams, blend_size),    MEMBER(RaycastParams, blend_rate)};
 }
 
 Members occupancy_params()

@@ -41,6 +41,16 @@ glm::dvec4 DiscreteModel::looked_up(double density, double length) const
     return material;
 }
 
+glm::dvec3 DiscreteModel::blended(const glm::dvec3& voxel, const glm::dvec3& color) const
+{
+    if (!scene_.blend) return color;
+    const DistanceBlend& blend = *scene_.blend;
+    const double along = glm::dot(voxel * scene_.spacing, blend.forward);
+    const double depth = std::clamp((along - blend.begin) / (blend.end - blend.begin), 0.0, 1.0);
+    // std::pow(0, 0) is 1.
+    return glm::mix(color, blend.color, std::clamp(blend.size * std::pow(depth, blend.rate), 0.0, 1.0));
+}
+
 glm::dvec4 DiscreteModel::sample(const glm::dvec3& voxel, const glm::dvec3& to_eye, double length) const
 {
     const uint8_t label = label_at(scene_, voxel);
@@ -52,7 +62,7 @@ glm::dvec4 DiscreteModel::sample(const glm::dvec3& voxel, const glm::dvec3& to_e
         material = glm::dvec4(group.color, opacity_of_length(group.opacity, length));
     }
     if (material.a == 0.0) return glm::dvec4(0.0);
-    return glm::dvec4(shaded(scene_, voxel, to_eye, material), material.a);
+    return glm::dvec4(blended(voxel, shaded(scene_, voxel, to_eye, material)), material.a);
 }
 
 glm::dvec4 DiscreteModel::integrate(const Ray& ray) const

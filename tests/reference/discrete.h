@@ -32,6 +32,7 @@ public:
     glm::dvec4 integrate(const Ray& ray) const;
 
 private:
+    glm::dvec3 blended(const glm::dvec3& voxel, const glm::dvec3& color) const;
     glm::dvec4 sample(const glm::dvec3& voxel, const glm::dvec3& to_eye, double length) const;
     glm::dvec4 looked_up(double density, double length) const;
 

@@ -49,6 +49,16 @@ struct Shading {
     glm::dvec3 to_light{0.0, 0.0, 1.0};  ///< physical space, need not be unit
 };
 
+/// color' = mix(color', this color, clamp(size d^rate, 0, 1)) after shading, 0^0 = 1; d = clamp(depth along `forward`,
+/// from `begin` to `end`, 0, 1).
+struct DistanceBlend {
+    glm::dvec3 color{1.0};
+    double size = 0.0;
+    double rate = 1.0;
+    glm::dvec3 forward{0.0};  ///< unit, physical space
+    double begin = 0.0, end = 1.0;
+};
+
 struct Scene {
     glm::ivec3 size{0};             ///< voxels
     std::vector<double> density{};  ///< x fastest; continued by the edge voxels outside
@@ -57,7 +67,8 @@ struct Scene {
     std::vector<uint8_t> labels{};  ///< empty, or one per voxel; 0 = transfer function, else index of a group
     std::array<Group, 256> groups{};
     std::optional<Shading> shading{};
-    glm::dvec3 cut_min{0.0};  ///< voxel space; what lies outside the cut box or the volume is not drawn
+    std::optional<DistanceBlend> blend{};  ///< in integrate_discrete alone
+    glm::dvec3 cut_min{0.0};               ///< voxel space; what lies outside the cut box or the volume is not drawn
     glm::dvec3 cut_max{std::numeric_limits<double>::infinity()};
     glm::dvec3 background{0.0};  ///< linear light
 };

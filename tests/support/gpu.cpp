@@ -282,6 +282,22 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
                                            .fade = session.light.gradient_fade * range,
                                            .to_light = light_of(session.light, camera)};
     }
+    if (session.blend.size > 0.0) {
+        const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
+        const glm::dvec3 lower = glm::max(session.cut.lower, glm::dvec3(0.0)) * volume.spacing;
+        const glm::dvec3 upper = glm::min(session.cut.upper, glm::dvec3(volume.size)) * volume.spacing;
+        const glm::dvec3 middle = 0.5 * (lower + upper);
+        // The box's reach along the view, on either side of its middle.
+        const double reach = 0.5 * glm::dot(glm::abs(forward), upper - lower);
+        const double at_middle = glm::dot(middle, forward), at_eye = glm::dot(camera.eye, forward);
+        scene.blend =
+            reference::DistanceBlend{.color = session.blend.color.value_or(glm::dvec3(session.render.background)),
+                                     .size = session.blend.size,
+                                     .rate = session.blend.rate,
+                                     .forward = forward,
+                                     .begin = std::max(at_middle - reach, at_eye + camera.near_distance),
+                                     .end = at_middle + reach};
+    }
     return scene;
 }
 

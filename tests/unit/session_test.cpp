@@ -72,6 +72,7 @@ const std::string EVERYTHING = R"({
   "groups": {"1": {"name": "aorta", "color": "#c02020", "opacity": 0.9, "visible": false}, "255": {"parent": 1, "opacity": 0.5}},
   "light": {"shaded": false, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "shininess": 4, "direction": [1, 2, 3],
             "gradient_fade": 0.5},
+  "blend": {"size": 0.75, "rate": 2, "color": "#204060"},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
@@ -125,6 +126,7 @@ TEST_CASE("every key of a session is read")
     CHECK(session.groups.at(1) == GroupSettings{"aorta", 0, color("#c02020"), 0.9, false});
     CHECK(session.groups.at(255) == GroupSettings{.name = "", .parent = 1, .color = {}, .opacity = 0.5});
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5});
+    CHECK(session.blend == DistanceBlend{0.75, 2.0, color("#204060")});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render ==
           RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false});
@@ -142,6 +144,7 @@ TEST_CASE("a session that says little has the defaults of the structures")
     CHECK(session.transfer_function.points().empty());
     CHECK(session.groups.empty());
     CHECK(session.light == Light{});
+    CHECK(session.blend == DistanceBlend{});
     CHECK(session.render == RenderSettings{});
     CHECK(session.cut == CutBox{});
     CHECK(session.probe == ProbeSettings{});
@@ -319,6 +322,8 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
              Case{R"("groups": {"3": {"parent": 3}})",
                   "groups.3.parent is 3; expected a group that is not the group itself"},
              Case{R"("groups": {"3": {"parent": 4}, "4": {"parent": 5}, "5": {"parent": 3}})", "groups.3.parent is 4;"},
+             Case{R"("blend": {"rate": -1})", "blend.rate is -1; expected a number from 0 to 1000"},
+             Case{R"("blend": {"size": "a"})", "blend.size is \"a\"; expected a number"},
              Case{R"("groups": [])", "groups is []; expected an object"},
              Case{R"("cut": {"lower": [5, 0, 0], "upper": [4, 9, 9]})", "cut is {"},
              Case{R"("probe": {"connectivity": 18})", "probe.connectivity is 18; expected 6 or 26"},
