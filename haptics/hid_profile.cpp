@@ -317,6 +317,8 @@ HidProfile parse_hid_profile(const std::string& text, const std::string& origin)
         });
     } catch (const Json::parse_error& error) {
         fail(origin, ": is not JSON from byte ", error.byte, " on; expected a device profile");
+    } catch (const Json::out_of_range&) {
+        fail(origin, ": holds a number too large to represent; expected numbers up to 1.8e308");
     }
     return read_profile(Node(document, origin, ""));
 }

@@ -1,5 +1,6 @@
 #include "engine/scene/session_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -16,6 +17,13 @@ constexpr int DEEPEST_NESTING = 16;
 constexpr size_t LONGEST_QUOTE = 60;
 constexpr double LARGEST_WHOLE = 9007199254740992.0;  // 2^53: above it a double no longer tells neighbours apart
 
+/// JSON escapes all control characters but the last one.
+std::string printable(std::string text)
+{
+    std::ranges::replace(text, '\x7f', '?');
+    return text;
+}
+
 /// At most LONGEST_QUOTE bytes, cut between characters of UTF-8.
 std::string shortened(std::string text)
 {
@@ -28,7 +36,7 @@ std::string shortened(std::string text)
 /// A key as a message may show it: control characters escaped.
 std::string shown_key(const std::string& key)
 {
-    const std::string quoted = json(key).dump();
+    const std::string quoted = printable(json(key).dump());
     return quoted.substr(1, quoted.size() - 2);
 }
 
@@ -64,7 +72,7 @@ json json_of(const std::string& text, const std::string& origin)
         std::string reason = error.what();
         if (const size_t bracket = reason.find("] "); bracket != std::string::npos) reason.erase(0, bracket + 2);
         if (reason.size() > 200) reason = reason.substr(0, 200) + "...";
-        fail(origin, ": is not JSON: ", reason);
+        fail(origin, ": is not JSON: ", printable(reason));
     }
 }
 
@@ -85,7 +93,7 @@ std::string JsonNode::subject() const
 void JsonNode::refuse(const std::string& expected) const
 {
     if (!exists()) fail(subject(), " is missing; expected ", expected);
-    fail(subject(), " is ", shortened(value_->dump()), "; expected ", expected);
+    fail(subject(), " is ", shortened(printable(value_->dump())), "; expected ", expected);
 }
 
 void JsonNode::refuse_because(const std::string& reason) const

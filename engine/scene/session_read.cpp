@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/scene/session_json.h"
+#include "engine/volume/header_text.h"
 
 namespace shvr {
 namespace {
@@ -35,8 +36,15 @@ std::filesystem::path read_path(const JsonNode& node, const std::filesystem::pat
 {
     if (!node.exists()) return {};
     const std::string text = node.text("");
-    if (text.find('\0') != std::string::npos) node.refuse("a path");
+    if (has_controls(text)) node.refuse("a path");
     return std::filesystem::absolute(folder / text).lexically_normal();
+}
+
+std::string read_unit(const JsonNode& node, const std::string& fallback)
+{
+    const std::string unit = node.text(fallback);
+    if (has_controls(unit)) node.refuse("the name of a unit");
+    return unit;
 }
 
 ProceduralSpec read_procedural(const JsonNode& node)
@@ -52,7 +60,7 @@ ProceduralSpec read_procedural(const JsonNode& node)
     for (const VoxelType type : VOXEL_TYPES) types[name_of(type)] = type;
     spec.type = node["type"].choice(spec.type, types);
     spec.spacing = read_spacing(node["spacing"], spec.spacing);
-    spec.unit = node["unit"].text(spec.unit);
+    spec.unit = read_unit(node["unit"], spec.unit);
     return spec;
 }
 
@@ -61,7 +69,7 @@ RawLayout read_raw_layout(const JsonNode& node)
     const JsonNode raw = node["raw"];
     RawLayout layout = raw.checked([text = raw.text("")] { return parse_raw_layout(text); });
     layout.spacing = read_spacing(node["spacing"], layout.spacing);
-    layout.unit = node["unit"].text(layout.unit);
+    layout.unit = read_unit(node["unit"], layout.unit);
     return layout;
 }
 

@@ -60,7 +60,7 @@ Pattern parse_pattern(const HeaderFields& fields, const char* field, std::string
 
 fs::path path_of(const HeaderFields& fields, const char* field, const std::string& name)
 {
-    if (name.find('\0') != std::string::npos) fields.refuse(field, "names of files");
+    if (has_controls(name)) fields.refuse(field, "names of files");
     return fields.path().parent_path() / name;
 }
 

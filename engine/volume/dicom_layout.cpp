@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/volume/header_text.h"
 
 namespace shvr {
 namespace {
@@ -19,6 +20,15 @@ constexpr uint32_t PIXEL_DATA = 0x7fe00010;
 constexpr uint32_t ITEM = 0xfffee000;
 constexpr uint32_t END_OF_ITEM = 0xfffee00d;
 constexpr uint32_t END_OF_SEQUENCE = 0xfffee0dd;
+
+/// Types of elements (PS3.5, 6.2): those whose length takes four bytes, and those with two.
+constexpr std::string_view LONG_TYPES = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+constexpr std::string_view SHORT_TYPES = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+
+bool is_one_of(std::string_view type, std::string_view types)
+{
+    return types.find(type) != std::string_view::npos;
+}
 
 struct Encoding {
     bool states_types = true;  ///< "explicit VR"
@@ -114,13 +124,16 @@ private:
             fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at,
                  " states no type; expected two letters, as its transfer syntax says");
         }
-        for (const std::string_view is_long :
-             {"OB", "OD", "OF", "OL", "OV", "OW", "SQ", "SV", "UC", "UN", "UR", "UT", "UV"}) {
-            if (type != is_long) continue;
+        if (is_one_of(type, LONG_TYPES)) {
             need(12);
             element.length = number(&bytes[8], 4, encoding.big_endian);
             element.value_at = at + 12;
             return element;
+        }
+        // Of what is unknown, GDCM guesses other lengths than we do.
+        if (!is_one_of(type, SHORT_TYPES)) {
+            fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at, " is of type ",
+                 in_quotes(type), "; expected a type that DICOM knows");
         }
         element.length = number(&bytes[6], 2, encoding.big_endian);
         element.value_at = at + 8;

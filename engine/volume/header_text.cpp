@@ -16,6 +16,11 @@
 namespace shvr {
 namespace {
 
+bool is_control(char character)
+{
+    return static_cast<unsigned char>(character) < 0x20 || character == 0x7f;
+}
+
 constexpr std::string_view SPACES = " \t\r\n\v\f";
 constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
 
@@ -91,12 +96,17 @@ std::vector<std::string_view> words_of(std::string_view text)
     }
 }
 
+bool has_controls(std::string_view text)
+{
+    return std::any_of(text.begin(), text.end(), is_control);
+}
+
 std::string in_quotes(std::string_view text)
 {
     constexpr size_t LONGEST = 60;
     std::string shown = "\"";
     for (const char character : text.substr(0, LONGEST)) {
-        shown += static_cast<unsigned char>(character) < 0x20 || character == 0x7f ? '?' : character;
+        shown += is_control(character) ? '?' : character;
     }
     return shown + (text.size() > LONGEST ? "...\"" : "\"");
 }
@@ -130,7 +140,10 @@ std::string plain_unit(std::string_view unit)
     for (const char* plain : {"um", "mm", "nm", "cm"}) {
         if (lower == plain) return plain;
     }
-    return std::string(bare);
+    constexpr size_t LONGEST_UNIT = 60;
+    std::string shown(bare.substr(0, LONGEST_UNIT));
+    std::replace_if(shown.begin(), shown.end(), is_control, '?');
+    return shown;
 }
 
 void HeaderFields::add(std::string_view name, std::string_view value)
@@ -234,7 +247,7 @@ glm::dvec3 HeaderFields::spacing(const char* name) const
 std::filesystem::path HeaderFields::data_file(const char* name) const
 {
     const std::string& stated = required(name, "the name of the file that holds the voxels");
-    if (stated.empty() || stated.find('\0') != std::string::npos) refuse(name, "the name of a file");
+    if (stated.empty() || has_controls(stated)) refuse(name, "the name of a file");
     return path_.parent_path() / stated;
 }
 

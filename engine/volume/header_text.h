@@ -23,6 +23,8 @@ std::string read_head(const std::filesystem::path& path, size_t max_bytes = LONG
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text);
+/// Whether it would change what a terminal does. No name of a file that a header states has such characters.
+bool has_controls(std::string_view text);
 /// For messages: in quotes, at most 60 characters, no control characters.
 std::string in_quotes(std::string_view text);
 /// The text up to the next line end, which is taken off `rest` as well; "\r\n" counts as one.
@@ -31,7 +33,7 @@ std::string_view take_line(std::string_view& rest);
 std::optional<int64_t> whole_of(std::string_view word);
 std::optional<double> number_of(std::string_view word);  ///< may be NaN or infinite
 
-/// "micron", "µm", "micrometer" -> "um"; what is unknown stays as it is.
+/// "micron", "µm", "micrometer" -> "um"; what is unknown stays as it is, but for control characters, and is cut at 60.
 std::string plain_unit(std::string_view unit);
 
 /// The fields of one header. Names are matched without regard to case.

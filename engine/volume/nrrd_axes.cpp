@@ -171,7 +171,8 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
     }
     if (unknown == 3) return {};
     for (int axis = 0; axis < 3; ++axis) {
-        if (!std::isfinite(steps[axis][axis]) || steps[axis][axis] == 0.0) {
+        // What is below 1e-162 has a square of 0.
+        if (!std::isfinite(glm::length(steps[axis])) || glm::length(steps[axis]) == 0.0) {
             fields.refuse(NAME, sentence(axes.dimension, " finite numbers other than 0"));
         }
     }

@@ -93,7 +93,7 @@ std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, con
     }
     if (is_folder) {
         fail(path.string(), ": is a folder without shvr/session.json and without a volume; expected a project, or ",
-             "a volume as ", tried);
+             "a volume as ", tried, ", or slices of bare voxels with --raw WxHxD:TYPE");
     }
     fail(path.string(), ": is in no format known here; expected ", tried, ", or bare voxels with --raw WxHxD:TYPE");
 }

@@ -24,6 +24,8 @@ constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
 /// Ranges of 10^13 voxels.
 constexpr int64_t LARGEST_TABLE = int64_t{2} << 30;
+/// Zstd's smallest block is four bytes long, and gives at most 128 KiB.
+constexpr int64_t MOST_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
 
@@ -283,6 +285,9 @@ ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
     if (std::memcmp(bytes.data(), header.data(), header.size()) != 0) {
         fail(file.string(), ": was made for another volume, or was cut short; expected ", expected.kind, " of ",
              expected.counts.x, "x", expected.counts.y, "x", expected.counts.z, " elements");
+    }
+    if (decoded_bytes / MOST_OUT_OF_A_BYTE > static_cast<int64_t>(frame.size())) {
+        fail(file.string(), ": holds ", frame.size(), " compressed bytes; expected enough for ", decoded_bytes);
     }
     ProjectTable table = expected;
     table.elements.resize(static_cast<size_t>(decoded_bytes));

@@ -176,6 +176,8 @@ std::optional<SideCar> read_dat_side_car(const fs::path& path, fs::path raw)
             found.info.warnings.push_back(
                 sentence(raw.filename().string(), " is not there; ", renamed.filename().string(), " was read instead"));
             raw = renamed;
+        } else if (!is_file(raw)) {
+            fields->refuse("ObjectFileName", "a file beside it, or " + renamed.filename().string());
         }
     }
     found.voxels.file = raw;

@@ -48,7 +48,13 @@ fs::path with_suffix(fs::path path, const char* suffix)
 /// Nothing where the document is about something else (a session, another program's settings).
 std::optional<Json> parse_json(const fs::path& path)
 {
-    Json document = Json::parse(read_text(path, LONGEST_HEADER), nullptr, false);
+    // Printing JSON takes stack for each level, so a message about very many would end the program.
+    constexpr int DEEPEST = 64;
+    const auto check_depth = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+        if (depth > DEEPEST) fail(path.string(), ": is nested more than ", DEEPEST, " deep; expected size and type");
+        return true;
+    };
+    Json document = Json::parse(read_text(path, LONGEST_HEADER), check_depth, false);
     if (document.is_discarded()) fail(path.string(), ": is not valid JSON; expected an object with size and type");
     if (!document.is_object() || document.contains("shvr_session")) return {};
     return document;

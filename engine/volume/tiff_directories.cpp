@@ -207,7 +207,7 @@ public:
     void look_at(const Field& field, const Reader& reader)
     {
         if (field.tag >= TELLS_KIND.size() || !TELLS_KIND[field.tag]) return;
-        const uint64_t value = reader.is_inside(field) ? reader.value(field) : ~uint64_t{0};
+        const uint64_t value = reader.is_inside(field) ? reader.value(field) : OUTSIDE;
         const uint64_t parts[] = {field.tag, field.count, value};
         fields_.append(reinterpret_cast<const char*>(parts), sizeof(parts));
         if (field.tag == NEW_SUBFILE_TYPE) is_reduced_ |= (value & 1) != 0 || (value & 4) != 0;
@@ -242,11 +242,16 @@ public:
 private:
     static constexpr size_t MOST_KINDS = 64;
     static constexpr uint64_t LARGEST_SIDE = uint64_t{1} << 20;
+    static constexpr uint64_t OUTSIDE = ~uint64_t{0};
 
     static void check_side(const TiffFile& file, size_t page, const char* name, const std::optional<uint64_t>& side)
     {
         if (side && *side >= 1 && *side <= LARGEST_SIDE) return;
-        fail(file.path().string(), ": page ", page, ": ", name, " is ", side ? std::to_string(*side) : "missing",
+        const bool is_there = side && *side != OUTSIDE;
+        fail(file.path().string(), ": page ", page, ": ", name, " is ",
+             is_there ? std::to_string(*side)
+             : side   ? "not within the file"
+                      : "missing",
              "; expected 1 to ", LARGEST_SIDE);
     }
 

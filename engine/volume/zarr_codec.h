@@ -13,6 +13,8 @@ namespace shvr {
 /// No compressor makes more of a chunk: what is longer is refused before it is read.
 int64_t longest_stored(int64_t chunk_bytes);
 
+/// Fails where no chunk of `chunk_bytes` can come out of so few bytes: before memory is taken for it.
+void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name);
 /// Fills `chunk` exactly, or fails with `name`, which is the chunk's.
 void decompress_chunk(ZarrCompressor::Kind kind, std::span<const std::byte> stored, std::span<std::byte> chunk,
                       const std::string& name);

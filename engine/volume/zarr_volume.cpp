@@ -154,6 +154,7 @@ Block ZarrVolume::load(const Size3& chunk) const
 
 Block ZarrVolume::decoded(std::span<const std::byte> stored, const std::string& name) const
 {
+    check_stored_size(metadata_.compressor.kind, stored.size(), metadata_.chunk_bytes(), name);
     Block chunk(metadata_.chunk_bytes());
     decompress_chunk(metadata_.compressor.kind, stored, chunk, name);
     if (metadata_.big_endian) swap_bytes(chunk, bytes_of(metadata_.type));

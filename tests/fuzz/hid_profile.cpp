@@ -1,0 +1,31 @@
+// Profiles of haptic devices, and with each a few reports.
+
+#include <array>
+#include <cmath>
+
+#include "haptics/hid_profile.h"
+#include "haptics/hid_protocol.h"
+#include "tests/fuzz/support/attempt.h"
+#include "tests/fuzz/support/input_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    using namespace shvr;
+    using namespace shvr::fuzz;
+    HidProfile profile;
+    if (!accepts([&] { profile = parse_hid_profile(std::string(text_of({data, size})), "profile"); })) return 0;
+    for (const uint8_t fill : std::array<uint8_t, 4>{0x00, 0x7f, 0x80, 0xff}) {
+        std::array<uint8_t, 1 + MOST_REPORT_BYTES> report{};
+        report.fill(fill);
+        for (const auto& layout : {profile.input, profile.feature}) {
+            if (!layout) continue;
+            report[0] = layout->id;
+            const std::span<const uint8_t> bytes(report.data(), layout->length + (layout->id == 0 ? 0 : 1));
+            decode(profile, bytes);
+            decode_feature(profile, bytes);
+        }
+        const HidBytes sent = encode(profile, glm::dvec3(1e300 * (fill - 100.0), NAN, -1.0), fill, true);
+        expect(sent.size <= sent.bytes.size(), "a report that is too long");
+    }
+    return 0;
+}

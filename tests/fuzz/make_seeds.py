@@ -1,0 +1,469 @@
+#!/usr/bin/env python3
+"""Writes tests/fuzz/seeds:  SHVR=build/dev/shvr tests/fuzz/make_seeds.py
+
+Needs Debian's libtiff-tools (tiffcp) for TIFFs that are compressed, and the built program for a project. Seeds that are
+not made here, regressions above all, are kept: they have names of their own. "claims_" begins the name of a seed that
+says it is far larger than it is.
+"""
+import json
+import os
+import struct
+import subprocess
+import tempfile
+import zlib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SEEDS = ROOT / "tests/fuzz/seeds"
+CHIRALITY = ROOT / "tests/data/chirality"
+ZARR = ROOT / "tests/data/zarr"
+
+
+def seed(target, name, *files):
+    """Bytes, or (name, bytes) for a file beside the main one."""
+    content = b""
+    for file in files:
+        name_inside, data = file if isinstance(file, tuple) else (None, file)
+        if name_inside:
+            content += (b"\n" if content else b"") + b"@@FILE " + name_inside.encode() + b"\n"
+        content += data.encode() if isinstance(data, str) else data
+    path = SEEDS / target / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+def phantom(name):
+    return (name, (CHIRALITY / name).read_bytes())
+
+
+# ---- Headers and voxels ---------------------------------------------------------------------------------------------
+
+PARTS = ["slice01.voxels", "slice02.voxels", "slice03.voxels"]
+NRRD = {"attached.nrrd": [], "detached.nhdr": ["detached.voxels"], "tail.nhdr": ["tail.voxels"], "gzip.nrrd": [],
+        "gzip.nhdr": ["gzip.voxels"], "pattern.nhdr": PARTS, "list.nhdr": PARTS,
+        "pattern_gzip.nhdr": ["slice.9.gz", "slice.10.gz", "slice.11.gz"], "flipped_y.nrrd": [],
+        "left_handed.nrrd": []}
+MHD = {"local.mha": [], "detached.mhd": ["detached_mhd.voxels"], "tail.mhd": ["tail.voxels"], "zlib.mha": [],
+       "zlib.mhd": ["zlib.zraw"], "pattern.mhd": PARTS, "list.mhd": PARTS, "flipped_z.mha": []}
+NIFTI = {"sform.nii": [], "qform.nii": [], "radiological.nii": [], "big.nii": [], "version2.nii": [],
+         "version2_big.nii": [], "gzip.nii.gz": []}
+HUGE = "1048576 1048576 1048576"
+
+
+def make_headers():
+    for target, headers in {"nrrd": NRRD, "mhd": MHD, "nifti": NIFTI}.items():
+        for name, others in headers.items():
+            seed(target, name, phantom(name)[1], *(phantom(other) for other in others))
+    seed("nifti", "pair.hdr", phantom("pair.hdr")[1], ("scan.img", phantom("pair.img")[1]))
+    seed("nifti", "pair_gzip.hdr", phantom("pair_gzip.hdr.gz")[1], ("scan.img.gz", phantom("pair_gzip.img.gz")[1]))
+
+    nrrd = "NRRD0005\ntype: {}\ndimension: {}\nsizes: {}\nendian: little\nencoding: {}\n"
+    seed("nrrd", "rgb_frames.nrrd", nrrd.format("uchar", 5, "3 5 4 1 2", "raw") + "kinds: RGB-color domain domain domain time\n\n" + "v" * 120)
+    seed("nrrd", "line_skip.nhdr", nrrd.format("uchar", 3, "5 4 3", "raw") + "line skip: 2\nbyte skip: 3\n"
+         "key:=value\nspace: RAS\nspace directions: (0,1,0) (1,0,0) (0,0,2)\nspace origin: (1,2,3)\n"
+         "space units: \"um\" \"um\" \"um\"\ndata file: a.voxels\n", ("a.voxels", "a\nb\nccc" + "v" * 60))
+    seed("nrrd", "claims_raw", nrrd.format("double", 3, HUGE, "raw") + "\n" + "v" * 60)
+    seed("nrrd", "claims_gzip", nrrd.format("double", 3, "1048576 1048576 1", "gzip").encode() + b"\n" +
+         zlib.compress(b"v" * 60, wbits=31))
+    seed("nrrd", "claims_axes", nrrd.format("uchar", 1000000, "1 1 1", "raw") + "\n" + "v" * 60)
+    seed("nrrd", "missing_parts", nrrd.format("uchar", 3, "5 4 65536", "raw") + "data file: a%d.voxels 1 65536 1\n")
+    seed("nrrd", "claims_skip", nrrd.format("uchar", 3, "5 4 3", "gzip") + "byte skip: 9223372036854775800\n\n" +
+         "v" * 60)
+    mhd = "ObjectType = Image\nNDims = 3\nBinaryData = True\nCompressedData = {}\nElementSpacing = 1 2 3\nDimSize = {}\nElementType = {}\n"
+    seed("mhd", "channels.mha", mhd.format("False", "5 4 2", "MET_UCHAR") + "ElementNumberOfChannels = 3\n"
+         "ElementDataFile = LOCAL\n" + "v" * 120)
+    seed("mhd", "claims_raw", mhd.format("False", HUGE, "MET_DOUBLE") + "ElementDataFile = LOCAL\n" + "v" * 60)
+    seed("mhd", "claims_zlib", (mhd.format("True", "1048576 1048576 1", "MET_DOUBLE") + "ElementDataFile = LOCAL\n").encode() +
+         zlib.compress(b"v" * 60))
+    seed("mhd", "claims_channels", mhd.format("False", "5 4 3", "MET_UCHAR") +
+         "ElementNumberOfChannels = 1000000000000\nElementDataFile = LOCAL\n" + "v" * 60)
+    nifti = bytearray(phantom("sform.nii")[1])
+    nifti[42:48] = struct.pack("<3h", 32767, 32767, 32767)
+    seed("nifti", "claims_raw", bytes(nifti))
+    seed("nifti", "claims_gzip", zlib.compress(bytes(nifti), wbits=31))
+    nifti = bytearray(phantom("version2.nii")[1])
+    nifti[24:48] = struct.pack("<3q", 1 << 20, 1 << 20, 1 << 20)
+    seed("nifti", "claims_version2", bytes(nifti))
+    nifti = bytearray(phantom("sform.nii")[1])
+    nifti[108:112] = struct.pack("<f", 9e18)
+    seed("nifti", "claims_offset", bytes(nifti))
+
+
+def make_raw():
+    raw = ("scan.raw", phantom("side_car.raw")[1])
+    seed("raw_side_car", "own.json", phantom("side_car.json")[1], raw)
+    seed("raw_side_car", "nsi.dat", phantom("nsi.dat")[1].replace(b"nsi.raw", b"scan.raw"), raw)
+    seed("raw_side_car", "inviwo.dat", "Rawfile: scan.raw\nResolution: 5 4 3\nFormat: USHORT\nByteOffset: 4\n"
+         "ByteOrder: BigEndian\nBasisVector1: 1 0 0\nBasisVector2: 0 1 0\nBasisVector3: 0 0 1\nUnit: mm\n", raw)
+    seed("raw_side_car", "dragonfly.dat", '<?xml version="1.0"?>\n<RAWFileData>\n<Version>0.0</Version>\n'
+         '<ObjectFileName>scan.raw</ObjectFileName>\n<Format>SHORT</Format>\n<DataSlope>1</DataSlope>\n'
+         '<Resolution X="5" Y="4" Z="3" T="1"/>\n<Spacing X="0.001" Y="0.001" Z="0.002"/>\n'
+         '<Orientation X0="1" X1="0" X2="0" Y0="0" Y1="1" Y2="0" Z0="0" Z1="0" Z2="-1"/>\n</RAWFileData>\n', raw)
+    seed("raw_side_car", "claims_json", '{"size": [1048576, 1048576, 1048576], "type": "float64"}', raw)
+    seed("raw_side_car", "claims_offset", '{"size": [5, 4, 3], "type": "uint8", "offset": 9223372036854775807}', raw)
+    seed("raw_side_car", "claims_nsi", "Resolution: 1048576 1048576 1048576\nFormat: DOUBLE\nObjectFileName: scan.raw\n",
+         raw)
+    for name in ["named_5x4x3_int16le.raw", "scan_5x4x3_16bit.raw", "scan_5x4x6.raw", "5x4x3x2.raw", "head.1"]:
+        seed("raw_name", name, name)
+    for number, text in enumerate(["5x4x3:int16:big:0", "5x4x3:uint8", "3x4x5:int16:0", "2x2x2:float64:little:8"]):
+        seed("raw_name", f"layout_{number}", text)
+    seed("raw_name", "claims_name", "scan_1048576x1048576x1048576_float64.raw")
+    seed("raw_name", "claims_layout", "1048576x1048576x1048576:float64")
+    seed("raw_name", "claims_offset", "5x4x3:uint8:9223372036854775807")
+
+
+# ---- TIFF -----------------------------------------------------------------------------------------------------------
+
+
+def tiff(pages, big=False, order="<"):
+    """pages: dicts of tag -> value or list; tag "data": list of strips (or tiles)."""
+    word, word_type = ("Q", 16) if big else ("I", 4)
+    sizes = {2: 1, 3: 2, 4: 4, 5: 8, 16: 8}
+    out = bytearray(b"II" if order == "<" else b"MM")
+    out += struct.pack(order + ("HHHQ" if big else "HI"), *((43, 8, 0, 0) if big else (42, 0)))
+    link = 8 if big else 4
+    for page in pages:
+        strips = page["data"]
+        offsets = []
+        for strip in strips:
+            offsets.append(len(out))
+            out += strip
+        tiles = 322 in page
+        fields = {tag: value for tag, value in page.items() if tag != "data"}
+        fields.setdefault(324 if tiles else 273, (word_type, offsets))
+        fields.setdefault(325 if tiles else 279, (word_type, [len(strip) for strip in strips]))
+        entries = b""
+        for tag, value in sorted(fields.items()):
+            kind, values = value if isinstance(value, tuple) else (3, value if isinstance(value, list) else [value])
+            if kind == 2:
+                data, count = values, len(values)
+            elif kind == 5:
+                data, count = b"".join(struct.pack(order + "II", *pair) for pair in values), len(values)
+            else:
+                letter = {3: "H", 4: "I", 16: "Q"}[kind]
+                data, count = struct.pack(order + letter * len(values), *values), len(values)
+            assert len(data) == count * sizes[kind]
+            if len(data) > (8 if big else 4):
+                at = len(out)
+                out += data
+                data = struct.pack(order + word, at)
+            entries += struct.pack(order + "HH" + word, tag, kind, count) + data.ljust(8 if big else 4, b"\0")
+        directory = len(out)
+        out += struct.pack(order + ("Q" if big else "H"), len(fields)) + entries
+        out[link:link + (8 if big else 4)] = struct.pack(order + word, directory)
+        link = len(out)
+        out += struct.pack(order + word, 0)
+    return bytes(out)
+
+
+def page(z=0, width=5, height=4, bits=16, order="<", **more):
+    samples = [x + 10 * y + 100 * z for y in range(height) for x in range(width)]
+    letter = {8: "B", 16: "H", 32: "I"}[bits]
+    data = struct.pack(order + letter * len(samples), *(value & (1 << bits) - 1 for value in samples))
+    fields = {256: width, 257: height, 258: bits, 259: 1, 262: 1, 277: 1, 278: height, "data": [data]}
+    return fields | {int(tag[1:]): value for tag, value in more.items() if tag != "data"} | \
+        {key: value for key, value in more.items() if key == "data"}
+
+
+def ome(attributes, inside=""):
+    text = ('<?xml version="1.0" encoding="UTF-8"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06">'
+            '<Image ID="Image:0"><Pixels ID="Pixels:0" Type="uint16" SizeX="5" SizeY="4" ' + attributes + ">" + inside +
+            "</Pixels></Image></OME>")
+    return (2, text.encode() + b"\0")
+
+
+def tiffcp(source, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        before, after = Path(folder) / "a.tif", Path(folder) / "b.tif"
+        before.write_bytes(source)
+        subprocess.run(["tiffcp", *options, before, after], check=True)
+        return after.read_bytes()
+
+
+def make_tiff():
+    three = [page(z) for z in range(3)]
+    resolution = {"_282": (5, [(20, 1)]), "_283": (5, [(20, 1)]), "_296": 3}
+    imagej = (2, b"ImageJ=1.53k\nimages=3\nslices=3\nunit=mm\nspacing=1.25\nloop=false\n\0")
+    channels = (2, b"ImageJ=1.53k\nimages=4\nchannels=2\nslices=2\nhyperstack=true\nmode=grayscale\n\0")
+    plain = tiff(three)
+    files = {
+        "plain": plain,
+        "big_endian": tiff([page(z, order=">") for z in range(3)], order=">"),
+        "bigtiff": tiff(three, big=True),
+        "bigtiff_big_endian": tiff([page(z, order=">") for z in range(3)], big=True, order=">"),
+        "imagej": tiff([page(0, _270=imagej, **resolution), page(1), page(2)]),
+        "imagej_channels": tiff([page(0, _270=channels), page(1), page(2), page(3)]),
+        "ome": tiff([page(0, _270=ome('SizeZ="3" SizeC="1" SizeT="1" DimensionOrder="XYZCT" PhysicalSizeX="0.5" '
+                                      'PhysicalSizeXUnit="mm" PhysicalSizeZ="1.25"', '<TiffData IFD="0" PlaneCount="3"/>')),
+                     page(1), page(2)]),
+        "ome_channels": tiff([page(0, _270=ome('SizeZ="1" SizeC="3" SizeT="1" DimensionOrder="XYCZT"',
+                                               '<Channel ID="Channel:0" Name="red dye"/>')), page(1), page(2)]),
+        "signed": tiff([page(z, _339=2) for z in range(2)]),
+        "float": tiff([page(z, bits=32, _339=3) for z in range(2)]),
+        "rgb": tiff([page(0, bits=8, _258=[8, 8, 8], _262=2, _277=3, data=[bytes(range(60))])]),
+        "planar": tiff([page(0, bits=8, _258=[8, 8, 8], _262=2, _277=3, _284=2, data=[bytes(range(20))] * 3)]),
+        "palette": tiff([page(0, bits=8, _262=3, _320=[i * 256 for i in range(256)] * 3)]),
+        "minimum_is_white": tiff([page(0, bits=8, _262=0)]),
+        "bits_12": tiff([page(0, _258=12, data=[bytes(32)])]),
+        "bit": tiff([page(0, _258=1, data=[b"\xa8\x50\xa8\x50"])]),
+        "strips": tiff([page(0, _278=1, data=[struct.pack("<5H", *range(y, y + 5)) for y in range(4)])]),
+        "tiles": tiff([page(0, bits=8, _322=16, _323=16, data=[bytes(256)])]),
+        "thumbnail": tiff([page(0), page(0, width=2, height=2, _254=(4, [1])), page(1)]),
+        "deflate": tiff([page(0, _259=8, data=[zlib.compress(bytes(40))])]),
+        "packbits": tiff([page(0, _259=32773, data=[b"\xd9\0"])]),
+        "rotated": tiff([page(z, _274=3) for z in range(2)]),
+    }
+    for name in ["lzw", "lzw:2", "zip:2", "packbits", "zstd", "lzma"]:
+        files[name.replace(":", "_predictor_")] = tiffcp(plain, "-c", name)
+    floats = tiff([page(z, bits=32, _339=3) for z in range(2)])
+    files["zip_predictor_3"] = tiffcp(floats, "-c", "zip:3")
+    files["jpeg"] = tiffcp(tiff([page(0, width=16, height=16, bits=8)]), "-c", "jpeg")
+    files["tiled_lzw"] = tiffcp(plain, "-t", "-w", "16", "-l", "16", "-c", "lzw")
+    files["fax"] = tiffcp(tiff([page(0, _258=1, data=[b"\xa8\x50\xa8\x50"])]), "-c", "g4")
+    for name in ["imagej_long_big_endian", "imagej_long_little_endian"]:
+        files[name] = (ROOT / f"tests/data/tiff/{name}.tif").read_bytes()
+    wide = (4, [1 << 20])
+    files["claims_side"] = tiff([page(0, _256=wide, _257=wide, _278=wide)])
+    files["claims_deflate"] = tiff([page(0, _256=wide, _257=wide, _278=wide, _259=8, data=[zlib.compress(bytes(40))])])
+    files["claims_tile"] = tiff([page(0, _322=(4, [1 << 20]), _323=(4, [1 << 20]), _259=8,
+                                      data=[zlib.compress(bytes(40))])])
+    files["claims_samples"] = tiff([page(0, _277=65535)])
+    files["claims_offset"] = tiff([page(0, _273=(4, [0xfffffff0]))])
+    files["claims_imagej"] = tiff([page(0, _270=(2, b"ImageJ=1.53k\nimages=1000000\nslices=1000000\n\0"))])
+    files["claims_ome"] = tiff([page(0, _270=ome('SizeZ="1048576" SizeC="1" SizeT="1" DimensionOrder="XYZCT"'))])
+    loop = bytearray(plain)
+    loop[-4:] = plain[4:8]
+    files["loop"] = bytes(loop)
+    for name, content in files.items():
+        seed("tiff", name, content)
+    slices = [(f"slice{z}.tif", tiff([page(z, **resolution)])) for z in (1, 2, 10)]
+    seed("tiff_folder", "three", *slices)
+    seed("tiff_folder", "two_sizes", *slices, ("slice3.tif", tiff([page(0, width=6)])))
+    seed("tiff_folder", "bare", plain)
+    seed("tiff_folder", "series", *((f"s{z}_c{c}.tif", tiff([page(z)])) for z in range(2) for c in range(2)))
+    seed("tiff_folder", "claims_side", files["claims_side"])
+    seed("tiff_folder", "lzw", files["lzw"])
+
+
+# ---- DICOM ----------------------------------------------------------------------------------------------------------
+
+
+class Dicom:
+    def __init__(self, syntax="1.2.840.10008.1.2.1"):
+        self.syntax, self.elements = syntax, {}
+
+    def text(self, tag, kind, value):
+        value = value.encode()
+        self.elements[tag] = (kind, value + (b"\0" if kind == "UI" else b" ") * (len(value) % 2))
+        return self
+
+    def numbers(self, **values):
+        for tag, value in values.items():
+            self.elements[int(tag[1:], 16)] = ("US", struct.pack("<H", value))
+        return self
+
+    def element(self, tag, kind, value, explicit=True):
+        start = struct.pack("<HH", tag >> 16, tag & 0xffff)
+        length = 0xffffffff if value.startswith(b"\xfe\xff\x00\xe0") and tag == 0x7fe00010 else len(value)
+        if not explicit:
+            return start + struct.pack("<I", length) + value
+        if kind in ("OW", "OB", "SQ", "UN"):
+            return start + kind.encode() + b"\0\0" + struct.pack("<I", length) + value
+        return start + kind.encode() + struct.pack("<H", length) + value
+
+    def file(self):
+        meta = b"".join(self.element(tag, "UI", value + b"\0" * (len(value) % 2)) for tag, value in
+                        [(0x20002, b"1.2.840.10008.5.1.4.1.1.2"), (0x20003, b"1.2.3"), (0x20010, self.syntax.encode())])
+        body = b"".join(self.element(tag, *value, self.syntax != "1.2.840.10008.1.2")
+                        for tag, value in sorted(self.elements.items()))
+        return bytes(128) + b"DICM" + self.element(0x20000, "UL", struct.pack("<I", len(meta))) + meta + body
+
+
+def dicom_slice(z, syntax="1.2.840.10008.1.2.1", pixels=None):
+    dicom = Dicom(syntax)
+    dicom.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2").text(0x00080018, "UI", f"1.2.3.{z + 1}")
+    dicom.text(0x00080060, "CS", "CT").text(0x0020000d, "UI", "1.2.8").text(0x0020000e, "UI", "1.2.9")
+    dicom.text(0x00200013, "IS", str(z + 1)).text(0x00280004, "CS", "MONOCHROME2")
+    dicom.text(0x00200032, "DS", f"10\\20\\{30 + 1.25 * z}").text(0x00200037, "DS", "1\\0\\0\\0\\1\\0")
+    dicom.text(0x00280030, "DS", "0.5\\0.5").text(0x00281052, "DS", "-1024").text(0x00281053, "DS", "1")
+    dicom.numbers(_00280002=1, _00280010=4, _00280011=5, _00280100=16, _00280101=16, _00280102=15, _00280103=1)
+    dicom.elements[0x7fe00010] = ("OW", pixels or struct.pack("<20h", *range(20)))
+    return dicom
+
+
+def item(data):
+    return b"\xfe\xff\x00\xe0" + struct.pack("<I", len(data)) + data
+
+
+def make_dicom():
+    seed("dicom", "one", dicom_slice(0).file())
+    seed("dicom", "implicit", dicom_slice(0, "1.2.840.10008.1.2").file())
+    seed("dicom", "three", *((f"{z}.dcm", dicom_slice(z).file()) for z in range(3)))
+    frames = dicom_slice(0, pixels=struct.pack("<60h", *range(60))).text(0x00280008, "IS", "3")
+    frames.text(0x00180050, "DS", "1.25")
+    seed("dicom", "frames", frames.file())
+    rle = struct.pack("<16I", 2, 64, 66, *[0] * 13) + b"\xed\0" + b"\xed\1"
+    encapsulated = item(b"") + item(rle) + b"\xfe\xff\xdd\xe0\0\0\0\0"
+    coded = dicom_slice(0, "1.2.840.10008.1.2.5", encapsulated)
+    coded.elements[0x7fe00010] = ("OB", encapsulated)
+    seed("dicom", "rle", coded.file())
+    deflated = dicom_slice(0, "1.2.840.10008.1.2.4.50", item(b"") + item(b"\xff\xd8\xff\xd9") + b"\xfe\xff\xdd\xe0\0\0\0\0")
+    deflated.elements[0x7fe00010] = ("OB", deflated.elements[0x7fe00010][1])
+    seed("dicom", "jpeg", deflated.file())
+    seed("dicom", "claims_rows", dicom_slice(0).numbers(_00280010=65535, _00280011=65535).file())
+    seed("dicom", "claims_frames", dicom_slice(0).text(0x00280008, "IS", "2147483647").file())
+    whole = bytearray(dicom_slice(0).file())
+    whole[-44:-40] = struct.pack("<I", 0x7ffffff0)
+    seed("dicom", "claims_length", bytes(whole))
+    whole = bytearray(coded.file())
+    at = whole.rindex(item(rle)[:8])
+    whole[at + 4:at + 8] = struct.pack("<I", 0x7ffffff0)
+    seed("dicom", "claims_fragment", bytes(whole))
+
+
+# ---- Zarr and projects ----------------------------------------------------------------------------------------------
+
+
+def packed(folder):
+    return [(str(file.relative_to(folder)), file.read_bytes()) for file in sorted(folder.rglob("*")) if file.is_file()]
+
+
+def zarray(**changes):
+    metadata = {"chunks": [3, 4, 5], "compressor": None, "dtype": "|u1", "fill_value": 0, "filters": None, "order": "C",
+                "shape": [3, 4, 5], "zarr_format": 2} | changes
+    return json.dumps(metadata)
+
+
+def make_zarr():
+    for name in ["type_u1", "type_big_i2", "type_big_f8", "type_little_f4", "order_f", "slashes", "fill_nan",
+                 "chunks_larger", "leading_axes", "compressor_blosc_lz4_1", "compressor_blosc_zstd_2",
+                 "compressor_blosc_zlib_0", "compressor_blosc_blosclz_1", "compressor_gzip", "compressor_zlib",
+                 "compressor_zstd", "delta_filter", "version_3", "image_01", "image_04", "image_05", "image_2d",
+                 "image_axes_xzy", "image_floor", "image_group_scale", "image_mixed_units", "image_tczyx", "series"]:
+        seed("zarr", name, *packed(ZARR / name))
+    blosc = {"id": "blosc", "cname": "lz4", "clevel": 5, "shuffle": 1, "blocksize": 0}
+    # A header that says two gigabytes come out of this chunk.
+    header = struct.pack("<BBBBIII", 2, 1, 0x21, 1, 0x7fffffff, 0x7fffffff, 64) + bytes(48)
+    seed("zarr", "claims_blosc", (".zarray", zarray(compressor=blosc, shape=[1 << 20, 1 << 20, 1 << 20],
+                                                    chunks=[1 << 20, 1 << 20, 1 << 20])), ("0.0.0", header))
+    seed("zarr", "blosc_says_more", (".zarray", zarray(compressor=blosc)), ("0.0.0", header))
+    seed("zarr", "claims_chunk", (".zarray", zarray(chunks=[1 << 20, 1 << 20, 1 << 20], shape=[1 << 20] * 3)),
+         ("0.0.0", "v"))
+    seed("zarr", "claims_axes", (".zarray", zarray(chunks=[1] * 2000, shape=[1] * 2000)))
+    for name, compressor in {"zlib": {"id": "zlib", "level": 1}, "gzip": {"id": "gzip", "level": 1}}.items():
+        bomb = zlib.compress(bytes(1 << 22), 9, 31 if name == "gzip" else 15)
+        seed("zarr", f"bomb_{name}", (".zarray", zarray(compressor=compressor)), ("0.0.0", bomb))
+    seed("zarr", "sparse", (".zarray", zarray(shape=[1 << 20] * 3, chunks=[64, 64, 64])))
+
+
+def frame_of(claimed_bytes):
+    """The beginning of a zstd frame, which says how much comes out of it."""
+    return b"\x28\xb5\x2f\xfd\xe0" + struct.pack("<Q", claimed_bytes)
+
+
+def make_states():
+    seed("import_state", "written", b"wone and another")
+    seed("import_state", "empty", b"w")
+    for name, claimed in {"claims_state": 1 << 39, "claims_memory": 1 << 30}.items():
+        seed("import_state", name, b"SHVRIMP1" + struct.pack("<QQ", claimed, 0) + frame_of(claimed))
+    # The ranges of all bricks of this volume take two gigabytes.
+    side = 1 << 15
+    table = (b"SHVRTAB1" + b"ranges\0\0" + struct.pack("<iI3qQQ", 0, 2, *[side // 32] * 3, 13, 0) + frame_of(1 << 31))
+    record = {"shvr_volume": 1, "source": "", "preparation": "", "size": [side] * 3, "type": "uint8",
+              "spacing": [1, 1, 1], "unit": "um", "directions": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+              "origin": [0, 0, 0], "frame": "", "levels": 1, "content_hash": "0",
+              "statistics": {"min": 0, "max": 1, "mean": 0, "not_finite": 0, "histogram": [0] * 256}, "warnings": []}
+    attributes = {"multiscales": [{"version": "0.4", "axes": [{"name": axis, "type": "space", "unit": "micrometer"}
+                                                              for axis in "zyx"],
+                                   "datasets": [{"path": "0", "coordinateTransformations": [
+                                       {"type": "scale", "scale": [1, 1, 1]}]}]}]}
+    seed("zarr", "huge_table", (".zgroup", '{"zarr_format": 2}'), (".zattrs", json.dumps(attributes)),
+         ("0/.zarray", zarray(shape=[side] * 3, chunks=[64, 64, 64])), ("shvr/volume.json", json.dumps(record)),
+         ("shvr/ranges-0", table), ("shvr/session.json", "{}"))
+
+
+def make_project():
+    with tempfile.TemporaryDirectory() as folder:
+        project = Path(folder) / "p"
+        voxels = Path(folder) / "scan_40x36x3_uint8.raw"
+        voxels.write_bytes(bytes((x * 5 + x // 40 * 3) % 251 for x in range(40 * 36 * 3)))
+        subprocess.run([os.environ.get("SHVR", ROOT / "build/dev/shvr"), "import", voxels, project, "--quiet"],
+                       check=True)
+        files = packed(project)
+        files = [(name, data.replace(folder.encode(), b"/data") if name.endswith(".json") else data)
+                 for name, data in files]
+        seed("zarr", "project", *files)
+        for name, data in files:
+            if name.startswith("shvr/ranges") or name.startswith("shvr/checksums") or name == "shvr/volume.json":
+                seed("project_table", name.split("/")[1], data)
+    return files
+
+
+# ---- Text -----------------------------------------------------------------------------------------------------------
+
+
+def make_text():
+    for name in ["stent", "cranium"]:
+        seed("session", name, (ROOT / f"assets/examples/{name}.session.json").read_bytes())
+        script = (ROOT / f"assets/examples/{name}.jsonl").read_bytes().splitlines(True)
+        seed("script", name, b"".join(script[:6])[:1500].rsplit(b"\n", 1)[0] + b"\n")
+    text = (ROOT / "tests/unit/session_test.cpp").read_text(encoding="utf-8")
+    begin = text.index("EVERYTHING = R\"(") + len("EVERYTHING = R\"(")
+    seed("session", "everything", text[begin:text.index(")\"", begin)])
+    seed("session", "controls", '{"shvr_session": 1, "volume": {"path": "scan_5x4x3_int16.ra\x7f", "unit": "\\u001b[31m"}}')
+    seed("session", "beside", '{"shvr_session": 1, "volume": {"path": "scan_5x4x3_int16.raw"}}')
+    seed("script", "every_operation", "".join(line + "\n" for line in [
+        "// every operation", "",
+        '{"op":"paint","brush":"fill","region":"box","group":255,"threshold":-1.5,"radius":3,"path":[[1,2,3]]}',
+        '{"op":"paint","brush":"speckle","connectivity":26,"group":0,"threshold":7,"radius":127.5,"path":[[1,2,3],[4,5,6.5]]}',
+        '{"op":"undo","count":2}', '{"op":"redo"}', '{"op":"expect","voxels":{"1":20}}', '{"op":"save"}']))
+    seed("script", "claims_stroke", '{"op":"paint","group":1,"threshold":1,"radius":1,"path":[[0,0,0],[1e300,1e300,1e300]]}')
+    for kind in ["constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"]:
+        seed("procedural", kind, f'{{"procedural": "{kind}", "size": [9, 8, 7], "type": "uint16", "seed": 3}}')
+        seed("procedural", kind + "_huge",
+             f'{{"procedural": "{kind}", "size": [1048576, 1048576, 1048576], "type": "int8", "spacing": [1, 2, 1e-12]}}')
+    for file in sorted((ROOT / "assets/devices").glob("*.json")):
+        seed("hid_profile", file.stem, file.read_bytes())
+    for sides in [(5, 4, 3), (33, 32, 2), (64, 1, 1)]:
+        voxels = sides[0] * sides[1] * sides[2]
+        seed("mask", "x".join(map(str, sides)), bytes(side - 1 for side in sides) +
+             bytes((i // 7 % 3) for i in range(voxels)))
+    seed("mask", "claims_size", bytes([63, 63, 63]) + b"\1" * 60)
+
+
+def png(kind, depth, width=3, height=2, lines=None, extra=b"", claimed=None):
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[kind]
+    row = b"\0" + bytes(range((width * channels * depth + 7) // 8))
+    sides = claimed or (width, height)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", *sides, depth, kind, 0, 0, 0)) + extra +
+            (chunk(b"PLTE", bytes(range(48))) if kind == 3 else b"") +
+            chunk(b"IDAT", zlib.compress(lines or row * height)) + chunk(b"IEND", b""))
+
+
+def make_png():
+    for kind, depth in [(0, 1), (0, 8), (0, 16), (2, 8), (2, 16), (3, 4), (4, 8), (6, 8), (6, 16)]:
+        seed("png", f"kind_{kind}_{depth}.png", png(kind, depth))
+    gamma = b"\0\0\0\4gAMA\0\0\xb1\x8f" + struct.pack(">I", zlib.crc32(b"gAMA\0\0\xb1\x8f"))
+    seed("png", "gamma.png", png(2, 8, extra=gamma))
+    seed("png", "claims_side", png(6, 16, claimed=(1 << 30, 1 << 30)))
+    seed("png", "claims_pixels", png(6, 16, claimed=(1 << 14, 1 << 14)))
+
+
+def main():
+    make_headers()
+    make_raw()
+    make_tiff()
+    make_dicom()
+    make_zarr()
+    make_project()
+    make_states()
+    make_text()
+    make_png()
+    files = [file for file in SEEDS.rglob("*") if file.is_file()]
+    print(f"{len(files)} seeds, {sum(file.stat().st_size for file in files)} bytes")
+
+
+if __name__ == "__main__":
+    main()

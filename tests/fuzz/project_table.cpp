@@ -1,0 +1,32 @@
+// The tables of a project's shvr/ folder, and its record. The first bytes say which, and how many elements are expected.
+
+#include <algorithm>
+
+#include "engine/volume/project.h"
+#include "tests/fuzz/support/attempt.h"
+#include "tests/fuzz/support/input_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    using namespace shvr;
+    using namespace shvr::fuzz;
+    const InputFolder& folder = input_folder();
+    folder.clear();
+    const auto file = folder.write("table", text_of({data, size}));
+    if (text_of({data, size}).starts_with("{")) {
+        ProjectRecord record;
+        if (!accepts([&] { record = read_project_record(file); })) return 0;
+        const std::string text = to_text(record);
+        folder.write("again", text);
+        expect(
+            passes([&] { expect(to_text(read_project_record(folder.path() / "again")) == text, "a changed record"); }),
+            "a record that cannot be read again");
+        return 0;
+    }
+    // What a reader of a volume of 2 x 2 x 1 bricks of uint8 expects.
+    ProjectTable table;
+    if (accepts([&] { table = read_project_table(file, {"ranges", 0, 2, Size3(2, 2, 1)}); })) {
+        expect(table.elements.size() == 8, "a table of another size");
+    }
+    return 0;
+}

@@ -1,0 +1,37 @@
+// Session files: what is read is written, and that says the same again. The volume is opened where it is procedural or
+// beside the session.
+
+#include "engine/scene/session.h"
+#include "tests/fuzz/support/attempt.h"
+#include "tests/fuzz/support/input_folder.h"
+#include "tests/fuzz/support/volume_input.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    using namespace shvr;
+    using namespace shvr::fuzz;
+    const InputFolder& folder = input_folder();
+    folder.clear();
+    folder.write("scan_5x4x3_int16.raw", std::string(120, 'v'));
+    Session session;
+    const std::string text(text_of({data, size}));
+    if (!accepts([&] { session = parse_session(text, folder.path(), "session"); })) return 0;
+
+    const std::string written = to_text(session, folder.path());
+    Session again;
+    expect(passes([&] { again = parse_session(written, folder.path(), "session"); }),
+           "a session that cannot be read once written: " + last_outcome().refusal);
+    expect(to_text(again, folder.path()) == written, "a session that changes when it is written:\n" + written);
+
+    bake_table(session.transfer_function, session.render.step_voxels, 64);
+    const VolumeInfo info{.size = Size3(5, 4, 3)};
+    passes([&] { camera_named(session, "", info); });
+    for (const auto& [name, camera] : session.cameras) {
+        passes([&, &key = name] { camera_named(session, key, info); });
+    }
+    const bool is_beside = session.volume_path.parent_path() == folder.path();
+    std::unique_ptr<VolumeSource> source;
+    if (session.procedural || is_beside) passes([&] { source = open_source(session); });
+    if (source) try_source(*source);
+    return 0;
+}
