@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Another layout of what an import writes, or of its state.
-constexpr int LAYOUT = 1;
+constexpr int LAYOUT = 2;
 
 /// The array's order: z, y, x.
 Json zyx(const glm::dvec3& vector)

@@ -21,6 +21,9 @@ namespace shvr {
 
 /// Voxels of a chunk along each axis, of every level.
 inline constexpr int64_t IMPORT_CHUNK = 64;
+/// A chunk decides this many levels above its own.
+inline constexpr int IMPORT_REACH = 6;
+static_assert(IMPORT_CHUNK == int64_t{1} << IMPORT_REACH);
 
 /// As many as there are until one brick of 32^3 voxels holds all.
 int level_count(const Size3& size);

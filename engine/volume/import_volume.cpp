@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <thread>
 
 #include "engine/base/error.h"
-#include "engine/volume/content_hash.h"
+#include "engine/volume/import_chunks.h"
 #include "engine/volume/import_files.h"
 #include "engine/volume/import_pyramid.h"
+#include "engine/volume/import_tally.h"
 #include "engine/volume/part_folder.h"
 #include "engine/volume/project.h"
 #include "engine/volume/readers.h"
-#include "engine/volume/zarr_codec.h"
-#include "engine/volume/zarr_volume.h"
 
 namespace shvr {
 namespace {
@@ -37,23 +35,6 @@ double seconds_since(Clock::time_point begin)
 int thread_count(int wanted)
 {
     return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-bool is_empty(Bytes chunk)
-{
-    // Compared with itself, one byte on.
-    return chunk[0] == std::byte{0} && std::memcmp(chunk.data(), chunk.data() + 1, chunk.size() - 1) == 0;
-}
-
-/// Adds up how often each value occurs, in unsigned order.
-template <class T>
-void count_values(Bytes voxels, std::vector<int64_t>& counts)
-{
-    T value;
-    for (size_t at = 0; at < voxels.size(); at += sizeof(T)) {
-        std::memcpy(&value, voxels.data() + at, sizeof(T));
-        ++counts[value];
-    }
 }
 
 class Import {
@@ -135,53 +116,28 @@ private:
         const auto run = [=, this](int64_t task, int worker) {
             if (task >= chunks) {
                 const auto slice = static_cast<size_t>(task - chunks);
-                add_rows(slice, Bytes(voxels + slice * slice_bytes, slice_bytes), worker);
+                tally_->add(slab.lower + task - chunks, Bytes(voxels + slice * slice_bytes, slice_bytes), worker);
                 return;
             }
             const Size3 chunk{task % along_x, slab.lower_row / SIDE + task / along_x, slab.lower / SIDE};
             const Size3 origin = chunk * SIDE;
             const size_t first = static_cast<size_t>(origin.y - slab.lower_row) * row_bytes +
                                  static_cast<size_t>(origin.x) * bytes_of(info_.type);
-            store(0, chunk,
-                  pyramid_->add({.origin = origin,
-                                 .extent = glm::min(Size3(SIDE), info_.size - origin),
-                                 .voxels = voxels + first,
-                                 .row_bytes = row_bytes,
-                                 .slice_bytes = slice_bytes},
-                                worker));
+            const ImportPyramid::Chunk taken{.origin = origin,
+                                             .extent = glm::min(Size3(SIDE), info_.size - origin),
+                                             .voxels = voxels + first,
+                                             .row_bytes = row_bytes,
+                                             .slice_bytes = slice_bytes};
+            chunks_->write(0, chunk, pyramid_->add(taken, worker), worker);
             ++chunks_done_;
         };
         return pool_.start(chunks + slab.upper - slab.lower, run);
     }
 
-    void add_rows(size_t slice, Bytes voxels, int worker)
-    {
-        hashers_[slice].add(voxels);
-        std::vector<int64_t>& counts = counts_[static_cast<size_t>(worker)];
-        if (counts.size() == 256) count_values<uint8_t>(voxels, counts);
-        if (counts.size() == 65536) count_values<uint16_t>(voxels, counts);
-    }
-
-    void store(int level, const Size3& chunk, Bytes voxels)
-    {
-        Level& to = levels_[static_cast<size_t>(level)];
-        const auto index = static_cast<size_t>(to.volume.index_of(chunk));
-        if (is_empty(voxels)) {
-            to.checksums[index] = 0;
-            return;
-        }
-        const std::vector<std::byte> stored = compress_chunk(options_.compressor, voxels, bytes_of(info_.type));
-        write_part_file(to.volume.path_of(chunk), stored);
-        to.checksums[index] = checksum_of(stored);
-        bytes_ += static_cast<int64_t>(stored.size());
-    }
-
     void finish_slab(int64_t slab, int64_t slabs)
     {
         const int64_t slices = std::min(info_.size.z, (slab + 1) * SIDE);
-        for (int64_t slice = slab * SIDE; slice < slices; ++slice) {
-            hashes_[static_cast<size_t>(slice)] = hashers_[static_cast<size_t>(slice % SIDE)].finish();
-        }
+        tally_->finish(slab * SIDE, slices);
         for (int level = 1; level < pyramid_->levels(); ++level) {
             if (!pyramid_->completes_layer(level, slices)) continue;
             write_layer(level, (size_of_level(Size3(slices), level).z - 1) / SIDE);
@@ -190,6 +146,7 @@ private:
         slabs_done_ = slab + 1;
         if (slabs_done_ == slabs || seconds_since(state_written_) < STATE_INTERVAL * state_seconds_) return;
         const Clock::time_point begin = Clock::now();
+        folder_.sync();
         write_state();
         state_written_ = Clock::now();
         state_seconds_ = seconds_since(begin);
@@ -200,7 +157,7 @@ private:
         const Size3 chunks = counts(level);
         pool_.run(chunks.x * chunks.y, [&](int64_t task, int worker) {
             const Size3 chunk{task % chunks.x, task / chunks.x, layer};
-            store(level, chunk, pyramid_->gather(level, chunk, worker));
+            chunks_->write(level, chunk, pyramid_->gather(level, chunk, worker), worker);
         });
     }
 
@@ -209,32 +166,20 @@ private:
     void begin_anew()
     {
         pyramid_ = make_import_pyramid(info_.size, info_.type, threads_);
-        levels_.clear();
-        for (int level = 0; level < pyramid_->levels(); ++level) {
-            ZarrVolume volume = import_level(folder_.path(), info_, level, options_.compressor);
-            const Size3 chunks = volume.counts();
-            levels_.push_back(
-                {std::move(volume), std::vector<uint64_t>(static_cast<size_t>(chunks.x * chunks.y * chunks.z))});
-        }
-        hashes_.assign(static_cast<size_t>(info_.size.z), SliceHash{});
-        hashers_.clear();
-        hashers_.resize(static_cast<size_t>(SIDE));
-        const size_t values = bytes_of(info_.type) <= 2 ? size_t{1} << (8 * bytes_of(info_.type)) : 0;
-        counts_.assign(static_cast<size_t>(threads_), std::vector<int64_t>(values));
+        chunks_ =
+            std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), options_.compressor, threads_);
+        tally_ = std::make_unique<ImportTally>(info_, SIDE, threads_);
         slabs_done_ = 0;
-        bytes_ = 0;
     }
 
+    /// What it tells of is on the disk already.
     void write_state()
     {
-        folder_.sync();
         StateWriter state;
         state.put(identity_);
-        const std::vector<int64_t> numbers{slabs_done_, bytes_};
-        state.put_all(numbers);
-        state.put_all(hashes_);
-        state.put_all(total_counts());
-        for (const Level& level : levels_) state.put_all(level.checksums);
+        state.put_all(std::vector<int64_t>{slabs_done_});
+        tally_->save(state);
+        chunks_->save(state);
         pyramid_->save(state);
         state.write(folder_.state());
     }
@@ -267,23 +212,12 @@ private:
 
     void load_state(StateReader& state)
     {
-        std::vector<int64_t> numbers(2);
-        state.take_all(numbers);
-        state.take_all(hashes_);
-        state.take_all(counts_[0]);
-        for (Level& level : levels_) state.take_all(level.checksums);
+        std::vector<int64_t> slabs(1);
+        state.take_all(slabs);
+        tally_->load(state);
+        chunks_->load(state);
         pyramid_->load(state);
-        slabs_done_ = numbers[0];
-        bytes_ = numbers[1];
-    }
-
-    std::vector<int64_t> total_counts() const
-    {
-        std::vector<int64_t> total = counts_[0];
-        for (size_t worker = 1; worker < counts_.size(); ++worker) {
-            for (size_t value = 0; value < total.size(); ++value) total[value] += counts_[worker][value];
-        }
-        return total;
+        slabs_done_ = slabs[0];
     }
 
     // ---- The rest of the folder ----
@@ -291,14 +225,14 @@ private:
     void write_level_metadata()
     {
         for (int level = 0; level < pyramid_->levels(); ++level) {
-            write_text(sentence(level, "/.zarray"), to_text(levels_[static_cast<size_t>(level)].volume.metadata()));
+            write_text(sentence(level, "/.zarray"), to_text(chunks_->metadata(level)));
         }
     }
 
     void finish_levels()
     {
         pyramid_->finish();
-        for (int level = 6; level < pyramid_->levels(); ++level) {
+        for (int level = IMPORT_REACH; level < pyramid_->levels(); ++level) {
             for (int64_t layer = 0; layer < counts(level).z; ++layer) write_layer(level, layer);
         }
     }
@@ -308,52 +242,36 @@ private:
         write_text(".zgroup", import_group());
         write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels()));
         for (int level = 0; level < pyramid_->levels(); ++level) {
-            const Level& of = levels_[static_cast<size_t>(level)];
             write(ranges_path({}, level), to_bytes({.kind = "ranges",
                                                     .level = level,
                                                     .element_bytes = 2 * bytes_of(info_.type),
                                                     .counts = size_of_level(size_of_level(info_.size, level), 5),
                                                     .elements = pyramid_->ranges(level)}));
-            const Bytes checksums = std::as_bytes(std::span(of.checksums));
+            const Bytes checksums = std::as_bytes(std::span(chunks_->checksums(level)));
             write(checksums_path({}, level), to_bytes({.kind = "checksum",
                                                        .level = level,
                                                        .element_bytes = sizeof(uint64_t),
-                                                       .counts = of.volume.counts(),
+                                                       .counts = counts(level),
                                                        .elements = {checksums.begin(), checksums.end()}}));
         }
         ProjectRecord record{.info = info_, .levels = pyramid_->levels()};
-        record.statistics = statistics();
-        record.content_hash = content_hash(hashes_);
+        // Types with too many values to count each are measured in what was written, which needs no source.
+        const std::optional<VolumeStatistics> counted = tally_->statistics();
+        record.statistics = counted ? *counted : measure(*open_ome_zarr(folder_.path(), {}));
+        record.content_hash = tally_->content_hash();
         record.source = origin_.string();
         record.preparation = to_text(options_.preparation);
         write_text(PROJECT_RECORD, to_text(record));
         write_text(PROJECT_SESSION, import_session());
     }
 
-    /// Types with too many values to count each are measured in what was written, which needs no source.
-    VolumeStatistics statistics()
-    {
-        const std::vector<int64_t> counts = total_counts();
-        if (counts.empty()) return measure(*open_ome_zarr(folder_.path(), {}));
-        const bool is_signed = info_.type == VoxelType::int8 || info_.type == VoxelType::int16;
-        if (!is_signed) return statistics_of(counts, 0);
-        // Negative values come after the others where they are counted.
-        const auto half = static_cast<std::ptrdiff_t>(counts.size() / 2);
-        std::vector<int64_t> ascending(counts.begin() + half, counts.end());
-        ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
-        return statistics_of(ascending, -static_cast<int>(half));
-    }
-
     void finish_folder()
     {
         report_.info = info_;
         report_.levels = pyramid_->levels();
-        for (const Level& level : levels_) {
-            report_.bricks += static_cast<int64_t>(level.checksums.size());
-            report_.bricks_stored += static_cast<int64_t>(
-                std::ranges::count_if(level.checksums, [](uint64_t checksum) { return checksum != 0; }));
-        }
-        report_.bytes = bytes_ + other_bytes_;
+        report_.bricks = chunks_->all();
+        report_.bricks_stored = chunks_->stored();
+        report_.bytes = chunks_->bytes() + other_bytes_;
         folder_.finish();
         report_.project = folder_.path();
     }
@@ -383,12 +301,7 @@ private:
                            .seconds_left = left / done * seconds});
     }
 
-    Size3 counts(int level) const { return levels_[static_cast<size_t>(level)].volume.counts(); }
-
-    struct Level {
-        ZarrVolume volume;  ///< names and places; nothing is read through it
-        std::vector<uint64_t> checksums;
-    };
+    Size3 counts(int level) const { return chunks_->counts(level); }
 
     fs::path origin_;
     const ImportOptions& options_;
@@ -400,14 +313,11 @@ private:
     ImportReport report_;
 
     std::unique_ptr<ImportPyramid> pyramid_;
-    std::vector<Level> levels_;
-    std::vector<SliceHash> hashes_;             ///< by slice
-    std::vector<SliceHasher> hashers_;          ///< of the slices of a slab
-    std::vector<std::vector<int64_t>> counts_;  ///< by worker, then by value; no values where there are too many
+    std::unique_ptr<ImportChunks> chunks_;
+    std::unique_ptr<ImportTally> tally_;
     int64_t slabs_done_ = 0;
-    std::atomic<int64_t> bytes_ = 0;  ///< of chunks
-    int64_t other_bytes_ = 0;
-    int64_t rows_ = 0;  ///< of a slab that are held at once
+    int64_t other_bytes_ = 0;  ///< of files that are no chunks
+    int64_t rows_ = 0;         ///< of a slab that are held at once
     std::array<std::vector<std::byte>, 2> buffers_;
 
     int64_t chunks_of_plane_ = 0;

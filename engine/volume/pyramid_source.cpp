@@ -1,11 +1,12 @@
 #include "engine/volume/pyramid_source.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/halving.h"
+#include "engine/volume/voxel_dispatch.h"
 #include "shaders/bricks.h"
 
 namespace shvr {
@@ -18,42 +19,26 @@ struct Level {
     std::vector<std::byte> voxels;
 };
 
-/// Integers: to the nearest, halves up.
-template <class T>
-T mean_of(double sum, int count)
-{
-    if constexpr (std::is_floating_point_v<T>) return static_cast<T>(sum / count);
-    return static_cast<T>(std::floor(sum / count + 0.5));
-}
-
-/// Halves two slices (one at an odd end) along each axis: means over the voxels that exist.
-template <class T>
-void halve(const T* slices, const Size3& size, T* halved)
-{
-    for (int64_t y = 0; y < size.y; y += 2)
-        for (int64_t x = 0; x < size.x; x += 2) {
-            double sum = 0.0;
-            int count = 0;
-            for (int64_t z = 0; z < size.z; ++z)
-                for (int64_t j = y; j < std::min(y + 2, size.y); ++j)
-                    for (int64_t i = x; i < std::min(x + 2, size.x); ++i, ++count)
-                        sum += static_cast<double>(slices[i + size.x * (j + size.y * z)]);
-            *halved++ = mean_of<T>(sum, count);
-        }
-}
-
 template <class T>
 Level halved(const VolumeSource& source, int level)
 {
     const Size3 size = size_of_level(source.info().size, level), half = size_of_level(source.info().size, level + 1);
     Level result{half, {}};
     result.voxels.resize(static_cast<size_t>(half.x * half.y * half.z) * sizeof(T));
+    auto* to = reinterpret_cast<T*>(result.voxels.data());
     std::vector<T> slices(static_cast<size_t>(size.x * size.y * 2));
-    for (int64_t z = 0; z < half.z; ++z) {
-        const VoxelBox box{{0, 0, 2 * z}, {size.x, size.y, std::min(2 * z + 2, size.z)}};
-        const std::span<T> read(slices.data(), static_cast<size_t>(size.x * size.y * box.size().z));
+    for (int64_t z = 0; z < size.z; z += 2) {
+        const VoxelBox box{{0, 0, z}, {size.x, size.y, std::min(z + 2, size.z)}};
+        const Size3 extent = box.size();
+        const std::span<T> read(slices.data(), static_cast<size_t>(extent.x * extent.y * extent.z));
         source.read_level(level, box, std::as_writable_bytes(read));
-        halve(slices.data(), box.size(), reinterpret_cast<T*>(result.voxels.data()) + half.x * half.y * z);
+        for (int64_t y = 0; y < extent.y; y += 2, to += half.x) {
+            HalvingRows<T> rows;
+            for (int64_t slice = 0; slice < extent.z; ++slice)
+                for (int64_t row = y; row < std::min(y + 2, extent.y); ++row)
+                    rows.first[static_cast<size_t>(rows.count++)] = read.data() + extent.x * (row + extent.y * slice);
+            halve_rows(rows, extent.x, to);
+        }
     }
     return result;
 }
@@ -85,6 +70,12 @@ public:
                     to, coarse.voxels.data() + voxel_bytes * (box.lower.x + coarse.size.x * (y + coarse.size.y * z)),
                     static_cast<size_t>(extent.x * voxel_bytes));
     }
+    Size3 block() const override { return base_->block(); }
+    std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
+    {
+        // Means lie within the range of what they are made of, but only the source knows that.
+        return level == 0 ? base_->brick_range(level, brick) : std::nullopt;
+    }
     std::optional<VolumeStatistics> statistics() const override { return base_->statistics(); }
 
 private:
@@ -108,16 +99,7 @@ std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSour
         fail(info.name, ": its coarser levels take ", (bytes >> 20) + 1, " MiB of host memory, which holds ",
              most_bytes >> 20, " MiB of bricks; expected a larger --budget-host, or a project made by `shvr import`");
     auto pyramid = std::make_shared<PyramidSource>(std::move(source));
-    switch (pyramid->info().type) {
-        case VoxelType::uint8: pyramid->build<uint8_t>(levels); break;
-        case VoxelType::int8: pyramid->build<int8_t>(levels); break;
-        case VoxelType::uint16: pyramid->build<uint16_t>(levels); break;
-        case VoxelType::int16: pyramid->build<int16_t>(levels); break;
-        case VoxelType::uint32: pyramid->build<uint32_t>(levels); break;
-        case VoxelType::int32: pyramid->build<int32_t>(levels); break;
-        case VoxelType::float32: pyramid->build<float>(levels); break;
-        case VoxelType::float64: pyramid->build<double>(levels); break;
-    }
+    with_voxel_type(pyramid->info().type, [&]<class T>(T) { pyramid->build<T>(levels); });
     return pyramid;
 }
 

@@ -2,64 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
 namespace {
 
-/// Voxels pass through doubles in blocks; those hold every value of every type.
+/// Voxels pass through doubles in blocks of this many.
 constexpr size_t BLOCK = 512;
-
-template <class T>
-void load(const std::byte* voxels, std::span<double> values)
-{
-    for (size_t i = 0; i < values.size(); ++i) {
-        T voxel;
-        std::memcpy(&voxel, voxels + i * sizeof(T), sizeof(T));
-        values[i] = static_cast<double>(voxel);
-    }
-}
-
-template <class T>
-void store(std::span<const double> values, std::byte* voxels)
-{
-    for (size_t i = 0; i < values.size(); ++i) {
-        const T voxel = static_cast<T>(values[i]);
-        std::memcpy(voxels + i * sizeof(T), &voxel, sizeof(T));
-    }
-}
-
-void load(VoxelType type, const std::byte* voxels, std::span<double> values)
-{
-    switch (type) {
-        case VoxelType::uint8: return load<uint8_t>(voxels, values);
-        case VoxelType::int8: return load<int8_t>(voxels, values);
-        case VoxelType::uint16: return load<uint16_t>(voxels, values);
-        case VoxelType::int16: return load<int16_t>(voxels, values);
-        case VoxelType::uint32: return load<uint32_t>(voxels, values);
-        case VoxelType::int32: return load<int32_t>(voxels, values);
-        case VoxelType::float32: return load<float>(voxels, values);
-        case VoxelType::float64: return load<double>(voxels, values);
-    }
-}
-
-void store(VoxelType type, std::span<const double> values, std::byte* voxels)
-{
-    switch (type) {
-        case VoxelType::uint8: return store<uint8_t>(values, voxels);
-        case VoxelType::int8: return store<int8_t>(values, voxels);
-        case VoxelType::uint16: return store<uint16_t>(values, voxels);
-        case VoxelType::int16: return store<int16_t>(values, voxels);
-        case VoxelType::uint32: return store<uint32_t>(values, voxels);
-        case VoxelType::int32: return store<int32_t>(values, voxels);
-        case VoxelType::float32: return store<float>(values, voxels);
-        case VoxelType::float64: return store<double>(values, voxels);
-    }
-}
 
 template <class T>
 ValueRange range_of()
@@ -149,9 +102,9 @@ void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Res
     double values[BLOCK];
     for (size_t at = 0; at < count; at += BLOCK) {
         const std::span<double> block(values, std::min(BLOCK, count - at));
-        load(from, stored.data() + at * bytes_of(from), block);
+        load_voxels(from, stored.data() + at * bytes_of(from), block);
         for (double& value : block) value = rescale.slope * value + rescale.intercept;
-        store(to, block, intensities.data() + at * bytes_of(to));
+        store_voxels(to, block, intensities.data() + at * bytes_of(to));
     }
 }
 

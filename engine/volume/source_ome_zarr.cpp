@@ -13,8 +13,9 @@
 #include "engine/base/error.h"
 #include "engine/volume/header_text.h"
 #include "engine/volume/ome_zarr.h"
-#include "engine/volume/project.h"
+#include "engine/volume/project_knowledge.h"
 #include "engine/volume/readers.h"
+#include "engine/volume/zarr_gaps.h"
 #include "engine/volume/zarr_json.h"
 #include "engine/volume/zarr_volume.h"
 #include "shaders/bricks.h"
@@ -28,18 +29,13 @@ using Json = nlohmann::json;
 constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
 constexpr int MOST_LEVELS = 24;
 
-/// What is read of a project's folder; nothing of it is needed.
-struct Knowledge {
-    std::optional<ProjectRecord> record;
-    std::vector<std::vector<std::byte>> ranges;  ///< by level; may be empty
-};
-
 class OmeZarrSource : public VolumeSource {
 public:
-    OmeZarrSource(VolumeInfo info, std::vector<ZarrVolume> volumes, Knowledge knowledge)
+    OmeZarrSource(VolumeInfo info, std::vector<ZarrVolume> volumes, ProjectKnowledge knowledge)
         : VolumeSource(std::move(info)),
           volumes_(std::move(volumes)),
           knowledge_(std::move(knowledge)),
+          gaps_(volumes_),
           cache_(CACHE_BYTES)
     {}
 
@@ -59,16 +55,17 @@ public:
 
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
     {
-        if (level < 0 || static_cast<size_t>(level) >= knowledge_.ranges.size()) return std::nullopt;
-        const std::vector<std::byte>& ranges = knowledge_.ranges[static_cast<size_t>(level)];
-        const Size3 counts = size_of_level(size_of_level(info().size, level), 5);
-        static_assert(gpu::BRICK_SIZE == 32);
+        if (level < 0 || level >= levels()) return std::nullopt;
+        const Size3 size = size_of_level(info().size, level);
+        const Size3 counts = size_of_level(size, 5);
+        constexpr int64_t SIDE = gpu::BRICK_SIZE;
+        static_assert(SIDE == 32);
         const bool is_inside =
             glm::all(glm::greaterThanEqual(brick, Size3(0))) && glm::all(glm::lessThan(brick, counts));
-        if (ranges.empty() || !is_inside) return std::nullopt;
-        const size_t bytes = 2 * bytes_of(info().type);
-        const auto index = static_cast<size_t>(brick.x + counts.x * (brick.y + counts.y * brick.z));
-        return range_of(info().type, std::span(ranges).subspan(index * bytes, bytes));
+        if (!is_inside) return std::nullopt;
+        if (const std::optional<ValueRange> known = range_of(knowledge_, info(), level, brick)) return known;
+        return gaps_.range(level, {glm::max(brick * SIDE - int64_t{1}, Size3(0)),
+                                   glm::min((brick + int64_t{1}) * SIDE + int64_t{1}, size)});
     }
 
     std::optional<VolumeStatistics> statistics() const override
@@ -109,7 +106,8 @@ private:
     }
 
     std::vector<ZarrVolume> volumes_;
-    Knowledge knowledge_;
+    ProjectKnowledge knowledge_;
+    ZarrGaps gaps_;  ///< of volumes_
     mutable ChunkCache cache_;
 };
 
@@ -246,77 +244,6 @@ std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& imag
     return volumes;
 }
 
-// ---- Projects -------------------------------------------------------------------------------------------------------
-
-ProjectTable table_for(const VolumeInfo& info, int level)
-{
-    return {.kind = "ranges",
-            .level = level,
-            .element_bytes = 2 * bytes_of(info.type),
-            .counts = size_of_level(size_of_level(info.size, level), 5)};
-}
-
-/// Damage costs what it hits, not the image.
-template <class Read>
-void try_to(const Read& read, std::vector<std::string>& warnings)
-{
-    try {
-        read();
-    } catch (const Error& error) {
-        warnings.push_back(sentence(error.what(), "; it is not used"));
-    }
-}
-
-Knowledge read_knowledge(const fs::path& folder, VolumeInfo& info, std::vector<ZarrVolume>& volumes)
-{
-    Knowledge knowledge;
-    const fs::path file = folder / PROJECT_RECORD;
-    if (!is_there(file)) return knowledge;
-    std::vector<std::string> damage;
-    try_to(
-        [&] {
-            ProjectRecord record = read_project_record(file);
-            const bool fits = record.info.size == info.size && record.info.type == info.type &&
-                              record.levels >= static_cast<int>(volumes.size());
-            if (!fits) fail(file.string(), ": describes another volume; expected that of this folder");
-            knowledge.record = std::move(record);
-        },
-        damage);
-    if (knowledge.record) {
-        const VolumeInfo& known = knowledge.record->info;
-        info.spacing = known.spacing;
-        info.unit = known.unit;
-        info.directions = known.directions;
-        info.origin = known.origin;
-        info.frame = known.frame;
-        info.warnings = known.warnings;
-    }
-    knowledge.ranges.resize(volumes.size());
-    for (int level = 0; level < static_cast<int>(volumes.size()); ++level) {
-        const auto index = static_cast<size_t>(level);
-        try_to(
-            [&] {
-                knowledge.ranges[index] =
-                    read_project_table(ranges_path(folder, level), table_for(info, level)).elements;
-            },
-            damage);
-        try_to(
-            [&] {
-                const ProjectTable table =
-                    read_project_table(checksums_path(folder, level), {.kind = "checksum",
-                                                                       .level = level,
-                                                                       .element_bytes = sizeof(uint64_t),
-                                                                       .counts = volumes[index].counts()});
-                std::vector<uint64_t> checksums(table.elements.size() / sizeof(uint64_t));
-                std::memcpy(checksums.data(), table.elements.data(), table.elements.size());
-                volumes[index].expect(std::move(checksums));
-            },
-            damage);
-    }
-    info.warnings.insert(info.warnings.end(), damage.begin(), damage.end());
-    return knowledge;
-}
-
 // ---- What kind of folder it is --------------------------------------------------------------------------------------
 
 std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& attributes, const OpenOptions& options)
@@ -330,7 +257,7 @@ std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& att
     info.warnings = image.warnings;
     apply_spacing(info, image.levels[0].scale, image.unit, "um");
     info.origin = image.levels[0].translation.value_or(glm::dvec3(0.0));
-    Knowledge knowledge = read_knowledge(folder, info, volumes);
+    ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
@@ -355,7 +282,7 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
     std::vector<ZarrVolume> volumes;
     const ZarrView view = view_of(folder, image, metadata, options);
     volumes.emplace_back(folder, std::move(metadata), view);
-    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), Knowledge{});
+    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
 }
 
 /// A group that is no image itself may hold some: bioformats2raw puts them into 0, 1, ...

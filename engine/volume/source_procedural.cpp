@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/volume/procedural_kind.h"
+#include "engine/volume/voxel_numbers.h"
 #include "shaders/bricks.h"
 
 namespace shvr {
@@ -62,36 +63,14 @@ double shift_of(VoxelType type)
     return type == VoxelType::int8 ? -128.0 : 0.0;
 }
 
-/// Rounded half up; values are never negative.
-template <class T>
-void store(std::span<const double> values, std::byte* voxels)
+/// Puts `values`, which kinds give from 0 to 250, into voxels.
+void store(VoxelType type, std::span<double> values, std::byte* voxels)
 {
-    for (const double value : values) {
-        T voxel;
-        if constexpr (std::is_floating_point_v<T>) {
-            voxel = static_cast<T>(value);
-        } else {
-            const int shift = std::is_same_v<T, int8_t> ? -128 : 0;
-            const double raised = value + 0.5;
-            voxel = static_cast<T>(static_cast<int>(raised) + shift);
-        }
-        std::memcpy(voxels, &voxel, sizeof(T));
-        voxels += sizeof(T);
+    const double shift = shift_of(type);
+    if (shift != 0.0) {
+        for (double& value : values) value += shift;
     }
-}
-
-void store(VoxelType type, std::span<const double> values, std::byte* voxels)
-{
-    switch (type) {
-        case VoxelType::uint8: return store<uint8_t>(values, voxels);
-        case VoxelType::int8: return store<int8_t>(values, voxels);
-        case VoxelType::uint16: return store<uint16_t>(values, voxels);
-        case VoxelType::int16: return store<int16_t>(values, voxels);
-        case VoxelType::uint32: return store<uint32_t>(values, voxels);
-        case VoxelType::int32: return store<int32_t>(values, voxels);
-        case VoxelType::float32: return store<float>(values, voxels);
-        case VoxelType::float64: return store<double>(values, voxels);
-    }
+    store_voxels(type, values, voxels);
 }
 
 class ProceduralSource final : public VolumeSource {

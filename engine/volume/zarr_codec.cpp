@@ -4,6 +4,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 
@@ -126,16 +127,15 @@ void decompress_chunk(ZarrCompressor::Kind kind, Bytes stored, std::span<std::by
     }
 }
 
-std::vector<std::byte> compress_chunk(const ZarrCompressor& compressor, Bytes chunk, size_t voxel_bytes)
+Bytes compress_chunk(const ZarrCompressor& compressor, Bytes chunk, size_t voxel_bytes, std::vector<std::byte>& memory)
 {
-    if (compressor.kind == ZarrCompressor::Kind::none) return {chunk.begin(), chunk.end()};
+    if (compressor.kind == ZarrCompressor::Kind::none) return chunk;
     SHVR_CHECK(compressor.kind == ZarrCompressor::Kind::blosc, static_cast<int>(compressor.kind));
-    std::vector<std::byte> stored(chunk.size() + BLOSC_MAX_OVERHEAD);
+    memory.resize(std::max(memory.size(), chunk.size() + BLOSC_MAX_OVERHEAD));
     const int made = blosc_compress_ctx(compressor.level, compressor.shuffle, voxel_bytes, chunk.size(), chunk.data(),
-                                        stored.data(), stored.size(), compressor.codec.c_str(), 0, 1);
+                                        memory.data(), memory.size(), compressor.codec.c_str(), 0, 1);
     SHVR_CHECK(made > 0, made, " ", compressor.codec);
-    stored.resize(static_cast<size_t>(made));
-    return stored;
+    return Bytes(memory).first(static_cast<size_t>(made));
 }
 
 }  // namespace shvr

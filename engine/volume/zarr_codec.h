@@ -19,8 +19,9 @@ void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t ch
 void decompress_chunk(ZarrCompressor::Kind kind, std::span<const std::byte> stored, std::span<std::byte> chunk,
                       const std::string& name);
 
-/// The same bytes for the same input. Blosc and none only: that is what we write.
-std::vector<std::byte> compress_chunk(const ZarrCompressor& compressor, std::span<const std::byte> chunk,
-                                      size_t voxel_bytes);
+/// The same bytes for the same input. Blosc and none only: that is what we write. They lie in `memory`, which is made
+/// large enough once and used again, or are `chunk` itself.
+std::span<const std::byte> compress_chunk(const ZarrCompressor& compressor, std::span<const std::byte> chunk,
+                                          size_t voxel_bytes, std::vector<std::byte>& memory);
 
 }  // namespace shvr

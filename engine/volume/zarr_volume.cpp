@@ -144,12 +144,23 @@ Block ZarrVolume::load(const Size3& chunk) const
     }
     if (stored) return decoded(*stored, path.string());
     // A whole array that went away must not look empty.
-    const std::filesystem::path metadata = array_ / ".zarray";
-    if (::access(metadata.c_str(), F_OK) != 0) {
-        fail(metadata.string(), ": cannot be found any more: ", reason_of(errno),
+    if (!is_there()) {
+        fail((array_ / ".zarray").string(), ": cannot be found any more: ", reason_of(errno),
              "; expected the array that was opened");
     }
     return {};
+}
+
+bool ZarrVolume::is_missing(const Size3& chunk) const
+{
+    if (!checksums_.empty()) return checksums_[static_cast<size_t>(index_of(chunk))] == 0;
+    struct stat status {};
+    return ::stat(path_of(chunk).c_str(), &status) != 0 && errno == ENOENT;
+}
+
+bool ZarrVolume::is_there() const
+{
+    return ::access((array_ / ".zarray").c_str(), F_OK) == 0;
 }
 
 Block ZarrVolume::decoded(std::span<const std::byte> stored, const std::string& name) const

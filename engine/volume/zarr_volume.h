@@ -43,6 +43,11 @@ public:
     /// The voxels of a chunk, x fastest, in native byte order; empty where they are all the fill value.
     Block load(const Size3& chunk) const;
 
+    /// True where no such chunk is stored, nor should be: it holds the fill value. Nothing is read.
+    bool is_missing(const Size3& chunk) const;
+    /// The array is still where it was opened.
+    bool is_there() const;
+
     /// Copies the voxels of `box`, which lies inside the volume, x fastest. `get` gives the chunks.
     void read(const VoxelBox& box, std::span<std::byte> voxels,
               const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const;

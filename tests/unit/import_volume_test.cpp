@@ -72,8 +72,7 @@ std::map<std::string, std::string> content_of(const fs::path& folder)
     std::map<std::string, std::string> content;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) continue;
-        std::ifstream file(entry.path(), std::ios::binary);
-        content[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>(file), {}};
+        content[fs::relative(entry.path(), folder).string()] = bytes_of_file(entry.path());
     }
     return content;
 }

@@ -152,16 +152,6 @@ std::vector<Dicom> phantom_slices()
     return {slice_of(0), slice_of(1), slice_of(2)};
 }
 
-bool is_chirality_phantom(const VolumeSource& source)
-{
-    if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
-    const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
-    for (int i = 0; i < 60; ++i) {
-        if (voxels[static_cast<size_t>(i)] != phantom(i % 5, i / 5 % 4, i / 20)) return false;
-    }
-    return true;
-}
-
 std::string refusal(const fs::path& path, const OpenOptions& options = {})
 {
     return error_of([&] {

@@ -13,29 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path CHIRALITY = "tests/data/chirality";  // tests run in the repository's root
-
 /// Those that name other files find them beside them.
 constexpr const char* HEADERS[] = {
     "attached.nrrd",     "detached.nhdr", "tail.nhdr", "local.mha",      "detached.mhd",     "tail.mhd",
     "gzip.nrrd",         "gzip.nhdr",     "zlib.mha",  "zlib.mhd",       "pattern.nhdr",     "list.nhdr",
     "pattern_gzip.nhdr", "pattern.mhd",   "list.mhd",  "flipped_y.nrrd", "left_handed.nrrd", "flipped_z.mha"};
-
-bool is_chirality_phantom(const VolumeSource& source)
-{
-    if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
-    const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
-    for (int i = 0; i < 60; ++i) {
-        if (voxels[static_cast<size_t>(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
-    }
-    return true;
-}
-
-std::string bytes_of_file(const fs::path& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::string refusal(const fs::path& path)
 {

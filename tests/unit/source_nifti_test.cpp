@@ -15,25 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path CHIRALITY = "tests/data/chirality";  // tests run in the repository's root
 constexpr const char* FILES[] = {"sform.nii", "big.nii",          "gzip.nii.gz",  "radiological.nii", "qform.nii",
                                  "pair.hdr",  "pair_gzip.hdr.gz", "version2.nii", "version2_big.nii"};
-
-bool is_chirality_phantom(const VolumeSource& source)
-{
-    if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
-    const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
-    for (int i = 0; i < 60; ++i) {
-        if (voxels[static_cast<size_t>(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
-    }
-    return true;
-}
-
-std::string bytes_of_file(const fs::path& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// The little-endian phantom of NIfTI-1, to be spoilt.
 class Nifti {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const TiffSpec CHIRALITY{.format = SAMPLEFORMAT_INT};
+const TiffSpec CHIRALITY_SPEC{.format = SAMPLEFORMAT_INT};
 
 std::string noise(size_t bytes, uint32_t seed)
 {
@@ -99,7 +99,7 @@ TEST_CASE("a TIFF of several pages does not mirror the chirality phantom")
     const TemporaryFolder folder;
     for (const char* mode : {"wl", "wb", "wl8", "wb8"}) {
         CAPTURE(mode);
-        const auto source = open_volume(write_tiff(folder.path / "a.tif", CHIRALITY, chirality_pages(), mode));
+        const auto source = open_volume(write_tiff(folder.path / "a.tif", CHIRALITY_SPEC, chirality_pages(), mode));
         CHECK(is_chirality_phantom(*source));
         CHECK(source->info().format == "tiff");
         CHECK(source->info().name == "a.tif");
@@ -107,7 +107,7 @@ TEST_CASE("a TIFF of several pages does not mirror the chirality phantom")
         CHECK(warns_of(*source, "no spacing stated; 1 voxel assumed"));
         CHECK(source->info().warnings.size() == 1);
     }
-    const fs::path unnamed = write_tiff(folder.path / "scan", CHIRALITY, chirality_pages());
+    const fs::path unnamed = write_tiff(folder.path / "scan", CHIRALITY_SPEC, chirality_pages());
     CHECK(is_chirality_phantom(*open_volume(unnamed)));
 }
 
@@ -292,7 +292,7 @@ TEST_CASE("pages that are stored mirrored are mirrored back, and turned ones are
             }
             pages.push_back(stored);
         }
-        TiffSpec spec = CHIRALITY;
+        TiffSpec spec = CHIRALITY_SPEC;
         spec.orientation = orientation;
         for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW}) {
             spec.compression = compression;
@@ -307,7 +307,7 @@ TEST_CASE("pages that are stored mirrored are mirrored back, and turned ones are
             }
         }
     }
-    TiffSpec turned = CHIRALITY;
+    TiffSpec turned = CHIRALITY_SPEC;
     turned.orientation = ORIENTATION_RIGHTTOP;
     const fs::path path = write_tiff(folder.path / "a.tif", turned, chirality_pages());
     CHECK(error_of([&] { open_volume(path); }) ==

@@ -177,20 +177,4 @@ inline std::vector<std::string> chirality_pages()
     return {chirality_page(0), chirality_page(1), chirality_page(2)};
 }
 
-inline bool is_chirality_phantom(const VolumeSource& source)
-{
-    if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
-    const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
-    for (int i = 0; i < 60; ++i) {
-        if (voxels[static_cast<size_t>(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
-    }
-    return true;
-}
-
-inline std::string bytes_of_file(const std::filesystem::path& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 }  // namespace shvr::test

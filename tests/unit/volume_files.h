@@ -43,6 +43,12 @@ public:
     std::filesystem::path path;
 };
 
+inline std::string bytes_of_file(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// A volume that is a block of memory.
 class MemorySource : public VolumeSource {
 public:
@@ -90,6 +96,19 @@ template <class T>
 std::vector<T> voxels_of(const VolumeSource& source)
 {
     return voxels_in<T>(source, {Size3(0), source.info().size});
+}
+
+/// 5 x 4 x 3 voxels of 16 bits, x + 10 y + 100 z - 99 each, in many formats; tests run in the repository's root.
+inline const std::filesystem::path CHIRALITY = "tests/data/chirality";
+
+inline bool is_chirality_phantom(const VolumeSource& source)
+{
+    if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
+    const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
+    for (int i = 0; i < 60; ++i) {
+        if (voxels[static_cast<size_t>(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
+    }
+    return true;
 }
 
 /// The sentence of the `Error` that `action` throws; empty where it throws none.

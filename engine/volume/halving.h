@@ -1,0 +1,113 @@
+#pragma once
+// How a coarser level is made of a finer one; the only way, in projects and in memory.
+//
+// A voxel is the mean of the 2^3 voxels it stands for: of those that there are at the volume's end, and of the finite
+// ones; NaN where none is. Sums are exact for integers and taken in double for floats, along y and z before x. Integers are
+// rounded to nearest, ties to even; floats once, to their type. Any thread may call these.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace shvr {
+
+/// Sums of eight voxels, without overflow.
+template <class T>
+using HalvingSum =
+    std::conditional_t<std::is_floating_point_v<T>, double, std::conditional_t<sizeof(T) == 4, int64_t, int32_t>>;
+
+/// The rows of the finer level that a row of the coarser one stands for: 1, 2 or 4.
+template <class T>
+struct HalvingRows {
+    std::array<const T*, 4> first{};
+    int count = 0;
+};
+
+namespace halving {
+
+/// The mean of COUNT (1, 2, 4 or 8) voxels.
+template <int COUNT, class T>
+T mean_of(HalvingSum<T> sum)
+{
+    if constexpr (std::is_floating_point_v<T>) {
+        return static_cast<T>(sum / COUNT);
+    } else if constexpr (COUNT == 1) {
+        return static_cast<T>(sum);
+    } else {
+        constexpr int SHIFT = COUNT == 8 ? 3 : COUNT == 4 ? 2 : 1;
+        // Half of the divisor less one, and one more where that makes an even number of a tie.
+        const HalvingSum<T> odd = (sum >> SHIFT) & 1;
+        return static_cast<T>((sum + (HalvingSum<T>{1} << (SHIFT - 1)) - 1 + odd) >> SHIFT);
+    }
+}
+
+/// Of voxels `begin` to `end` of every row; those that are not finite left out.
+template <class T>
+T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
+{
+    double sum[2] = {};
+    int count = 0;
+    for (int row = 0; row < rows.count; ++row) {
+        for (int64_t x = begin; x < end; ++x) {
+            const T voxel = rows.first[static_cast<size_t>(row)][x];
+            if (!std::isfinite(voxel)) continue;
+            sum[x - begin] += static_cast<double>(voxel);
+            ++count;
+        }
+    }
+    return count > 0 ? static_cast<T>((sum[0] + sum[1]) / count) : std::numeric_limits<T>::quiet_NaN();
+}
+
+/// Loops of this length, which compilers know, are what nearly all time goes into.
+inline constexpr int64_t BLOCK = 64;
+
+template <int ROWS, class T, class Length>
+void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halved)
+{
+    using Sum = HalvingSum<T>;
+    alignas(64) Sum sum[BLOCK];
+    for (int64_t x = 0; x < length; ++x) sum[x] = static_cast<Sum>(rows.first[0][at + x]);
+    for (size_t row = 1; row < size_t{ROWS}; ++row) {
+        for (int64_t x = 0; x < length; ++x) sum[x] += static_cast<Sum>(rows.first[row][at + x]);
+    }
+    for (int64_t x = 0; x < length / 2; ++x) halved[x] = mean_of<2 * ROWS, T>(sum[2 * x] + sum[2 * x + 1]);
+    if (length % 2 != 0) {
+        const int64_t last = at + length - 1;
+        Sum alone = static_cast<Sum>(rows.first[0][last]);
+        for (size_t row = 1; row < size_t{ROWS}; ++row) alone += static_cast<Sum>(rows.first[row][last]);
+        halved[length / 2] = mean_of<ROWS, T>(alone);
+    }
+    if constexpr (std::is_floating_point_v<T>) {
+        // One that is not finite leaves no mean that is.
+        for (int64_t x = 0; x < length; x += 2) {
+            if (std::isfinite(halved[x / 2])) continue;
+            halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
+        }
+    }
+}
+
+template <int ROWS, class T>
+void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
+{
+    int64_t at = 0;
+    for (; at + BLOCK <= length; at += BLOCK) {
+        halve_block<ROWS>(rows, at, std::integral_constant<int64_t, BLOCK>{}, halved + at / 2);
+    }
+    if (at < length) halve_block<ROWS>(rows, at, length - at, halved + at / 2);
+}
+
+}  // namespace halving
+
+/// Makes (length + 1) / 2 voxels of rows that are `length` voxels long.
+template <class T>
+void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved)
+{
+    if (rows.count == 4) return halving::halve<4>(rows, length, halved);
+    if (rows.count == 2) return halving::halve<2>(rows, length, halved);
+    halving::halve<1>(rows, length, halved);
+}
+
+}  // namespace shvr

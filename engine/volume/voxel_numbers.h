@@ -1,0 +1,17 @@
+#pragma once
+// Voxels of any type to doubles, which hold every value of every type, and back. Any thread may call these.
+
+#include <span>
+
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+/// values.size() voxels of `type`, wherever they lie.
+void load_voxels(VoxelType type, const std::byte* voxels, std::span<double> values);
+
+/// Integers are rounded to nearest, halves up. Values must be finite, and within what `type` holds, where it holds
+/// integers.
+void store_voxels(VoxelType type, std::span<const double> values, std::byte* voxels);
+
+}  // namespace shvr
