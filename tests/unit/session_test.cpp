@@ -500,7 +500,7 @@ TEST_CASE("what is not set for a group comes from its parent, and a hidden paren
     // A parent that has no entry itself looks as groups do.
     CHECK(group_of(groups, 4) == ColorGroup{"group 4", default_group(9).color, 1.0, true});
     groups[1].visible = false;
-    for (const uint8_t group : {1, 2, 3}) CHECK_FALSE(group_of(groups, group).visible);
+    for (const int group : {1, 2, 3}) CHECK_FALSE(group_of(groups, uint8_t(group)).visible);
     CHECK(group_of(groups, 4).visible);
     groups[1] = {.visible = true};
     CHECK(group_of(groups, 3) == ColorGroup{"group 3", blue, 0.25, true});
