@@ -55,6 +55,10 @@ struct SetGroup {
 struct SetShaded {
     bool shaded = true;
 };
+struct SetOcclusion {
+    OcclusionSettings occlusion;
+};
+struct UpdateOcclusion {};  ///< renews it where it is not renewed by itself
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
@@ -102,10 +106,10 @@ struct ShowHelp {
 };
 struct Quit {};
 
-using Action =
-    std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction, SetGroup,
-                 SetShaded, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold,
-                 Assist, SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+using Action = std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction,
+                            SetGroup, SetShaded, SetOcclusion, UpdateOcclusion, ProbeTo, ProbeOnto, PushProbe,
+                            ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold, Assist, SetProxyLaw, Undo,
+                            Redo, Save, Screenshot, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -92,6 +92,8 @@ private:
     void apply(const SetTransferFunction& action);
     void apply(const SetGroup& action);
     void apply(const SetShaded& action);
+    void apply(const SetOcclusion& action);
+    void apply(const UpdateOcclusion& action);
     void apply(const ProbeTo& action);
     void apply(const ProbeOnto& action);
     void apply(const PushProbe& action);

@@ -147,6 +147,9 @@ void view_menu(const Model& model, Actions& actions)
     ImGui::Separator();
     const bool shaded = model.session.light.shaded;
     if (ImGui::MenuItem("Shading", nullptr, shaded)) actions.push_back(SetShaded{!shaded});
+    const OcclusionSettings& occlusion = model.session.light.occlusion;
+    key_item("Update ambient occlusion", model, actions,
+             {.is_enabled = shaded && occlusion.strength > 0.0 && !occlusion.automatic});
     cut_menu(model, actions);
     key_buttons("Clip planes", model, actions);
     ImGui::EndMenu();

@@ -21,6 +21,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
 // The parts of the side panel, each in a file of its own.
 void probe_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
+void occlusion_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
