@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/base/image_metrics.h"
 #include "engine/scene/annotator.h"
 #include "engine/scene/view.h"
 #include "tests/reference/occlusion.h"
@@ -83,13 +84,24 @@ struct Expected {
         const glm::ivec3 held = glm::clamp(at, glm::ivec3(0), volume.size - 1);
         return volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
     }
+    std::vector<double> opacities{};
+
+    Expected(const TestVolume& of_volume, const Session& of_session) : volume(of_volume), session(of_session)
+    {
+        for (int z = 0; z < volume.size.z; ++z)
+            for (int y = 0; y < volume.size.y; ++y)
+                for (int x = 0; x < volume.size.x; ++x) {
+                    const glm::dvec3 centre = glm::dvec3(x, y, z) + 0.5;
+                    const bool is_kept = glm::all(glm::greaterThanEqual(centre, session.cut.lower)) &&
+                                         glm::all(glm::lessThan(centre, session.cut.upper));
+                    opacities.push_back(is_kept ? session.transfer_function.at(code({x, y, z})).a : 0.0);
+                }
+    }
     double opacity(const glm::ivec3& at) const
     {
-        const bool is_inside = glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
-                               glm::all(glm::lessThan(at, volume.size)) &&
-                               glm::all(glm::greaterThanEqual(glm::dvec3(at) + 0.5, session.cut.lower)) &&
-                               glm::all(glm::lessThan(glm::dvec3(at) + 0.5, session.cut.upper));
-        return is_inside ? session.transfer_function.at(code(at)).a : 0.0;
+        const bool is_inside =
+            glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, volume.size));
+        return is_inside ? opacities[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))] : 0.0;
     }
     glm::dvec3 units() const
     {
@@ -321,24 +333,30 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
     Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0, {96, 80});
     View view(renderer());
     const auto rest = [&] {
-        for (int i = 0; i < 100000 && !view.complete(); ++i) view.advance();
-        CHECK(view.complete());
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 100'000'000);
+            view.advance();
+        }
         const uint64_t submissions = view.submissions();
         for (int i = 0; i < 10; ++i) view.advance();
         CHECK(view.submissions() == submissions);
     };
+    // Encoded here or there, a channel may be rounded otherwise.
+    const auto is_picture = [&](const Image8& shown) {
+        const Image8 expected = to_image8(draw(session, camera));
+        return compare_pixels(shown, expected).max_abs <= 1.0;
+    };
     view.look(session, camera, session.render.size);
     rest();
     const Image8 seen = view.read_back();
-    const Image8 expected = to_image8(draw(session, camera));
-    CHECK(seen.rgba == expected.rgba);
+    CHECK(is_picture(seen));
 
     SUBCASE("another look")
     {
         session.transfer_function = TransferFunction({{30000.0, RED, 0.0}, {42000.0, GREEN, 0.5}});
         view.look(session, camera, session.render.size);
         rest();
-        CHECK(view.read_back().rgba == to_image8(draw(session, camera)).rgba);
+        CHECK(is_picture(view.read_back()));
     }
     SUBCASE("by hand")
     {
@@ -346,12 +364,12 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
         session.light.occlusion.radius = 5.0;
         view.look(session, camera, session.render.size);
         rest();
-        CHECK(view.read_back().rgba == expected.rgba);
+        CHECK(view.read_back().rgba == seen.rgba);
         view.update_occlusion();
         view.advance();
         rest();
         const Image8 renewed = view.read_back();
-        CHECK(renewed.rgba != expected.rgba);
-        CHECK(renewed.rgba == to_image8(draw(session, camera)).rgba);
+        CHECK(renewed.rgba != seen.rgba);
+        CHECK(is_picture(renewed));
     }
 }

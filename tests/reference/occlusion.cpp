@@ -19,8 +19,11 @@ double kept_opacity(const VoxelOpacity& opacity, const glm::ivec3& voxel, int si
     double sum = 0.0;
     for (int z = 0; z < side; ++z)
         for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                sum += 1.0 - std::pow(1.0 - opacity(first + glm::ivec3(x, y, z)), double(side));
+            for (int x = 0; x < side; ++x) {
+                double left = 1.0;
+                for (int i = 0; i < side; ++i) left *= 1.0 - opacity(first + glm::ivec3(x, y, z));
+                sum += 1.0 - left;
+            }
     const double code = std::floor(255.0 * std::sqrt(sum / (side * side * side)) + 0.5);
     return code * code / (255.0 * 255.0);
 }
