@@ -12,6 +12,7 @@
 #include "engine/base/image_metrics.h"
 #include "engine/scene/annotator.h"
 #include "engine/scene/view.h"
+#include "engine/volume/source_procedural.h"
 #include "tests/reference/occlusion.h"
 #include "tests/support/gpu.h"
 
@@ -136,6 +137,28 @@ struct Expected {
     double value(const glm::ivec3& at) const
     {
         return reference::occlusion_by_taps([&](const glm::ivec3& v) { return opacity(v); }, rays(), at, side(at));
+    }
+};
+
+/// Codes between voxels; 0 outside.
+struct FieldCodes {
+    const TestVolume& volume;
+    double at(const glm::dvec3& p) const
+    {
+        if (glm::any(glm::lessThan(p, glm::dvec3(0.0))) || glm::any(glm::greaterThanEqual(p, glm::dvec3(volume.size))))
+            return 0.0;
+        const glm::dvec3 lattice = p - 0.5;
+        const glm::ivec3 corner(glm::floor(lattice));
+        const glm::dvec3 f = lattice - glm::dvec3(corner);
+        double sum = 0.0;
+        for (int i = 0; i < 8; ++i) {
+            const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2);
+            const glm::ivec3 held = glm::clamp(corner + offset, glm::ivec3(0), volume.size - 1);
+            const glm::dvec3 weight = glm::mix(1.0 - f, f, glm::dvec3(offset));
+            sum += weight.x * weight.y * weight.z *
+                   volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
+        }
+        return sum;
     }
 };
 
@@ -371,5 +394,39 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
         const Image8 renewed = view.read_back();
         CHECK(renewed.rgba != seen.rgba);
         CHECK(is_picture(renewed));
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "32 rays of seven looks come close to 512 rays of 32 steps: tubes in noise")
+{
+    const std::unique_ptr<VolumeSource> tubes = open_procedural({.kind = "tubes", .size = Size3(96), .seed = 3});
+    std::vector<std::byte> bytes(size_t{96} * 96 * 96);
+    tubes->read({Size3(0), Size3(96)}, bytes);
+    TestVolume scene{.size = glm::ivec3(96)};
+    for (const std::byte voxel : bytes) scene.voxels.push_back(257.0 * std::to_integer<int>(voxel));
+    load(scene);
+    const std::vector<glm::vec4> many = occlusion_directions(512);
+    const std::vector<glm::dvec3> directions(many.begin(), many.end());
+    // The opaque end is hard: whole rays are stopped by the nearest voxel or pass it, where between voxels half of one would.
+    for (const auto& [densest, bound] : {std::pair(0.9, 0.035), std::pair(0.27, 0.016)}) {
+        CAPTURE(densest);
+        const Session session =
+            occluded({{257.0 * 90, RED, 0.0}, {257.0 * 130, RED, densest}, {65535.0, RED, densest}}, 16.0);
+        draw(session, overview(scene));
+        const std::vector<double> values = values_of(*this);
+        const Expected expected(volume(), session);
+        const FieldCodes codes{volume()};
+        double squares = 0.0, count = 0.0;
+        for (size_t i = 0; i < values.size(); i += 17) {
+            const glm::ivec3 voxel(int(i) % 96, int(i) / 96 % 96, int(i) / (96 * 96));
+            if (expected.opacity(voxel) == 0.0 || count >= 300.0) continue;
+            const auto opacity = [&](const glm::dvec3& p) { return session.transfer_function.at(codes.at(p)).a; };
+            const double truth = reference::occlusion_by_steps(opacity, directions, 16.0, 32, 1.0, 1.5,
+                                                               glm::dvec3(voxel) + 0.5, expected.side(voxel));
+            squares += (values[i] - truth) * (values[i] - truth);
+            ++count;
+        }
+        CHECK(count >= 200.0);
+        check_below("rms error", std::sqrt(squares / count), bound);
     }
 }
