@@ -2,7 +2,8 @@
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
-// variants: PAGED FILTERED MASKED
+//   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
+// variants: PAGED FILTERED MASKED OCCLUDED
 //
 // Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
@@ -13,6 +14,9 @@
 #include "raycast.h"
 #ifdef PAGED
 #include "pages.h"
+#endif
+#ifdef OCCLUDED
+#include "occlusion.h"
 #endif
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -46,6 +50,11 @@ layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_tab
 layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups;
 #endif
 
+#ifdef OCCLUDED
+layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
+layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
+#endif
+
 #include "counters.glsl"
 #ifdef MASKED
 #ifdef PAGED
@@ -59,6 +68,9 @@ layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups
 #include "density_exact.glsl"
 #endif
 #include "shade.glsl"
+#ifdef OCCLUDED
+#include "occlusion.glsl"
+#endif
 
 #ifdef PAGED
 #include "pages.glsl"
@@ -146,7 +158,16 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const
     }
     if (SHADED != 0u) {
         if (COUNT_WORK != 0u) ++work.shaded;
-        look.rgb = shade(params, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
+        float ambient = params.ambient;
+#ifdef OCCLUDED
+#ifdef PAGED
+        const uvec3 last = uvec3(params.position_limit) >> place.level;
+#else
+        const uvec3 last = uvec3(params.position_limit);
+#endif
+        ambient *= ambient_share(lattice, to_atlas, vec3(last));
+#endif
+        look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
     if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
     return look;
@@ -212,7 +233,7 @@ float length_to_probe(const RaycastParams params, const Ray ray)
 vec4 probe_look(const RaycastParams params, const Ray ray, float s)
 {
     const vec3 at = (ray.origin + s * ray.direction - params.probe_center) * params.spacing;
-    return vec4(lit(params, params.probe_color, at / params.probe_radius, 1.0, ray.half_way), 1.0);
+    return vec4(lit(params, params.ambient, params.probe_color, at / params.probe_radius, 1.0, ray.half_way), 1.0);
 }
 
 uint bricks_between(vec3 a, vec3 b)

@@ -23,22 +23,22 @@ vec3 half_way(vec3 light, vec3 to_eye)
 
 // Blinn-Phong with one white light (Blinn 1977), for a normal that is a surface's to the degree of `surface`: where it is
 // none, the highlight goes and the diffuse term becomes its full, directionless value.
-vec3 lit(const RaycastParams params, vec3 color, vec3 normal, float surface, vec3 half_way)
+vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, float surface, vec3 half_way)
 {
     const float facing = max(dot(normal, params.light), 0.0);
     const float mirrored = max(dot(normal, half_way), 0.0);
     const float highlight = facing > 0.0 ? surface * params.specular * power(mirrored, params.shininess) : 0.0;
-    return min(color * (params.ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
+    return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
 // Where the gradient is far below `gradient_fade` there is no surface, so that flat regions neither sparkle nor go dark.
-vec3 shade(const RaycastParams params, vec3 color, vec3 slope, vec3 half_way)
+vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);
     const float fade = params.gradient_fade * params.gradient_fade;
     const float surface = square > 0.0 ? square / (square + fade) : 0.0;
     const vec3 normal = square > 0.0 ? -slope * inversesqrt(square) : vec3(0.0);
-    return lit(params, color, normal, surface, half_way);
+    return lit(params, ambient, color, normal, surface, half_way);
 }
 
 // Distance colour blending (Rheingans and Ebert 2001, Volume illustration): the farther, the more of another colour.

@@ -58,6 +58,10 @@ struct SetBlend {
 struct SetLight {
     Light light;
 };
+struct SetOcclusion {
+    OcclusionSettings occlusion;
+};
+struct UpdateOcclusion {};  ///< renews it where it is not renewed by itself
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
@@ -105,10 +109,10 @@ struct ShowHelp {
 };
 struct Quit {};
 
-using Action =
-    std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction, SetGroup,
-                 SetLight, SetBlend, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint,
-                 SetHapticThreshold, Assist, SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+using Action = std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction,
+                            SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto, PushProbe,
+                            ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold, Assist, SetProxyLaw, Undo,
+                            Redo, Save, Screenshot, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -93,6 +93,8 @@ private:
     void apply(const SetGroup& action);
     void apply(const SetLight& action);
     void apply(const SetBlend& action);
+    void apply(const SetOcclusion& action);
+    void apply(const UpdateOcclusion& action);
     void apply(const ProbeTo& action);
     void apply(const ProbeOnto& action);
     void apply(const PushProbe& action);

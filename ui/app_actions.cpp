@@ -133,6 +133,19 @@ void App::apply(const SetLight& action)
     look_again();
 }
 
+void App::apply(const SetOcclusion& action)
+{
+    document_->session.light.occlusion = action.occlusion;
+    look_again();
+}
+
+void App::apply(const UpdateOcclusion&)
+{
+    document_->view.update_occlusion();
+    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is renewed"
+                                                          : "Ambient occlusion is off: its strength is 0");
+}
+
 // ---- The probe ------------------------------------------------------------------------------------------------------
 
 void App::apply(const ProbeTo& action)

@@ -147,6 +147,9 @@ void view_menu(const Model& model, Actions& actions)
     ImGui::Separator();
     Light light = model.session.light;
     if (ImGui::MenuItem("Shading", nullptr, &light.shaded)) actions.push_back(SetLight{light});
+    const OcclusionSettings& occlusion = model.session.light.occlusion;
+    key_item("Update ambient occlusion", model, actions,
+             {.is_enabled = light.shaded && occlusion.strength > 0.0 && !occlusion.automatic});
     key_buttons("Distance blending", model, actions);
     cut_menu(model, actions);
     key_buttons("Clip planes", model, actions);

@@ -22,6 +22,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
 void probe_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
+void occlusion_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);

@@ -18,9 +18,10 @@ uint32_t squarings(float shininess)
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    Pass pass = graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") +
-                                  (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : ""),
-                              "raycast");
+    Pass pass =
+        graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "") +
+                          (input.mask ? "_masked" : "") + (input.occlusion ? "_occluded" : ""),
+                      "raycast");
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     if (volume.pages) {
@@ -36,6 +37,10 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         pass.read("mask", input.mask->mask);
         pass.read("mask_table", input.mask->mask_table);
         pass.block("groups", std::span<const gpu::GroupLook>(input.groups));
+    }
+    if (input.occlusion) {
+        pass.read("occlusion", input.occlusion->values);
+        pass.block("occlusion_look", std::span<const gpu::OcclusionLook>(&input.occlusion->look, 1));
     }
     pass.constant("SHADED", input.shaded);
     if (input.shaded) pass.constant("SHININESS_SQUARINGS", squarings(input.params.shininess));

@@ -6,15 +6,23 @@
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
+#include "shaders/occlusion.h"
 #include "shaders/raycast.h"
 
 namespace shvr {
+
+/// Ambient light that is kept off.
+struct RaycastOcclusion {
+    Resource values;  ///< OcclusionBinding::values
+    gpu::OcclusionLook look;
+};
 
 struct RaycastInput {
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image: linear RGB, opacity of a full step
     std::optional<MaskBinding> mask;
     std::vector<gpu::GroupLook> groups;  ///< 256, used with a mask
+    std::optional<RaycastOcclusion> occlusion;
     bool shaded = true;
     bool count_work = false;
     uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64

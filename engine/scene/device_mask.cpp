@@ -144,6 +144,16 @@ void DeviceMask::submit(FrameGraph graph)
     in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
 }
 
+std::vector<VoxelBox> DeviceMask::bricks(const Size3& size) const
+{
+    const glm::i64vec3 counts(brick_counts(size));
+    std::vector<VoxelBox> boxes;
+    for (const auto& [index, slot] : slots_)
+        boxes.push_back(
+            voxels_of({0, {index % counts.x, index / counts.x % counts.y, index / (counts.x * counts.y)}}, size));
+    return boxes;
+}
+
 MaskBinding DeviceMask::import(FrameGraph& graph) const
 {
     return {.mask = graph.import("mask", atlas_.import()),

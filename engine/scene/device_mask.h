@@ -26,6 +26,8 @@ public:
     /// Of a painted brick on the device; 0 where it is not there.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
+    /// Voxels of the painted bricks of a volume of that size.
+    std::vector<VoxelBox> bricks(const Size3& size) const;
     MaskBinding import(FrameGraph& graph) const;
 
 private:

@@ -4,6 +4,7 @@
 // One thread, the one that owns the executor.
 
 #include <optional>
+#include <vector>
 
 #include "engine/passes/volume_binding.h"
 #include "engine/volume/brick_builder.h"
@@ -22,12 +23,26 @@ RegionBricks bricks_around(const VoxelBox& voxels);
 
 class DeviceVolume {
 public:
+    /// A brick that has a slot, for work on all that are there.
+    struct Place {
+        BrickKey key;
+        uint32_t slot = 0;         ///< packed
+        BrickTexels::Range range;  ///< of its codes
+    };
+
     virtual ~DeviceVolume() = default;
     DeviceVolume(const DeviceVolume&) = delete;
     DeviceVolume& operator=(const DeviceVolume&) = delete;
 
     const VolumeInfo& info() const { return info_; }
     const IntensityWindow& window() const { return window_; }
+
+    virtual int levels() const = 0;
+    /// Slots of the atlas along each axis.
+    virtual glm::uvec3 atlas_slots() const = 0;
+    /// Every brick on the device, and a number that changes when they do.
+    virtual std::vector<Place> places() const = 0;
+    virtual uint64_t places_revision() const = 0;
 
     /// What kernels bind that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) const = 0;

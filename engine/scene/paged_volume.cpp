@@ -136,6 +136,7 @@ void PagedVolume::look(const PageView& view, const Visibility& visibility)
         if (found != leaf_index_.end()) is_reached_[found->second] = true;
     }
     ++stamp_;
+    ++reached_revision_;
     is_limited_ = false;
     directory_is_stale_ = wants_are_stale_ = evictable_is_stale_ = true;
 }
@@ -255,6 +256,7 @@ void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> b
             if (is_reached_[leaf]) continue;
             is_reached_[leaf] = true;
             touch(tree_->leaves[leaf].key);
+            ++reached_revision_;
             wants_are_stale_ = evictable_is_stale_ = true;
         }
     }
@@ -264,11 +266,41 @@ void PagedVolume::forget_reached()
 {
     is_reached_.assign(is_reached_.size(), false);
     ++stamp_;
+    ++reached_revision_;
     is_limited_ = false;
     wants_are_stale_ = evictable_is_stale_ = true;
 }
 
 // ---- Bricks come and go ---------------------------------------------------------------------------------------------
+
+bool PagedVolume::leaf_is_reached(const BrickKey& key) const
+{
+    const auto leaf = leaf_index_.find(key);
+    return leaf != leaf_index_.end() && is_reached_[leaf->second];
+}
+
+std::vector<BrickKey> PagedVolume::reached_bricks() const
+{
+    std::vector<BrickKey> keys;
+    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf)
+        if (is_reached_[leaf] && state_of(tree_->leaves[leaf].key) != LeafState::empty)
+            keys.push_back(tree_->leaves[leaf].key);
+    return keys;
+}
+
+void PagedVolume::want_around(std::unordered_set<BrickKey, BrickKeyHash> keys)
+{
+    if (keys == around_) return;
+    around_ = std::move(keys);
+    wants_are_stale_ = evictable_is_stale_ = true;
+}
+
+std::vector<DeviceVolume::Place> PagedVolume::places() const
+{
+    std::vector<Place> places;
+    for (const auto& [key, slot] : resident_) places.push_back({key, packed(slot), known_ranges_.at(key)});
+    return places;
+}
 
 void PagedVolume::touch(const BrickKey& key)
 {
@@ -279,9 +311,7 @@ void PagedVolume::touch(const BrickKey& key)
 /// The picture that is looked at, or the work around the probe, would miss it.
 bool PagedVolume::is_needed(const BrickKey& key) const
 {
-    if (region_.contains(key)) return true;
-    const auto leaf = leaf_index_.find(key);
-    return leaf != leaf_index_.end() && is_reached_[leaf->second];
+    return region_.contains(key) || around_.contains(key) || leaf_is_reached(key);
 }
 
 /// A region of level 0 goes before the picture.
@@ -306,6 +336,7 @@ std::optional<uint32_t> PagedVolume::free_slot(bool for_region)
         const uint32_t slot = evictable_.back();
         evictable_.pop_back();
         resident_.erase(*slots_[slot].key);
+        ++places_revision_;
         slots_[slot] = {};
         ++evictions_;
         directory_is_stale_ = true;
@@ -328,6 +359,7 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
     if (!slot) return false;
     slots_[*slot] = {.key = key, .used = stamp_, .pinned = std::ranges::find(coarse_, key) != coarse_.end()};
     resident_[key] = *slot;
+    ++places_revision_;
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
@@ -390,6 +422,15 @@ void PagedVolume::update_wants()
         ++pending_;
         keys.push_back(tree_->leaves[leaf].key);
     }
+    for (const BrickKey& key : around_) {
+        if (state_of(key) != LeafState::missing || leaf_is_reached(key)) continue;
+        if (pending_ == room) {
+            is_limited_ = true;
+            break;
+        }
+        ++pending_;
+        keys.push_back(key);
+    }
     store_.want(std::move(keys));
 }
 
@@ -399,9 +440,7 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait)
     std::vector<VoxelBox> changed;
     do {
         for (const BrickStore::Finished& finished : store_.take(BATCH)) {
-            const auto leaf = leaf_index_.find(finished.key);
-            const bool is_wanted_leaf = leaf != leaf_index_.end() && is_reached_[leaf->second];
-            pending_ -= std::min<size_t>(pending_, is_wanted_leaf);
+            pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
             const bool for_region =
                 region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
             if (!finished.texels) {

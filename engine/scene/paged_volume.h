@@ -70,6 +70,17 @@ public:
 
     VolumeBinding atlas(FrameGraph& graph) const override;
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+    int levels() const override { return levels_; }
+    glm::uvec3 atlas_slots() const override { return atlas_slots_; }
+    std::vector<Place> places() const override;
+    uint64_t places_revision() const override { return places_revision_; }
+    /// These bricks are wanted beside what rays come by: light on bricks that are seen comes past them.
+    std::vector<BrickKey> reached_bricks() const;
+    /// Changes when those do.
+    uint64_t reached_revision() const { return reached_revision_; }
+    /// Rays came by it.
+    bool is_drawn(const BrickKey& key) const { return leaf_is_reached(key); }
+    void want_around(std::unordered_set<BrickKey, BrickKeyHash> keys);
     /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that takes
     /// more than a quarter of the room. Until the next call, or that of region().
     void prefer(const VoxelBox& voxels);
@@ -101,6 +112,7 @@ private:
     LeafState state_of(const BrickKey& key) const;
     void touch(const BrickKey& key);
     bool is_needed(const BrickKey& key) const;
+    bool leaf_is_reached(const BrickKey& key) const;
     void list_evictable(bool for_region);
     std::optional<uint32_t> free_slot(bool for_region);
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
@@ -141,7 +153,9 @@ private:
     bool is_limited_ = false;
     size_t pending_ = 0;                                 ///< reached leaves that are wanted and may come
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
-    std::vector<BrickKey> coarse_;                       ///< that are to be there always
+    std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< want_around
+    uint64_t places_revision_ = 1, reached_revision_ = 1;
+    std::vector<BrickKey> coarse_;  ///< that are to be there always
     std::vector<BrickKey> leap_jobs_;
 
     /// Two, of which one is filled while the device copies from the other.

@@ -66,6 +66,18 @@ std::vector<gpu::GroupLook> group_looks(const Session& session, double step_voxe
     return looks;
 }
 
+double gradient_fade_codes(const Session& session, const DeviceVolume& volume, const VolumeStatistics& statistics)
+{
+    const ValueRange range = statistics.range();
+    return session.light.gradient_fade * ((range.upper - range.lower) * volume.window().codes_per_unit);
+}
+
+/// Whether it makes a difference.
+bool shows_occlusion(const Light& light)
+{
+    return light.shaded && light.ambient > 0.0 && light.occlusion.strength > 0.0;
+}
+
 /// `step_voxels`: between samples, in reference lengths.
 gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
                                   const VolumeBinding& binding, const VolumeStatistics& statistics,
@@ -74,7 +86,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     const VolumeInfo& info = volume.info();
     const RayPlanes planes = ray_planes(camera, part.pixels, info);
     const TableMap map = table_map(session.transfer_function, volume.window());
-    const double codes_range = (statistics.range().upper - statistics.range().lower) * volume.window().codes_per_unit;
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -113,7 +124,7 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.diffuse = float(session.light.diffuse);
     params.specular = float(session.light.specular);
     params.shininess = float(session.light.shininess);
-    params.gradient_fade = float(session.light.gradient_fade * codes_range);
+    params.gradient_fade = float(gradient_fade_codes(session, volume, statistics));
     if (session.blend.size > 0.0) {
         params.depth_plane = depth_plane(camera, params.box_lower, params.box_upper, info.spacing);
         params.blend_color = session.blend.color.value_or(glm::dvec3(session.render.background));
@@ -166,7 +177,8 @@ Renderer::Renderer(const Options& options)
       memory_(device_, {options.budget.device_bytes, host_budget_ / 2}),
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
-      mask_(executor_, memory_)
+      mask_(executor_, memory_),
+      occlusion_(memory_)
 {}
 
 bool Renderer::filters(Sampling sampling) const
@@ -191,6 +203,8 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
                     const RenderSettings& settings)
 {
     const IntensityWindow window = window_for(source->info().type, statistics);
+    occlusion_.clear();
+    occlusion_.set_drawn(nullptr);
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
@@ -213,6 +227,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
                                                 window, options);
     paged_ = volume.get();
     volume_ = std::move(volume);
+    occlusion_.set_drawn([this](const BrickKey& key) { return paged_->is_drawn(key); });
 }
 
 DeviceVolume& Renderer::volume() const
@@ -225,12 +240,16 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
 {
     mask_.update(mask, bricks);
     if (paged_) paged_->note_painted(mask, bricks);
+    const glm::i64vec3 counts = mask.brick_counts();
+    const auto position_of = [&](int64_t brick) {
+        return glm::ivec3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+    };
+    if (volume_)
+        for (int64_t brick : bricks) occlusion_.changed(voxels_of({0, position_of(brick)}, volume_->info().size));
     if (bricks.empty() || !leap_state_) return;
     CellBox changed = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
-    const glm::i64vec3 counts = mask.brick_counts();
     for (int64_t brick : bricks) {
-        const glm::uvec3 first =
-            gpu::BRICK_CELLS * glm::uvec3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+        const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick));
         changed = {glm::min(changed.begin, first), glm::max(changed.end, first + gpu::BRICK_CELLS)};
     }
     leap_changed_ = changed;
@@ -324,6 +343,90 @@ std::optional<FrameGraph> Renderer::next_preparation(const Session& session)
     return graph;
 }
 
+/// Handles of a volume that is ready to be drawn, and of its paint.
+VolumeBinding Renderer::import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
+                                        bool feedback)
+{
+    if (paged_) {
+        if (!mask_.empty()) mask = mask_.import(graph);
+        return paged_->import(graph, mask_, mask, feedback);
+    }
+    VolumeBinding volume = resident_->import(graph);
+    const LeapGridInput leap = want_leap_grid(graph, volume, session);
+    while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, volume, leap, leap_stage_++);
+    mask = leap.mask;
+    return volume;
+}
+
+Occlusion::Look Renderer::occlusion_look(const Session& session)
+{
+    const OcclusionSettings& settings = session.light.occlusion;
+    Occlusion::Look look{.function = session.transfer_function,
+                         .visibility = visibility_of(session),
+                         .cut = session.cut,
+                         .radius = settings.radius,
+                         .rays = settings.rays,
+                         .full_sphere = settings.full_sphere,
+                         .gradient_fade = gradient_fade_codes(session, *volume_, statistics_)};
+    for (uint32_t group = 1; group < 256; ++group) {
+        const ColorGroup of_group = group_of(session.groups, uint8_t(group));
+        look.groups[group] = of_group.visible ? of_group.opacity : 0.0;
+    }
+    return look;
+}
+
+/// Of the bricks that rays came by, those around them, too: light comes from there.
+void Renderer::want_around()
+{
+    if (!paged_ || std::exchange(reached_revision_, paged_->reached_revision()) == paged_->reached_revision()) return;
+    std::unordered_set<BrickKey, BrickKeyHash> keys;
+    for (const BrickKey& key : paged_->reached_bricks()) {
+        const int reach = occlusion_.reach(key.level);
+        const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
+        const glm::ivec3 first = glm::max(key.brick - reach, 0), last = glm::min(key.brick + reach, counts - 1);
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+    }
+    paged_->want_around(std::move(keys));
+}
+
+std::optional<Renderer::OcclusionSlice> Renderer::next_occlusion(const Session& session, const Camera& camera,
+                                                                 const Occlusion::Most& most)
+{
+    if (!shows_occlusion(session.light)) {
+        occlusion_.clear();
+        reached_revision_ = 0;
+        if (paged_) paged_->want_around({});
+        return std::nullopt;
+    }
+    if (paged_ && !paged_->tree()) return std::nullopt;
+    occlusion_.look(occlusion_look(session), *volume_, mask_);
+    want_around();
+    if (!occlusion_.is_due()) return std::nullopt;
+    OcclusionSlice slice;
+    std::optional<MaskBinding> mask;
+    const VolumeBinding volume = import_prepared(slice.graph, session, mask, false);
+    slice.renewed = occlusion_.next(slice.graph, volume, mask, camera.eye / volume_->info().spacing, most);
+    return slice;
+}
+
+/// All that `session` wants and that can be made with the bricks that are there. Returns the passes.
+std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, const Camera& camera,
+                                                      const RenderOptions& options)
+{
+    constexpr Occlusion::Most MOST{.bricks = 64, .cell_bricks = 512};
+    std::vector<gpu::PassReport> passes;
+    if (paged_ && shows_occlusion(session.light)) {
+        occlusion_.look(occlusion_look(session), *volume_, mask_);
+        want_around();
+        static_cast<void>(paged_->advance(true));
+    }
+    while (std::optional<OcclusionSlice> slice = next_occlusion(session, camera, MOST))
+        append(passes, executor_.run(std::move(slice->graph), {.timestamps = options.timestamps}).passes);
+    return passes;
+}
+
 Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Camera& camera,
                                      const PicturePart& part, bool feedback)
 {
@@ -331,14 +434,12 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     const double step_voxels = look(session, camera, detail_pixels);
     Prepared prepared;
     RaycastInput& input = prepared.input;
-    if (paged_) {
-        if (!mask_.empty()) input.mask = mask_.import(graph);
-        prepared.volume = paged_->import(graph, mask_, input.mask, feedback);
-    } else {
-        prepared.volume = resident_->import(graph);
-        const LeapGridInput leap = want_leap_grid(graph, prepared.volume, session);
-        while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, prepared.volume, leap, leap_stage_++);
-        input.mask = leap.mask;
+    prepared.volume = import_prepared(graph, session, input.mask, feedback);
+    if (shows_occlusion(session.light)) {
+        if (!occlusion_.exists_for(*volume_)) occlusion_.look(occlusion_look(session), *volume_, mask_);
+        const OcclusionSettings& settings = session.light.occlusion;
+        input.occlusion =
+            RaycastOcclusion{occlusion_.import(graph).values, {float(settings.strength), float(settings.curve)}};
     }
     input.params = raycast_params(session, camera, *volume_, prepared.volume, statistics_, part, step_voxels);
     input.table = upload_table(graph, table_of(session, step_voxels));
@@ -396,7 +497,9 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
     picture.image.rgba.resize(size_t(size.x) * size.y * 4);
     const PicturePart whole{.pixels = size, .end = size, .probe = options.probe};
     if (!paged_) {
+        std::vector<gpu::PassReport> passes = make_occlusion(session, camera, options);
         render_part(picture, session, camera, whole, options);
+        append(picture.passes, std::move(passes));
         return picture;
     }
     // Draw, load what rays came by, and draw again, until they come by nothing that is not there. What needs more bricks
@@ -409,8 +512,10 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
         look(session, camera, size);
         if (parts.size() > 0 || part.end - part.begin != size) paged_->forget_reached();
         for (;;) {
+            append(passes, make_occlusion(session, camera, options));
             render_part(picture, session, camera, part, options);
             static_cast<void>(paged_->advance(true));
+            if (occlusion_.is_due()) continue;  // on what rays came by for the first time
             if (paged_->state() == PagedVolume::State::complete && !paged_->is_stale()) break;
             if (paged_->state() == PagedVolume::State::limited) break;
         }

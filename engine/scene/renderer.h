@@ -14,6 +14,7 @@
 #include "engine/base/image.h"
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
+#include "engine/scene/occlusion.h"
 #include "engine/scene/paged_volume.h"
 #include "engine/scene/resident_volume.h"
 #include "engine/scene/session.h"
@@ -96,6 +97,16 @@ public:
     /// Whoever does not ask gets it all in the first `draw`. The graph must be submitted before the next call.
     std::optional<FrameGraph> next_preparation(const Session& session);
 
+    /// The next slice of the ambient occlusion that `session` wants, as seen from `camera`; nothing where it wants none or
+    /// all is made. Must be submitted before the next call. Pictures are drawn with what is made so far.
+    struct OcclusionSlice {
+        FrameGraph graph;
+        std::vector<VoxelBox> renewed;  ///< voxels that may look different
+    };
+    std::optional<OcclusionSlice> next_occlusion(const Session& session, const Camera& camera,
+                                                 const Occlusion::Most& most);
+    Occlusion& occlusion() { return occlusion_; }
+
     /// What was added to a graph: the target's new version, and where bricks come and go the read-back that
     /// `note_reached` wants once the graph is done.
     struct Drawn {
@@ -124,6 +135,12 @@ private:
     bool pages(const VolumeSource& source, Paging paging) const;
     const Table& table_of(const Session& session, double step_voxels);
     Visibility visibility_of(const Session& session);
+    Occlusion::Look occlusion_look(const Session& session);
+    std::vector<gpu::PassReport> make_occlusion(const Session& session, const Camera& camera,
+                                                const RenderOptions& options);
+    void want_around();
+    VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
+                                  bool feedback);
     double look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
     void render_part(Picture& picture, const Session& session, const Camera& camera, const PicturePart& part,
                      const RenderOptions& options);
@@ -146,6 +163,8 @@ private:
     ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
     DeviceMask mask_;
+    Occlusion occlusion_;
+    uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen
     std::optional<Table> baked_;
     gpu::Storage table_;
     bool table_is_on_device_ = false;

@@ -86,6 +86,7 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, con
     build_bricks(source, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
         slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
         uploader.add(glm::uvec3(brick), slots.back(), texels);
+        ranges_.push_back(texels.range);
         if (uploader.full()) uploader.flush(atlas_, cell_ranges_);
     });
     uploader.flush(atlas_, cell_ranges_);
@@ -115,6 +116,17 @@ std::optional<RegionBricks> ResidentVolume::region(const VoxelBox& voxels, bool 
                 region.slots.push_back(
                     slot_at(gpu::grid_index(region.begin + glm::uvec3(x, y, z), brick_counts_) + 1, atlas_slots_));
     return region;
+}
+
+std::vector<DeviceVolume::Place> ResidentVolume::places() const
+{
+    std::vector<Place> places;
+    for (uint32_t index = 0; index < ranges_.size(); ++index) {
+        const glm::uvec3 brick(index % brick_counts_.x, index / brick_counts_.x % brick_counts_.y,
+                               index / (brick_counts_.x * brick_counts_.y));
+        places.push_back({{0, glm::ivec3(brick)}, slot_at(index + 1, atlas_slots_), ranges_[index]});
+    }
+    return places;
 }
 
 uint64_t ResidentVolume::brick_count() const

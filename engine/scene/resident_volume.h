@@ -24,12 +24,17 @@ public:
     VolumeBinding import(FrameGraph& graph) const;
     VolumeBinding atlas(FrameGraph& graph) const override { return import(graph); }
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+    int levels() const override { return 1; }
+    glm::uvec3 atlas_slots() const override { return atlas_slots_; }
+    std::vector<Place> places() const override;
+    uint64_t places_revision() const override { return 1; }
 
 private:
     bool filtered_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
     gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
     std::array<gpu::Storage, 2> leap_scratch_;
+    std::vector<BrickTexels::Range> ranges_;  ///< by brick
 };
 
 }  // namespace shvr

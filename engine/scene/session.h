@@ -16,6 +16,17 @@
 
 namespace shvr {
 
+/// How much of the ambient light reaches a place (shaders/occlusion.h).
+struct OcclusionSettings {
+    double strength = 0.0;     ///< 0: off, 1: nothing is left of the ambient light where none arrives
+    double radius = 16.0;      ///< reference lengths that light comes from
+    uint32_t rays = 32;        ///< for each voxel
+    bool full_sphere = false;  ///< rays from behind surfaces, too
+    double curve = 1.0;        ///< exponent of what arrives: above 1 darker
+    bool automatic = true;     ///< false: the window renews it when it is asked to
+    bool operator==(const OcclusionSettings&) const = default;
+};
+
 struct Light {
     bool shaded = true;
     double ambient = 0.3;
@@ -26,6 +37,7 @@ struct Light {
         0.0};  ///< towards the light, camera axes (right, up, back); 0,0,0 = (0.3, 0.5, 1), over the viewer's shoulder
     double gradient_fade =
         0.03;  ///< gradients well below this share of `intensity_range` per voxel count as "no surface"
+    OcclusionSettings occlusion;
     bool operator==(const Light&) const = default;
 };
 

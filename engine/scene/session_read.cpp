@@ -148,11 +148,26 @@ Groups read_groups(const JsonNode& node)
     return groups;
 }
 
+OcclusionSettings read_occlusion(const JsonNode& node)
+{
+    OcclusionSettings occlusion;
+    if (!node.exists()) return occlusion;
+    node.expect_object({"strength", "radius", "rays", "full_sphere", "curve", "automatic"});
+    occlusion.strength = node["strength"].number(occlusion.strength, SHARE);
+    occlusion.radius = node["radius"].number(occlusion.radius, above_zero(1e-3, 60.0));
+    occlusion.rays = uint32_t(node["rays"].whole(occlusion.rays, 1, 1024));
+    occlusion.full_sphere = node["full_sphere"].flag(occlusion.full_sphere);
+    occlusion.curve = node["curve"].number(occlusion.curve, above_zero(0.1, 10.0));
+    occlusion.automatic = node["automatic"].flag(occlusion.automatic);
+    return occlusion;
+}
+
 Light read_light(const JsonNode& node)
 {
     Light light;
     if (!node.exists()) return light;
-    node.expect_object({"shaded", "ambient", "diffuse", "specular", "shininess", "direction", "gradient_fade"});
+    node.expect_object(
+        {"shaded", "ambient", "diffuse", "specular", "shininess", "direction", "gradient_fade", "occlusion"});
     light.shaded = node["shaded"].flag(light.shaded);
     light.ambient = node["ambient"].number(light.ambient, range(0.0, 10.0));
     light.diffuse = node["diffuse"].number(light.diffuse, range(0.0, 10.0));
@@ -162,6 +177,7 @@ Light read_light(const JsonNode& node)
     if (light.direction != glm::dvec3(0.0) && glm::length(light.direction) < 1e-6)
         node["direction"].refuse("a direction at least 1e-06 long, or 0, 0, 0 for the usual one");
     light.gradient_fade = node["gradient_fade"].number(light.gradient_fade, SHARE);
+    light.occlusion = read_occlusion(node["occlusion"]);
     return light;
 }
 

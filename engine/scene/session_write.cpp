@@ -120,7 +120,14 @@ json write_light(const Light& light)
             {"specular", light.specular},
             {"shininess", light.shininess},
             {"direction", array_of(light.direction)},
-            {"gradient_fade", light.gradient_fade}};
+            {"gradient_fade", light.gradient_fade},
+            {"occlusion",
+             {{"strength", light.occlusion.strength},
+              {"radius", light.occlusion.radius},
+              {"rays", light.occlusion.rays},
+              {"full_sphere", light.occlusion.full_sphere},
+              {"curve", light.occlusion.curve},
+              {"automatic", light.occlusion.automatic}}}};
 }
 
 json write_blend(const DistanceBlend& blend)

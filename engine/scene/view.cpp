@@ -44,7 +44,11 @@ void View::changed(const VoxelBox& voxels)
 {
     patch_is_dirty_ = true;
     if (base_.job) painted_during_base_.push_back(voxels);
-    if (!shown_scene_) return;
+    if (shown_scene_) mark_voxels(voxels);
+}
+
+void View::mark_voxels(const VoxelBox& voxels)
+{
     // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
     const glm::dvec3& spacing = renderer_.volume().info().spacing;
     mark_due(pixels_of_box(shown_scene_->camera, shown_scene_->pixels, glm::dvec3(voxels.lower) * spacing,
@@ -113,6 +117,8 @@ bool View::submit_next()
         finish_sketches();  // there may be nothing to draw
         return submit_next();
     }
+    if (submit_occlusion()) return true;
+    if (patch_is_due()) return submit_next();
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.scale > 1 && !patch_.shown.part.empty()) {
         start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
@@ -234,6 +240,31 @@ void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, 
     params.step = step;
     params.last = job.part.end - job.part.begin - 1u;
     static_cast<void>(encode(graph, light, graph.import("display", sketch.images[1 - sketch.front].import()), params));
+}
+
+bool View::occlusion_is_due() const
+{
+    const OcclusionSettings& settings = shown_scene_->session.light.occlusion;
+    return (settings.automatic || occlusion_is_asked_for_) && renderer_.occlusion().is_due();
+}
+
+/// A slice of what keeps ambient light off. Its bricks lie behind each other, so sharp tiles wait until all are done.
+bool View::submit_occlusion()
+{
+    constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
+    const Scene& scene = *shown_scene_;
+    if (!scene.session.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
+    std::optional<Renderer::OcclusionSlice> slice = renderer_.next_occlusion(scene.session, scene.camera, MOST);
+    if (!slice) {
+        occlusion_is_asked_for_ = false;
+        patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
+        occlusion_was_renewed_ = false;
+        return false;
+    }
+    for (const VoxelBox& voxels : slice->renewed) mark_voxels(voxels);
+    occlusion_was_renewed_ = occlusion_was_renewed_ || !slice->renewed.empty();
+    submit(std::move(slice->graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    return true;
 }
 
 bool View::submit_tiles()
@@ -391,6 +422,7 @@ bool View::complete() const
     if (!scene_) return true;
     if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
     if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
+    if (occlusion_is_due()) return false;
     return (patch_.shown.scale == 1 || patch_.shown.part.empty()) &&
            std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
 }

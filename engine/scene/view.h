@@ -5,6 +5,7 @@
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
 //   voxels painted    the tiles that show them, again
+//   light kept off    ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
 // Everything is drawn in small graphs of about `step_ms` each, and no more than about `in_flight_ms` of them are on the
 // way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
@@ -39,6 +40,9 @@ public:
     void show_probe(const std::optional<ProbeLook>& probe);
     /// These voxels have been painted, or have come to the device.
     void changed(const VoxelBox& voxels);
+
+    /// Ambient occlusion is renewed though the session says not to do so by itself.
+    void update_occlusion() { occlusion_is_asked_for_ = true; }
 
     /// Takes what the device has finished, and submits what is due next.
     void advance();
@@ -124,6 +128,9 @@ private:
     bool submit_sketch(Sketch& sketch, Purpose purpose);
     void submit_rows(Sketch& sketch, Purpose purpose);
     void submit_encoding(Sketch& sketch, Purpose purpose);
+    bool submit_occlusion();
+    bool occlusion_is_due() const;
+    void mark_voxels(const VoxelBox& voxels);
     bool submit_tiles();
     void encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end);
     gpu::EncodeParams encoding() const;
@@ -154,6 +161,8 @@ private:
     gpu::Storage sharp_;           ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> painted_during_base_;
+    bool occlusion_is_asked_for_ = false;
+    bool occlusion_was_renewed_ = false;  ///< and what covers the probe does not show it yet
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
     double ms_per_pixel_ = 0.002;          ///< learnt: where the picture is costly

@@ -6,6 +6,7 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
+#include "shaders/occlusion.h"
 #include "shaders/pages.h"
 #include "shaders/paint.h"
 #include "shaders/raycast.h"
@@ -75,6 +76,24 @@ Members brick_leap_jobs()
             MEMBER(BrickLeapJob, mask_slot)};
 }
 
+Members occlusion_params()
+{
+    return {
+        MEMBER(OcclusionParams, inverse_spacing), MEMBER(OcclusionParams, radius),      MEMBER(OcclusionParams, first),
+        MEMBER(OcclusionParams, gradient_fade),   MEMBER(OcclusionParams, full_sphere), MEMBER(OcclusionParams, rays),
+        MEMBER(OcclusionParams, reach),           MEMBER(OcclusionParams, taps_end),    MEMBER(OcclusionParams, grow),
+        MEMBER(OcclusionParams, cell_counts)};
+}
+
+Members occlusion_cells_params()
+{
+    return {MEMBER(OcclusionCellsParams, table_lower), MEMBER(OcclusionCellsParams, table_upper),
+            MEMBER(OcclusionCellsParams, table_scale), MEMBER(OcclusionCellsParams, table_entries),
+            MEMBER(OcclusionCellsParams, level),       MEMBER(OcclusionCellsParams, lower),
+            MEMBER(OcclusionCellsParams, upper),       MEMBER(OcclusionCellsParams, brick_counts),
+            MEMBER(OcclusionCellsParams, mask_slots)};
+}
+
 gpu::KernelInterface interface_of(const std::string& name)
 {
     for (const gpu::EmbeddedKernel& kernel : gpu::embedded_kernels())
@@ -103,8 +122,22 @@ TEST_CASE("members of shared structs lie where C++ puts them")
 {
     for (const char* kernel :
          {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked", "raycast_paged",
-          "raycast_paged_masked", "raycast_paged_filtered", "raycast_paged_filtered_masked"})
+          "raycast_paged_masked", "raycast_paged_filtered", "raycast_paged_filtered_masked", "raycast_occluded",
+          "raycast_paged_filtered_masked_occluded"})
         check_members(kernel, "params_block", raycast_params());
+    for (const char* kernel : {"raycast_occluded", "raycast_paged_filtered_masked_occluded"})
+        check_members(kernel, "occlusion_look", {MEMBER(OcclusionLook, strength), MEMBER(OcclusionLook, curve)});
+    for (const char* kernel : {"occlusion_bake", "occlusion_bake_paged_filtered"}) {
+        check_members(kernel, "params_block", occlusion_params());
+        check_members(kernel, "jobs",
+                      {MEMBER(OcclusionJob, brick), MEMBER(OcclusionJob, slot), MEMBER(OcclusionJob, around)});
+        check_members(kernel, "taps",
+                      {MEMBER(OcclusionTap, distance), MEMBER(OcclusionTap, lift), MEMBER(OcclusionTap, stretch)});
+    }
+    for (const char* kernel : {"occlusion_cells", "occlusion_cells_paged_filtered_masked"}) {
+        check_members(kernel, "params_block", occlusion_cells_params());
+        check_members(kernel, "jobs", {MEMBER(OcclusionCellsJob, brick), MEMBER(OcclusionCellsJob, slot)});
+    }
     for (const char* kernel : {"raycast_masked", "raycast_filtered_masked"})
         check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
     for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {

@@ -1,0 +1,60 @@
+#pragma once
+// Local ambient occlusion (shaders/occlusion.h): what stops light in bricks, and the light that reaches their voxels.
+
+#include <span>
+#include <vector>
+
+#include "engine/passes/volume_binding.h"
+#include "shaders/occlusion.h"
+
+namespace shvr {
+
+/// Images of slots, as many as the density atlas has.
+struct OcclusionBinding {
+    Resource values;                                     ///< r8ui, BRICK_TEXELS a side
+    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r8ui; BRICK_SIZE a side, half, a quarter
+};
+
+/// Where rays look, and what they find there does. Lengths in units of the brick's level.
+struct OcclusionTaps {
+    double radius = 0.0;
+    double first = 0.0;                   ///< what light always passes
+    std::vector<gpu::OcclusionTap> taps;  ///< those of small cells first; their stretches and `first` make the radius
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> end{};  ///< taps of each size end here
+    std::vector<float> passed;                         ///< for each tap and code, the share of light that gets through
+};
+/// The largest radius, in units of any level.
+inline constexpr double OCCLUSION_MOST_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
+/// Radii below 1 have no tap: light reaches every voxel.
+OcclusionTaps occlusion_taps(double radius);
+
+/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010); w is 0.
+std::vector<glm::vec4> occlusion_directions(uint32_t count);
+
+/// Bricks on each side of a brick that its light comes from.
+uint32_t occlusion_reach(double radius);
+
+/// Lets all light arrive in `slots`. `with_empty`: and makes slot 0, of bricks that are not there, let all light through.
+void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots, bool with_empty);
+
+struct OcclusionCellsInput {
+    gpu::OcclusionCellsParams params;  ///< but for the mask
+    std::vector<float> opacities;      ///< of one unit, entry by entry of the table
+    std::optional<MaskBinding> mask;
+    std::vector<float> group_opacities;  ///< 256, of one unit; used with a mask
+};
+/// All of one level. Renews the handles of `occlusion` that it writes.
+void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
+                     const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs);
+
+struct OcclusionInput {
+    gpu::OcclusionParams params;  ///< but for what follows from the others
+    OcclusionTaps taps;
+    std::vector<glm::vec4> directions;
+};
+/// All of one level. `around`: for each job the bricks around it, see OcclusionJob.
+void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
+                    const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
+                    std::span<const uint32_t> around);
+
+}  // namespace shvr

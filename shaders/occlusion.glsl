@@ -1,0 +1,23 @@
+// The light that reaches a sample, interpolated between the values of voxels (occlusion.h). Needs `occlusion` (r8ui) and
+// `occlusion_look`. By hand: 8-bit filters are coarse on many devices, and not every device has one for this format.
+
+float occlusion_value(ivec3 texel)
+{
+    return float(imageLoad(occlusion, texel).x);
+}
+
+// `lattice`: of voxels of the brick's level; `last`: the last voxel of that level.
+float ambient_share(vec3 lattice, ivec3 to_atlas, vec3 last)
+{
+    const vec3 held = clamp(lattice, vec3(0.0), last);   // no light is kept beyond the volume's edge
+    const vec3 corner = floor(held), f = held - corner;
+    const ivec3 c = ivec3(corner) + to_atlas;
+    vec4 v = mix(vec4(occlusion_value(c), occlusion_value(c + ivec3(0, 1, 0)), occlusion_value(c + ivec3(0, 0, 1)),
+                      occlusion_value(c + ivec3(0, 1, 1))),
+                 vec4(occlusion_value(c + ivec3(1, 0, 0)), occlusion_value(c + ivec3(1, 1, 0)),
+                      occlusion_value(c + ivec3(1, 0, 1)), occlusion_value(c + ivec3(1, 1, 1))), f.x);
+    const vec2 w = mix(v.xz, v.yw, f.y);
+    const float value = clamp(mix(w.x, w.y, f.z) / 255.0, 1e-4, 1.0);
+    const float curved = occlusion_look.data.curve == 1.0 ? value : exp2(occlusion_look.data.curve * log2(value));
+    return 1.0 - occlusion_look.data.strength * (1.0 - curved);
+}

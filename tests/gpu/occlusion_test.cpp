@@ -1,0 +1,432 @@
+// Local ambient occlusion as the device makes it: its values against the definition in double, and what makes them stale. What
+// the definition is worth is for tests/unit/occlusion_test.cpp.
+
+#include "engine/passes/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/image_metrics.h"
+#include "engine/scene/annotator.h"
+#include "engine/scene/view.h"
+#include "engine/volume/source_procedural.h"
+#include "tests/reference/occlusion.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// What a device's 8 bits keep, and a voxel whose code is rounded the other way.
+constexpr double STORED = 0.5 / 255.0;
+constexpr double ROUNDED_OTHERWISE = 1.6 / 255.0;
+
+Session occluded(std::vector<ControlPoint> points, double radius = 16.0, const glm::uvec2& pixels = {48, 40})
+{
+    Session session = plain_session(std::move(points), pixels);
+    session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
+    session.light.occlusion = {.strength = 1.0, .radius = radius};
+    return session;
+}
+
+Camera overview(const TestVolume& volume)
+{
+    return camera_along(volume, {1.0, 2.0, 3.0}, 1.2 * glm::length(glm::dvec3(volume.size) * volume.spacing));
+}
+
+/// Blobs with soft edges: surfaces, gaps, and an inside.
+TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
+{
+    TestVolume volume = volume_of(size, [](const glm::dvec3& p) {
+        return std::clamp(32000.0 + 14000.0 * std::sin(0.35 * p.x + 0.1 * p.y) +
+                              14000.0 * std::sin(0.29 * p.y - 0.2 * p.z) +
+                              14000.0 * std::cos(0.4 * p.z + 0.15 * p.x + 1.0),
+                          0.0, 65535.0);
+    });
+    volume.spacing = spacing;
+    return volume;
+}
+
+/// Values of all voxels of a resident volume, 0 ... 1.
+std::vector<double> values_of(OnDevice& device)
+{
+    FrameGraph graph;
+    const OcclusionBinding binding = device.renderer().occlusion().import(graph);
+    const uint32_t back = graph.read_back(binding.values);
+    const gpu::FrameResult result = device.renderer().executor().run(graph, {.timestamps = false});
+    const std::vector<std::byte>& bytes = result.read_backs[back];
+    const glm::ivec3 size = device.volume().size;
+    const glm::uvec3 texels = gpu::BRICK_TEXELS * device.renderer().volume().atlas_slots();
+    const RegionBricks bricks = *device.renderer().volume().region({Size3(0), Size3(size)}, true);
+    std::vector<double> values;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const glm::uvec3 voxel(x, y, z);
+                const uint32_t slot = bricks.slots[gpu::grid_index(voxel / gpu::BRICK_SIZE, bricks.counts)];
+                const glm::uvec3 texel = gpu::slot_origin(slot) + gpu::BRICK_APRON + voxel % gpu::BRICK_SIZE;
+                values.push_back(double(std::to_integer<uint8_t>(
+                                     bytes[texel.x + size_t(texels.x) * (texel.y + size_t(texels.y) * texel.z)])) /
+                                 255.0);
+            }
+    return values;
+}
+
+struct Expected {
+    const TestVolume& volume;
+    const Session& session;
+
+    double code(const glm::ivec3& at) const
+    {
+        const glm::ivec3 held = glm::clamp(at, glm::ivec3(0), volume.size - 1);
+        return volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
+    }
+    std::vector<double> opacities{};
+
+    Expected(const TestVolume& of_volume, const Session& of_session) : volume(of_volume), session(of_session)
+    {
+        for (int z = 0; z < volume.size.z; ++z)
+            for (int y = 0; y < volume.size.y; ++y)
+                for (int x = 0; x < volume.size.x; ++x) {
+                    const glm::dvec3 centre = glm::dvec3(x, y, z) + 0.5;
+                    const bool is_kept = glm::all(glm::greaterThanEqual(centre, session.cut.lower)) &&
+                                         glm::all(glm::lessThan(centre, session.cut.upper));
+                    opacities.push_back(is_kept ? session.transfer_function.at(code({x, y, z})).a : 0.0);
+                }
+    }
+    double opacity(const glm::ivec3& at) const
+    {
+        const bool is_inside =
+            glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, volume.size));
+        return is_inside ? opacities[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))] : 0.0;
+    }
+    glm::dvec3 units() const
+    {
+        return std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z}) / volume.spacing;
+    }
+    reference::OcclusionSide side(const glm::ivec3& at) const
+    {
+        glm::dvec3 slope(0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::ivec3 step(0);
+            step[axis] = 1;
+            slope[axis] = 0.5 * (code(at + step) - code(at - step)) * units()[axis];
+        }
+        const double square = glm::dot(slope, slope);
+        const double fade = session.light.gradient_fade * (volume.maximum - volume.minimum);
+        if (square == 0.0 || session.light.occlusion.full_sphere) return {};
+        return {-slope / std::sqrt(square), square / (square + fade * fade)};
+    }
+    reference::OcclusionRays rays() const
+    {
+        const OcclusionTaps taps = occlusion_taps(session.light.occlusion.radius);
+        reference::OcclusionRays rays{.radius = taps.radius, .first = taps.first, .voxels_per_unit = units()};
+        for (const glm::vec4& direction : occlusion_directions(session.light.occlusion.rays))
+            rays.directions.emplace_back(direction);
+        for (uint32_t i = 0; i < taps.taps.size(); ++i)
+            rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].lift), double(taps.taps[i].stretch),
+                                 i < taps.end[0]   ? 1
+                                 : i < taps.end[1] ? 2
+                                                   : 4});
+        return rays;
+    }
+    double value(const glm::ivec3& at) const
+    {
+        return reference::occlusion_by_taps([&](const glm::ivec3& v) { return opacity(v); }, rays(), at, side(at));
+    }
+};
+
+/// Codes between voxels; 0 outside.
+struct FieldCodes {
+    const TestVolume& volume;
+    double at(const glm::dvec3& p) const
+    {
+        if (glm::any(glm::lessThan(p, glm::dvec3(0.0))) || glm::any(glm::greaterThanEqual(p, glm::dvec3(volume.size))))
+            return 0.0;
+        const glm::dvec3 lattice = p - 0.5;
+        const glm::ivec3 corner(glm::floor(lattice));
+        const glm::dvec3 f = lattice - glm::dvec3(corner);
+        double sum = 0.0;
+        for (int i = 0; i < 8; ++i) {
+            const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2);
+            const glm::ivec3 held = glm::clamp(corner + offset, glm::ivec3(0), volume.size - 1);
+            const glm::dvec3 weight = glm::mix(1.0 - f, f, glm::dvec3(offset));
+            sum += weight.x * weight.y * weight.z *
+                   volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
+        }
+        return sum;
+    }
+};
+
+/// Visible voxels of the volume, some of them, against the definition.
+void check_values(OnDevice& device, const Session& session, size_t every)
+{
+    device.draw(session, overview(device.volume()));
+    const std::vector<double> values = values_of(device);
+    const Expected expected{device.volume(), session};
+    const glm::ivec3 size = device.volume().size;
+    size_t seen = 0, far = 0;
+    double worst = 0.0;
+    for (size_t i = 0; i < values.size(); i += every) {
+        const glm::ivec3 voxel(int(i) % size.x, int(i) / size.x % size.y, int(i) / (size.x * size.y));
+        if (expected.opacity(voxel) == 0.0) continue;
+        const double error = std::abs(values[i] - expected.value(voxel));
+        ++seen;
+        far += error > STORED + 1e-4;
+        worst = std::max(worst, error);
+    }
+    CHECK(seen > 50);
+    CHECK(double(far) <=
+          0.02 * double(seen));  // a ray that passes the border of two voxels, a code in the middle of two
+    check_below("worst value", worst, ROUNDED_OTHERWISE);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "ambient occlusion is the definition's, for dense and thin things, near borders and across bricks")
+{
+    const std::vector<ControlPoint> dense{{36000.0, RED, 0.0}, {42000.0, RED, 0.9}, {65535.0, RED, 1.0}};
+    const std::vector<ControlPoint> thin{{20000.0, RED, 0.0}, {65535.0, RED, 0.08}};
+    load(blobs({70, 41, 50}));
+    check_values(*this, occluded(dense), 29);
+    check_values(*this, occluded(thin), 61);
+    check_values(*this, occluded(dense, 1.0), 61);
+    check_values(*this, occluded(dense, 5.3), 61);
+    check_values(*this, occluded(dense, 40.0), 61);  // beyond the volume
+    Session full = occluded(dense);
+    full.light.occlusion.full_sphere = true;
+    full.light.occlusion.rays = 7;
+    check_values(*this, full, 29);
+    Session cut = occluded(dense);
+    cut.cut = {{20.0, 3.5, 11.0}, {64.0, 39.0, 37.0}};
+    check_values(*this, cut, 29);
+    load(blobs({36, 30, 20}, {1.0, 1.5, 2.5}));
+    check_values(*this, occluded(dense), 13);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a radius below a voxel keeps no light off, and neither does a strength of 0")
+{
+    load(blobs({40, 40, 40}));
+    const Camera camera = overview(volume());
+    Session off = occluded(busy_points());
+    off.light.occlusion.strength = 0.0;
+    const ImageF without = draw(off, camera);
+    CHECK(different_bits(without, draw(occluded(busy_points(), 0.7), camera)) == 0);
+    CHECK(different_bits(without, draw(occluded(busy_points()), camera)) > 1000);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what is off costs no pass and no byte, and what is switched off gives its memory back")
+{
+    load(blobs({40, 40, 40}));
+    const Camera camera = overview(volume());
+    Session session = occluded(busy_points());
+    session.light.occlusion.strength = 0.0;
+    const auto passes = [&] {
+        std::vector<std::string> names;
+        for (const gpu::PassReport& pass : renderer().render(session, camera).passes) names.push_back(pass.kernel);
+        return names;
+    };
+    static_cast<void>(passes());
+    const std::vector<std::string> before = passes();
+    const uint64_t bytes = renderer().memory().device_bytes();
+    for (const std::string& kernel : before) CHECK(kernel.find("occlu") == std::string::npos);
+    session.light.occlusion.strength = 0.5;
+    const std::vector<std::string> with = passes();
+    CHECK(std::ranges::find(with, "occlusion_bake") != with.end());
+    CHECK(std::ranges::find(with, "raycast_occluded") != with.end());
+    CHECK(renderer().memory().device_bytes() > bytes);
+    const std::vector<std::string> again = passes();  // nothing is made twice
+    CHECK(std::ranges::find(again, "occlusion_bake") == again.end());
+    session.light.occlusion.strength = 0.0;
+    CHECK(passes() == before);
+    CHECK(renderer().memory().bytes_by_name().count("occlusion values") == 0);
+    CHECK(renderer().memory().bytes_by_name().count("occlusion cells") == 0);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what a change makes anew is what making everything gives, bit for bit")
+{
+    const TestVolume scene = blobs({110, 70, 66});
+    load(scene);
+    const Camera camera = overview(volume());
+    Session session = occluded({{44000.0, RED, 0.0}, {50000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 9.0);
+    session.groups[2] = {.name = "two", .color = BLUE, .opacity = 0.7, .visible = true};
+    static_cast<void>(draw(session, camera));
+    Annotator annotator(renderer());
+    std::mt19937 random(71);  // seed 71
+    const auto below = [&](int end) { return int(random() % uint32_t(end)); };
+    for (int trial = 0; trial < 10; ++trial) {
+        CAPTURE(trial);
+        const uint64_t before = renderer().occlusion().counts().values;
+        switch (trial % 5) {
+            case 0:
+            case 1:
+                annotator.paint({.brush = Brush::fill,
+                                 .group = uint8_t(1 + trial % 3),
+                                 .radius_voxels = 2.0 + below(6),
+                                 .path = {{below(110), below(70), below(66)}}});
+                break;
+            case 2: session.groups[2].visible = !session.groups[2].visible; break;
+            case 3: session.cut.lower = glm::dvec3(below(20), below(20), below(20)); break;
+            default: annotator.undo(); break;
+        }
+        const ImageF renewed = draw(session, camera);
+        const uint64_t made = renderer().occlusion().counts().values - before;
+        if (trial < 2) CHECK(made < 36);
+        renderer().occlusion().clear();
+        CHECK(different_bits(renewed, draw(session, camera)) == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a look's light does not depend on the looks before it")
+{
+    load(blobs({70, 41, 50}));
+    const Camera camera = overview(volume());
+    std::vector<Session> sessions(5, occluded(busy_points(), 12.0));
+    sessions[1].transfer_function = TransferFunction({{40000.0, RED, 0.0}, {50000.0, GREEN, 1.0}});
+    sessions[2].light.occlusion.radius = 5.0;
+    sessions[3].light.occlusion.rays = 9;
+    sessions[4].light.occlusion.full_sphere = true;
+    std::vector<ImageF> alone;
+    for (const Session& session : sessions) {
+        renderer().occlusion().clear();
+        alone.push_back(draw(session, camera));
+    }
+    for (size_t i = 0; i < sessions.size(); ++i) {
+        CAPTURE(i);
+        CHECK(different_bits(alone[i], draw(sessions[i], camera)) == 0);
+        if (i > 0) CHECK(different_bits(alone[i], alone[0]) > 100);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all light stays all light")
+{
+    load(blobs({40, 40, 40}));
+    const Camera camera = overview(volume());
+    const auto mean = [&](double strength, double curve) {
+        Session session = occluded({{36000.0, WHITE, 0.0}, {42000.0, WHITE, 0.9}, {65535.0, WHITE, 1.0}});
+        session.light.occlusion.strength = strength;
+        session.light.occlusion.curve = curve;
+        double sum = 0.0;
+        for (const glm::dvec4& pixel : pixels_of(draw(session, camera))) sum += pixel.r;
+        return sum;
+    };
+    const double off = mean(0.0, 1.0), half = mean(0.5, 1.0), full = mean(1.0, 1.0), dark = mean(1.0, 3.0);
+    CHECK(half < 0.95 * off);
+    CHECK(half == doctest::Approx(0.5 * (off + full)).epsilon(1e-4));
+    CHECK(dark < 0.9 * full);
+    load(constant_volume({40, 40, 40}, 1000.0));  // nothing keeps light off where there is hardly anything
+    Session clear = occluded(uniform_points(WHITE, 1e-5));
+    const ImageF with = draw(clear, camera);
+    clear.light.occlusion.strength = 0.0;
+    check_below("clear medium", worst_difference(pixels_of(with), pixels_of(draw(clear, camera))), 2e-6);
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "a volume in bricks is lit as one whose bricks come and go is, and as filtered ones nearly are")
+{
+    const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0);
+    const TestVolume scene = blobs({100, 70, 66});
+    load(scene);
+    const Camera camera = overview(scene);
+    const ImageF resident = draw(session, camera);
+    load(scene, Sampling::hardware);
+    check_below("hardware filter", rms_difference(pixels_of(resident), pixels_of(draw(session, camera))), 4e-3);
+    RenderSettings paged = session.render;
+    paged.paging = Paging::always;
+    VolumeStatistics statistics = measure(*source_of(scene));
+    statistics.minimum = scene.minimum;
+    statistics.maximum = scene.maximum;
+    renderer().load(source_of(scene), statistics, paged);
+    Session finest = session;
+    finest.render.detail = 0.0;
+    const Picture picture = renderer().render(finest, camera);
+    CHECK(picture.complete);
+    CHECK(different_bits(resident, picture.image) == 0);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and then submits nothing")
+{
+    load(blobs({70, 41, 50}));
+    const Camera camera = overview(volume());
+    Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0, {96, 80});
+    View view(renderer());
+    const auto rest = [&] {
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 100'000'000);
+            view.advance();
+        }
+        const uint64_t submissions = view.submissions();
+        for (int i = 0; i < 10; ++i) view.advance();
+        CHECK(view.submissions() == submissions);
+    };
+    // Encoded here or there, a channel may be rounded otherwise.
+    const auto is_picture = [&](const Image8& shown) {
+        const Image8 expected = to_image8(draw(session, camera));
+        return compare_pixels(shown, expected).max_abs <= 1.0;
+    };
+    view.look(session, camera, session.render.size);
+    rest();
+    const Image8 seen = view.read_back();
+    CHECK(is_picture(seen));
+
+    SUBCASE("another look")
+    {
+        session.transfer_function = TransferFunction({{30000.0, RED, 0.0}, {42000.0, GREEN, 0.5}});
+        view.look(session, camera, session.render.size);
+        rest();
+        CHECK(is_picture(view.read_back()));
+    }
+    SUBCASE("by hand")
+    {
+        session.light.occlusion.automatic = false;
+        session.light.occlusion.radius = 5.0;
+        view.look(session, camera, session.render.size);
+        rest();
+        CHECK(view.read_back().rgba == seen.rgba);
+        view.update_occlusion();
+        view.advance();
+        rest();
+        const Image8 renewed = view.read_back();
+        CHECK(renewed.rgba != seen.rgba);
+        CHECK(is_picture(renewed));
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "32 rays of seven looks come close to 512 rays of 32 steps: tubes in noise")
+{
+    const std::unique_ptr<VolumeSource> tubes = open_procedural({.kind = "tubes", .size = Size3(96), .seed = 3});
+    std::vector<std::byte> bytes(size_t{96} * 96 * 96);
+    tubes->read({Size3(0), Size3(96)}, bytes);
+    TestVolume scene{.size = glm::ivec3(96)};
+    for (const std::byte voxel : bytes) scene.voxels.push_back(257.0 * std::to_integer<int>(voxel));
+    load(scene);
+    const std::vector<glm::vec4> many = occlusion_directions(512);
+    const std::vector<glm::dvec3> directions(many.begin(), many.end());
+    // The opaque end is hard: whole rays are stopped by the nearest voxel or pass it, where between voxels half of one would.
+    for (const auto& [densest, bound] : {std::pair(0.9, 0.035), std::pair(0.27, 0.016)}) {
+        CAPTURE(densest);
+        const Session session =
+            occluded({{257.0 * 90, RED, 0.0}, {257.0 * 130, RED, densest}, {65535.0, RED, densest}}, 16.0);
+        draw(session, overview(scene));
+        const std::vector<double> values = values_of(*this);
+        const Expected expected(volume(), session);
+        const FieldCodes codes{volume()};
+        double squares = 0.0, count = 0.0;
+        for (size_t i = 0; i < values.size(); i += 17) {
+            const glm::ivec3 voxel(int(i) % 96, int(i) / 96 % 96, int(i) / (96 * 96));
+            if (expected.opacity(voxel) == 0.0 || count >= 300.0) continue;
+            const auto opacity = [&](const glm::dvec3& p) { return session.transfer_function.at(codes.at(p)).a; };
+            const double truth = reference::occlusion_by_steps(opacity, directions, 16.0, 32, 1.0, 1.5,
+                                                               glm::dvec3(voxel) + 0.5, expected.side(voxel));
+            squares += (values[i] - truth) * (values[i] - truth);
+            ++count;
+        }
+        CHECK(count >= 200.0);
+        check_below("rms error", std::sqrt(squares / count), bound);
+    }
+}

@@ -1,0 +1,41 @@
+#pragma once
+// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines what the device makes, cell by cell, and as
+// the sum over equal steps that it stands for. Lengths are in voxels of the finest axis.
+
+#include <functional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace shvr::reference {
+
+/// What rays do at a place: where a surface is (0 ... 1), they start above it and none comes from behind.
+struct OcclusionSide {
+    glm::dvec3 normal{0.0};
+    double surface = 0.0;
+};
+
+struct OcclusionTap {
+    double distance, lift, stretch;
+    int side;  ///< of the cell that tells, in voxels
+};
+struct OcclusionRays {
+    double radius = 16.0, first = 0.5;
+    std::vector<OcclusionTap> taps;
+    std::vector<glm::dvec3> directions;
+    glm::dvec3 voxels_per_unit{1.0};
+};
+
+/// Opacity of one unit for every voxel there may be; 0 outside the volume.
+using VoxelOpacity = std::function<double(const glm::ivec3&)>;
+double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
+                         const OcclusionSide& side);
+
+/// Opacity of one unit anywhere.
+using FieldOpacity = std::function<double(const glm::dvec3&)>;
+/// (1 / M) sum over m of the product over i < m of (1 - a_i), the mean over directions. Sample i lies at (i + 1) steps, and
+/// samples nearer than `first` are not taken.
+double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dvec3>& directions, double radius,
+                          int steps, double first, double lift, const glm::dvec3& position, const OcclusionSide& side);
+
+}  // namespace shvr::reference
