@@ -101,14 +101,17 @@ bool has_controls(std::string_view text)
     return std::any_of(text.begin(), text.end(), is_control);
 }
 
+std::string printable(std::string_view text)
+{
+    std::string shown(text);
+    std::replace_if(shown.begin(), shown.end(), is_control, '?');
+    return shown;
+}
+
 std::string in_quotes(std::string_view text)
 {
     constexpr size_t LONGEST = 60;
-    std::string shown = "\"";
-    for (const char character : text.substr(0, LONGEST)) {
-        shown += is_control(character) ? '?' : character;
-    }
-    return shown + (text.size() > LONGEST ? "...\"" : "\"");
+    return "\"" + printable(text.substr(0, LONGEST)) + (text.size() > LONGEST ? "...\"" : "\"");
 }
 
 std::string_view take_line(std::string_view& rest)
@@ -141,9 +144,7 @@ std::string plain_unit(std::string_view unit)
         if (lower == plain) return plain;
     }
     constexpr size_t LONGEST_UNIT = 60;
-    std::string shown(bare.substr(0, LONGEST_UNIT));
-    std::replace_if(shown.begin(), shown.end(), is_control, '?');
-    return shown;
+    return printable(bare.substr(0, LONGEST_UNIT));
 }
 
 void HeaderFields::add(std::string_view name, std::string_view value)

@@ -25,6 +25,8 @@ std::string lower_case(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text);
 /// Whether it would change what a terminal does. No name of a file that a header states has such characters.
 bool has_controls(std::string_view text);
+/// With a question mark for each such character.
+std::string printable(std::string_view text);
 /// For messages: in quotes, at most 60 characters, no control characters.
 std::string in_quotes(std::string_view text);
 /// The text up to the next line end, which is taken off `rest` as well; "\r\n" counts as one.

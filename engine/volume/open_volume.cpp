@@ -24,6 +24,19 @@ constexpr Reader READERS[] = {
     {"RAW with a side-car", open_raw_with_side_car},
 };
 
+/// Pictures take squares and quotients of spacings. Sessions have the same limits.
+void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
+{
+    constexpr double LEAST = 1e-12;
+    constexpr double MOST = 1e12;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = info.spacing[axis];
+        if (spacing >= LEAST && spacing <= MOST) continue;
+        fail(path.string(), ": spacing along ", "xyz"[axis], " is ", spacing, " ", info.unit, "; expected ", LEAST,
+             " to ", MOST);
+    }
+}
+
 [[noreturn]] void refuse_layout(const std::string& text)
 {
     throw UsageError(sentence("raw layout is ", in_quotes(text),
@@ -87,7 +100,10 @@ std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, con
     std::string tried;
     for (const Reader& reader : READERS) {
         if (is_folder && !reader.reads_folders) continue;
-        if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) return source;
+        if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) {
+            check_spacing(path, source->info());
+            return source;
+        }
         tried += tried.empty() ? "" : ", ";
         tried += reader.name;
     }

@@ -122,6 +122,12 @@ glm::dvec3 place(VolumeInfo& info, const glm::dmat3& steps, const glm::dvec3& or
         SHVR_CHECK(std::isfinite(spacing[axis]) && spacing[axis] > 0.0, spacing[axis]);
         info.directions[axis] = steps[axis] / spacing[axis];
     }
+    constexpr double FLATTEST = 1e-6;
+    if (std::abs(glm::determinant(info.directions)) < FLATTEST) {
+        info.directions = glm::dmat3(1.0);
+        info.warnings.emplace_back("axes span no volume; orientation was left out");
+        return spacing;
+    }
     info.origin = origin;
     info.frame = frame;
     warn_of_turn(info);

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/volume/header_text.h"
 #include "engine/volume/zarr_json.h"
 
 namespace shvr {
@@ -81,6 +82,10 @@ public:
         }
         return texts;
     }
+    [[noreturn]] void refuse(const char* key, const std::string& expected) const
+    {
+        refuse_json(path_, key, value(key, expected.c_str()), expected);
+    }
     bool has(const char* key) const { return object_.contains(key); }
     Reader object(const char* key) const
     {
@@ -125,6 +130,15 @@ private:
     const nlohmann::json& object_;
 };
 
+bool are_axes(const glm::dmat3& directions)
+{
+    constexpr double TOLERANCE = 1e-6;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(glm::length(directions[axis]) - 1.0) < TOLERANCE)) return false;
+    }
+    return glm::determinant(directions) > 0.0;
+}
+
 VolumeStatistics read_statistics(const Reader& reader)
 {
     VolumeStatistics statistics{.minimum = reader.number("min"),
@@ -132,9 +146,11 @@ VolumeStatistics read_statistics(const Reader& reader)
                                 .mean = reader.number("mean"),
                                 .not_finite = reader.whole("not_finite", 0, std::numeric_limits<int64_t>::max()),
                                 .histogram = reader.counts("histogram", 256)};
+    if (!(statistics.minimum <= statistics.maximum)) reader.refuse("max", "at least min");
     if (reader.has("bulk")) {
         const Reader bulk = reader.object("bulk");
         statistics.bulk = {bulk.number("min"), bulk.number("max")};
+        if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk.refuse("max", "at least min");
         statistics.beyond_bulk = bulk.whole("beyond", 0, std::numeric_limits<int64_t>::max());
     }
     return statistics;
@@ -240,11 +256,14 @@ ProjectRecord read_project_record(const Path& file)
     if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) {
         refuse_json(file, "spacing", document["spacing"], "three numbers above 0");
     }
-    info.unit = reader.text("unit");
+    info.unit = printable(reader.text("unit"));
     info.directions = reader.matrix("directions");
+    if (!are_axes(info.directions)) {
+        refuse_json(file, "directions", document["directions"], "three right-handed vectors of length 1");
+    }
     info.origin = reader.vector("origin");
-    info.frame = reader.text("frame");
-    info.warnings = reader.texts("warnings");
+    info.frame = printable(reader.text("frame"));
+    for (const std::string& warning : reader.texts("warnings")) info.warnings.push_back(printable(warning));
     record.statistics = read_statistics(reader.object("statistics"));
     return record;
 }

@@ -66,7 +66,7 @@ def make_headers():
     seed("nrrd", "claims_gzip", nrrd.format("double", 3, "1048576 1048576 1", "gzip").encode() + b"\n" +
          zlib.compress(b"v" * 60, wbits=31))
     seed("nrrd", "claims_axes", nrrd.format("uchar", 1000000, "1 1 1", "raw") + "\n" + "v" * 60)
-    seed("nrrd", "missing_parts", nrrd.format("uchar", 3, "5 4 65536", "raw") + "data file: a%d.voxels 1 65536 1\n")
+    seed("nrrd", "missing_parts", nrrd.format("uchar", 3, "5 4 500", "raw") + "data file: a%d.voxels 1 500 1\n")
     seed("nrrd", "claims_skip", nrrd.format("uchar", 3, "5 4 3", "gzip") + "byte skip: 9223372036854775800\n\n" +
          "v" * 60)
     mhd = "ObjectType = Image\nNDims = 3\nBinaryData = True\nCompressedData = {}\nElementSpacing = 1 2 3\nDimSize = {}\nElementType = {}\n"
@@ -418,6 +418,13 @@ def make_text():
         '{"op":"paint","brush":"speckle","connectivity":26,"group":0,"threshold":7,"radius":127.5,"path":[[1,2,3],[4,5,6.5]]}',
         '{"op":"undo","count":2}', '{"op":"redo"}', '{"op":"expect","voxels":{"1":20}}', '{"op":"save"}']))
     seed("script", "claims_stroke", '{"op":"paint","group":1,"threshold":1,"radius":1,"path":[[0,0,0],[1e300,1e300,1e300]]}')
+    for name, lines in {
+            "render": ["render.size=[64,48]", "render.size.0=32", "render.step_voxels=0.25", "render.background=#10203040"],
+            "points": ['transfer_function.points=[{"intensity":1,"opacity":0.5},{"intensity":2,"opacity":1}]',
+                       "transfer_function.points.1.color=#ff0000", "light.direction.2=4", "top"],
+            "camera": ['cameras.far={"projection":"perspective","eye":[1.5,-400,0.1],"target":[1,2,3],"up":[0,0.1,1]}',
+                       "camera=far", '{"side":"left","zoom":1.5,"turn_degrees":30,"tilt_degrees":-20}']}.items():
+        seed("setting", name, "\n".join(lines))
     for kind in ["constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"]:
         seed("procedural", kind, f'{{"procedural": "{kind}", "size": [9, 8, 7], "type": "uint16", "seed": 3}}')
         seed("procedural", kind + "_huge",

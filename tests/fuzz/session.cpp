@@ -32,6 +32,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     const bool is_beside = session.volume_path.parent_path() == folder.path();
     std::unique_ptr<VolumeSource> source;
     if (session.procedural || is_beside) passes([&] { source = open_source(session); });
-    if (source) try_source(*source);
+    if (!source) return 0;
+    try_source(*source);
+    const Size3 volume = source->info().size;
+    if (volume.x * volume.y > 4096 || volume.z > 64) return 0;
+    const auto file = folder.write("a.session.json", text);
+    passes([&] { open_session(file); });
     return 0;
 }

@@ -151,4 +151,6 @@ TEST_CASE("a file that is absent, too long or nested without end is refused with
     CHECK(error_of_text(std::string(20'000, ' ')) == "x.json: holds 20000 bytes; expected at most 16384");
     CHECK(error_of_text(std::string(8000, '[') + std::string(8000, ']')) ==
           "x.json: is nested deeper than 8 levels; expected four");
+    CHECK(error_of_text(R"({"name": 1e999})") ==
+          "x.json: holds a number too large to represent; expected numbers up to 1.8e308");
 }

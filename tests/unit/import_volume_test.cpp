@@ -1,6 +1,7 @@
 // Projects: that they hold what was imported, that they are whole or not there, and that damage is found.
 
 #include "engine/volume/import_volume.h"
+#include "engine/base/file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,7 +11,9 @@
 #include <random>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
+#include "engine/base/file.h"
 #include "engine/volume/content_hash.h"
 #include "engine/volume/open_volume.h"
 #include "engine/volume/project.h"
@@ -370,6 +373,25 @@ TEST_CASE("a project without its knowledge is an image; damaged knowledge is nam
     CHECK(image->info().origin == source.info().origin);
     CHECK(image->info().warnings.empty());
     CHECK_FALSE(image->statistics().has_value());
+}
+
+TEST_CASE("a project's record that describes no volume is named and not used")
+{
+    const Folder folder;
+    folder.import(noise<uint16_t>({7, 4, 4}, VoxelType::uint16, 8));
+    const fs::path root = folder.path / "project";
+    const std::string whole = read_text(root / PROJECT_RECORD, 1 << 20);
+    const auto with = [&](const char* key, const nlohmann::json& value) {
+        nlohmann::json record = nlohmann::json::parse(whole);
+        record[nlohmann::json::json_pointer(key)] = value;
+        folder.write(std::string("project/") + PROJECT_RECORD, record.dump());
+        return open_volume(root);
+    };
+    CHECK(warns_of(*with("/directions/0/0", -1), "expected three right-handed vectors of length 1; it is not used"));
+    CHECK(warns_of(*with("/directions/2/2", 2), "expected three right-handed vectors of length 1; it is not used"));
+    CHECK(warns_of(*with("/spacing/1", 0), "expected three numbers above 0; it is not used"));
+    CHECK(warns_of(*with("/statistics/max", -1), "expected at least min; it is not used"));
+    CHECK(with("/unit", "u\x1bm")->info().unit == "u?m");
 }
 
 TEST_CASE("one wrong bit in a stored chunk is found, the chunk is named, and the rest can be read")

@@ -473,6 +473,8 @@ TEST_CASE("hostile lengths in a DICOM file are refused at once, before GDCM take
     }
     CHECK(contains(with(0x00180001, nested), "nests sequences deeper than 16"));
     CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("\1\2\0\0", 4)), "states no type"));
+    CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("UY\1\0", 4)),
+                   "is of type \"UY\"; expected a type that DICOM knows"));
     CHECK(
         contains(refusal(folder.write("a.dcm", slice_of(0).number(0x00280010, 65535).number(0x00280011, 65535).file())),
                  "Pixel Data holds 40 bytes; expected 8589672450 for 1 slices of 65535x65535 pixels of int16"));

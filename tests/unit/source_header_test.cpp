@@ -386,6 +386,35 @@ TEST_CASE("spacing, byte order and orientation of a MetaImage survive, and what 
     CHECK(warns_of(*open_volume(folder.write("a.mhd", header("Comment = none"))), "no byte order stated"));
 }
 
+TEST_CASE("control characters of a header reach neither a unit nor the name of a file")
+{
+    const Folder folder;
+    CHECK(folder.nrrd("units:", "units: \"u\x1bm\" \"u\x1bm\" \"u\x1bm\"")->info().unit == "u?m");
+    CHECK(contains(folder.nrrd_refusal("data file:", "data file: a\x1b[2J.voxels"),
+                   ": data file is \"a?[2J.voxels\"; expected the name of a file"));
+    CHECK(contains(folder.mhd_refusal("ElementDataFile", "ElementDataFile = a\x7f.voxels"),
+                   "expected the name of a file"));
+}
+
+TEST_CASE("axes that lie in one plane are left out, and it is said")
+{
+    const Folder folder;
+    const auto source = open_volume(folder.write("flat.mhd", "TransformMatrix = 1 0 0 0 1 0 1 1 0\n" + MHD));
+    CHECK(source->info().directions == glm::dmat3(1.0));
+    CHECK(source->info().spacing == glm::dvec3(1, 2, 3));
+    CHECK(warns_of(*source, "axes span no volume; orientation was left out"));
+}
+
+TEST_CASE("a spacing with which nothing can be computed is refused")
+{
+    const Folder folder;
+    CHECK(contains(folder.nrrd_refusal("spacings:", "spacings: 1e-320 1 1"), "expected 3 finite numbers other than 0"));
+    CHECK(contains(folder.nrrd_refusal("spacings:", "spacings: 1 1 1e-13"),
+                   ": spacing along z is 1e-13 um; expected 1e-12 to 1e+12"));
+    CHECK(contains(folder.mhd_refusal("ElementSpacing", "ElementSpacing = 1 1e13 1"),
+                   ": spacing along y is 1e+13 mm; expected 1e-12 to 1e+12"));
+}
+
 TEST_CASE("bare voxels open by the header that names them")
 {
     const Folder folder;

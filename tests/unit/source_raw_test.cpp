@@ -283,6 +283,7 @@ TEST_CASE("what is no file is refused in words, without waiting")
         CHECK(error_of([&] { open_raw(path, layout); }) == path.string() + ": is a pipe or device; expected a file");
     }
     CHECK(contains(refusal(folder.path), ": is a folder without shvr/session.json and without a volume; expected"));
+    CHECK(contains(refusal(folder.path), ", or slices of bare voxels with --raw WxHxD:TYPE"));
     CHECK(error_of([&] { open_raw(folder.path, layout); }) ==
           folder.path.string() + ": is a folder with 0 files of 4 bytes; expected 2, one for each slice");
     const fs::path missing = folder.path / "missing.raw";
@@ -350,6 +351,8 @@ TEST_CASE("a JSON side-car is read strictly")
     CHECK(refused(R"({"size": [5,4,3]})") == at + ": type is missing; expected size and type");
     CHECK(refused(R"({"type": "uint8"})") == at + ": size is missing; expected size and type");
     CHECK(contains(refused("{"), "is not valid JSON"));
+    const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+    CHECK(refused(R"({"size": )" + deep + "}") == at + ": is nested more than 64 deep; expected size and type");
     CHECK(contains(refused("[]"), "is in no format known here"));
     CHECK(contains(refused(R"({"shvr_session": 1})"), "is in no format known here"));
     for (const char* bad : {R"("size": [0,4,3])",
@@ -452,6 +455,8 @@ TEST_CASE("a scanner's side-car that is broken is refused by field")
         "Resolution T is \"2\"; expected 1"));
     CHECK(contains(refused("<RAWFileData><Format>UCHAR</Format><Resolution X=\"5\" Y=\"4\"/></RAWFileData>"),
                    "Resolution is \"5 4 missing\"; expected"));
+    const fs::path lost = folder.write("lost.dat", "ObjectFileName: gone.raw\nResolution: 5 4 3\nFormat: UCHAR\n");
+    CHECK(refusal(lost) == lost.string() + ": ObjectFileName is \"gone.raw\"; expected a file beside it, or lost.raw");
     const std::string whole =
         "<RAWFileData><ObjectFileName>root.raw</ObjectFileName><Format>UCHAR</Format>"
         "<Resolution X=\"5\" Y=\"4\" Z=\"3\" T=\"1\"/><Spacing X=\"1\" Y=\"1\" Z=\"1\"/></RAWFileData>";

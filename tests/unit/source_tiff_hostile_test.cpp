@@ -214,6 +214,7 @@ TEST_CASE("a TIFF that lies about sizes is refused by field, before memory is ta
     const Hostile hostile;
     CHECK(hostile.refusal({}) == "");
     CHECK(hostile.refusal({{256, 4, 1, 0}}) == ": page 1: ImageWidth is 0; expected 1 to 1048576");
+    CHECK(hostile.refusal({{256, 4, 1000, 8}}) == ": page 1: ImageWidth is not within the file; expected 1 to 1048576");
     CHECK(hostile.refusal({{257, 4, 1, 0}}) == ": page 1: ImageLength is 0; expected 1 to 1048576");
     CHECK(hostile.refusal({{256, 4, 1, 0x80000000}}) == ": page 1: ImageWidth is 2147483648; expected 1 to 1048576");
     CHECK(hostile.refusal({{257, 4, 1, 0xffffffff}}) == ": page 1: ImageLength is 4294967295; expected 1 to 1048576");
