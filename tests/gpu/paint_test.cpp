@@ -645,7 +645,7 @@ TEST_CASE("painted voxels have their group's colour, hidden ones are not drawn")
     load(renderer, voxels_of(Size3(40), VoxelType::uint8, [](const Size3& v) { return v.x < 20 ? 50.0 : 150.0; }));
     Annotator annotator(renderer);
     Session session = plain_session();
-    session.groups[2] = {.name = "blue", .color = {0.0, 0.25, 1.0}, .opacity = 1.0, .visible = true};
+    session.groups[2] = {.name = "blue", .color = glm::dvec3(0.0, 0.25, 1.0), .opacity = 1.0, .visible = true};
     const glm::vec4 white(1.0f), red(1.0f, 0.0f, 0.0f, 1.0f), blue(0.0f, 0.25f, 1.0f, 1.0f);
     const auto is_near = [](const glm::vec4& a, const glm::vec4& b) { return glm::length(a - b) < 0.003f; };
     std::vector<float> seen = picture(renderer, session);

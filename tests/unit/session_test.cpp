@@ -127,7 +127,7 @@ TEST_CASE("every key of a session is read")
     CHECK(session.transfer_function.points()[1] == ControlPoint{900.25, glm::dvec3(1), 1});
     CHECK(session.groups.at(1) == GroupSettings{"aorta", 0, color("#c02020"), 0.9, false});
     CHECK(session.groups.at(255) == GroupSettings{.name = "", .parent = 1, .color = {}, .opacity = 0.5});
-    CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5});
+    CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5, {0.75, 9.5, 48, true, 1.5, false}});
     CHECK(session.blend == DistanceBlend{0.75, 2.0, color("#204060")});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render ==
