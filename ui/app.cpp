@@ -235,8 +235,7 @@ void App::work()
         renderer_->paged()->prefer(document.voxels_around_probe());
     document.view.show_probe(document.probe_look());
     document.view.advance();
-    if (renderer_->paged())
-        for (const std::string& message : renderer_->paged()->take_messages()) say(message);
+    for (const std::string& message : renderer_->take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
         say(screenshot_.get());

@@ -205,6 +205,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     const IntensityWindow window = window_for(source->info().type, statistics);
     occlusion_.clear();
     occlusion_.set_drawn(nullptr);
+    occlusion_has_no_room_ = false;
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
@@ -391,10 +392,38 @@ void Renderer::want_around()
     paged_->want_around(std::move(keys));
 }
 
+/// Whether ambient occlusion is wanted and has room. Where it has none, that is said once, and pictures go without until
+/// it is switched off, or another volume comes.
+bool Renderer::draws_occlusion(const Session& session)
+{
+    if (!shows_occlusion(session.light)) {
+        occlusion_has_no_room_ = false;
+        return false;
+    }
+    if (occlusion_has_no_room_) return false;
+    if (occlusion_.exists_for(*volume_)) return true;
+    try {
+        occlusion_.look(occlusion_look(session), *volume_, mask_);
+    } catch (const Error& error) {
+        occlusion_.clear();
+        occlusion_has_no_room_ = true;
+        messages_.push_back(std::string("ambient occlusion is left out; ") + error.what());
+    }
+    return !occlusion_has_no_room_;
+}
+
+std::vector<std::string> Renderer::take_messages()
+{
+    std::vector<std::string> messages = std::exchange(messages_, {});
+    if (paged_)
+        for (std::string& message : paged_->take_messages()) messages.push_back(std::move(message));
+    return messages;
+}
+
 std::optional<Renderer::OcclusionSlice> Renderer::next_occlusion(const Session& session, const Camera& camera,
                                                                  const Occlusion::Most& most)
 {
-    if (!shows_occlusion(session.light)) {
+    if (!draws_occlusion(session)) {
         occlusion_.clear();
         reached_revision_ = 0;
         if (paged_) paged_->want_around({});
@@ -417,7 +446,7 @@ std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, co
 {
     constexpr Occlusion::Most MOST{.bricks = 64, .cell_bricks = 512};
     std::vector<gpu::PassReport> passes;
-    if (paged_ && shows_occlusion(session.light)) {
+    if (paged_ && draws_occlusion(session)) {
         occlusion_.look(occlusion_look(session), *volume_, mask_);
         want_around();
         static_cast<void>(paged_->advance(true));
@@ -435,8 +464,7 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     Prepared prepared;
     RaycastInput& input = prepared.input;
     prepared.volume = import_prepared(graph, session, input.mask, feedback);
-    if (shows_occlusion(session.light)) {
-        if (!occlusion_.exists_for(*volume_)) occlusion_.look(occlusion_look(session), *volume_, mask_);
+    if (draws_occlusion(session)) {
         const OcclusionSettings& settings = session.light.occlusion;
         input.occlusion =
             RaycastOcclusion{occlusion_.import(graph).values, {float(settings.strength), float(settings.curve)}};
@@ -500,6 +528,8 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
         std::vector<gpu::PassReport> passes = make_occlusion(session, camera, options);
         render_part(picture, session, camera, whole, options);
         append(picture.passes, std::move(passes));
+        picture.complete = !occlusion_has_no_room_;
+        picture.warnings = take_messages();
         return picture;
     }
     // Draw, load what rays came by, and draw again, until they come by nothing that is not there. What needs more bricks
@@ -536,7 +566,8 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
         append(passes, std::move(picture.passes));
     }
     picture.passes = std::move(passes);
-    picture.warnings = paged_->take_messages();
+    picture.complete = picture.complete && !occlusion_has_no_room_;
+    picture.warnings = take_messages();
     return picture;
 }
 

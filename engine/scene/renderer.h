@@ -47,8 +47,8 @@ struct RenderOptions {
 };
 
 struct Picture {
-    ImageF image;                       ///< linear light, premultiplied, over the background
-    bool complete = true;               ///< every brick that rays came by was there, as fine as wanted
+    ImageF image;          ///< linear light, premultiplied, over the background
+    bool complete = true;  ///< every brick that rays came by was there, as fine as wanted, and every feature had room
     std::vector<std::string> warnings;  ///< what was not
     std::vector<gpu::PassReport> passes;
     double wall_ms = 0.0;
@@ -106,6 +106,8 @@ public:
     std::optional<OcclusionSlice> next_occlusion(const Session& session, const Camera& camera,
                                                  const Occlusion::Most& most);
     Occlusion& occlusion() { return occlusion_; }
+    /// What pictures go without (bricks that cannot be read, features without room), one sentence each, since the last call.
+    std::vector<std::string> take_messages();
 
     /// What was added to a graph: the target's new version, and where bricks come and go the read-back that
     /// `note_reached` wants once the graph is done.
@@ -136,6 +138,7 @@ private:
     const Table& table_of(const Session& session, double step_voxels);
     Visibility visibility_of(const Session& session);
     Occlusion::Look occlusion_look(const Session& session);
+    bool draws_occlusion(const Session& session);
     std::vector<gpu::PassReport> make_occlusion(const Session& session, const Camera& camera,
                                                 const RenderOptions& options);
     void want_around();
@@ -164,6 +167,8 @@ private:
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
     DeviceMask mask_;
     Occlusion occlusion_;
+    bool occlusion_has_no_room_ = false;
+    std::vector<std::string> messages_;
     uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen
     std::optional<Table> baked_;
     gpu::Storage table_;

@@ -430,3 +430,32 @@ TEST_CASE_FIXTURE(OnDevice, "32 rays of seven looks come close to 512 rays of 32
         check_below("rms error", std::sqrt(squares / count), bound);
     }
 }
+
+TEST_CASE("where occlusion has no room the picture goes without, and says so once")
+{
+    const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = Size3(200)});
+    Session session;
+    session.render = {.size = {48, 48}, .sampling = Sampling::exact};
+    session.transfer_function = TransferFunction({{90.0, glm::dvec3(1.0), 0.0}, {200.0, glm::dvec3(1.0), 0.5}});
+    gpu::DeviceOptions device;
+    device.validation = true;
+    // The volume takes nearly all of it.
+    Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{40} << 20}});
+    renderer.load(source, measure(*source), session.render);
+    REQUIRE(renderer.paged() == nullptr);
+    const Camera camera = camera_looking("front", source->info());
+    const Picture plain = renderer.render(session, camera);
+    CHECK(plain.complete);
+    session.light.occlusion.strength = 1.0;
+    const Picture without = renderer.render(session, camera);
+    CHECK_FALSE(without.complete);
+    REQUIRE(without.warnings.size() == 1);
+    CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
+    CHECK(without.image.rgba == plain.image.rgba);
+    CHECK(renderer.render(session, camera).warnings.empty());
+    // Smaller volumes have room.
+    const std::shared_ptr<const VolumeSource> small = open_procedural({.kind = "tubes", .size = Size3(64)});
+    renderer.load(small, measure(*small), session.render);
+    CHECK(renderer.render(session, camera_looking("front", small->info())).complete);
+    CHECK(renderer.device().take_validation_messages().empty());
+}
