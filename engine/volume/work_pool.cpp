@@ -51,8 +51,12 @@ std::shared_ptr<WorkPool::Batch> WorkPool::start(int64_t tasks, Task run, Urgenc
 void WorkPool::wait(const std::shared_ptr<Batch>& batch)
 {
     std::unique_lock lock(mutex_);
-    while (!finished_.wait_for(lock, std::chrono::milliseconds(50), [&] { return batch->is_finished(); })) {
-        if (!poll_) continue;
+    const auto is_finished = [&] { return batch->is_finished(); };
+    for (;;) {
+        if (!poll_) finished_.wait(lock, is_finished);
+        // Where every batch is shorter than the interval, it is over at some time nevertheless.
+        const bool is_due = poll_ && std::chrono::steady_clock::now() >= polled_ + POLL_INTERVAL;
+        if (!is_due && finished_.wait_until(lock, polled_ + POLL_INTERVAL, is_finished)) break;
         lock.unlock();
         std::exception_ptr failure;
         try {
@@ -60,11 +64,12 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
         } catch (...) {
             failure = std::current_exception();
         }
+        polled_ = std::chrono::steady_clock::now();
         lock.lock();
         if (!failure) continue;
         // What its tasks use may go away with the caller.
         batch->end = std::min(batch->end, batch->next);
-        finished_.wait(lock, [&] { return batch->is_finished(); });
+        finished_.wait(lock, is_finished);
         std::rethrow_exception(failure);
     }
     if (batch->failure) std::rethrow_exception(batch->failure);

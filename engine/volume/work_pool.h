@@ -23,7 +23,8 @@ class WorkPool {
 public:
     using Task = std::function<void(int64_t task, int worker)>;
 
-    /// `poll` is called every 50 ms by a thread that waits; what it throws ends the batch and is thrown on.
+    /// `poll` is called every 50 ms by a thread that waits, for one batch or for many short ones; what it throws ends the
+    /// batch that is waited for and is thrown on.
     explicit WorkPool(int threads, std::function<void()> poll = {});
     /// Drops what has not begun, and waits for the rest.
     ~WorkPool();
@@ -44,7 +45,10 @@ public:
 private:
     void work(int worker);
 
+    static constexpr std::chrono::milliseconds POLL_INTERVAL{50};
+
     std::function<void()> poll_;
+    std::chrono::steady_clock::time_point polled_ = std::chrono::steady_clock::now();
     std::mutex mutex_;
     std::condition_variable begun_, finished_;
     std::deque<std::shared_ptr<Batch>> urgent_, normal_;

@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import pty
 import random
 import resource
 import shutil
@@ -200,6 +201,38 @@ class Import(CliTest):
             self.assertRegex(line, r"^(\d+ %, [\d.]+ MB/s, .* left|warning: .*|.*: 64 x 64 x 640 voxels in 6 levels, .*)$")
         self.assertEqual(self.check("import", header, self.project(), "--overwrite", "--quiet").stderr, "")
 
+    def test_on_a_terminal_one_line_shows_share_rate_and_time_left_and_goes_away(self):
+        size = (128, 128, 256)
+        header = Volume(size, [], voxel_type="uint8").write(self.folder)
+        (self.folder / "volume.raw").write_bytes(random.Random(9).randbytes(math.prod(size)))
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([SHVR, "import", header, self.project(), "--blur", "12", "--threads", "1"],
+                                   stdout=subprocess.DEVNULL, stderr=theirs, env=ENVIRONMENT)
+        os.close(theirs)
+        shown = b""
+        try:
+            while piece := os.read(ours, 65536):
+                shown += piece
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        self.assertEqual(process.wait(timeout=60), 0)
+        lines = shown.decode().split("\r\x1b[K")
+        self.assertGreater(len(lines), 2)
+        for line in lines[1:-1]:
+            self.assertRegex(line, r"^\d+ %, [\d.]+ MB/s, (\d+ min )?\d+ s left$")
+        shares = [int(line.split()[0]) for line in lines[1:-1]]
+        self.assertEqual(shares, sorted(shares))
+        self.assertNotIn("%", lines[-1])
+
+    def test_a_report_that_cannot_be_written_is_one_sentence_and_the_project_is_whole(self):
+        header = Volume.noise((9, 8, 7), seed=10).write(self.folder)
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([SHVR, "import", header, self.project(), "--json", "--quiet"], stdout=full,
+                                    stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, timeout=60)
+        self.assertEqual((result.returncode, result.stderr), (1, "shvr: standard output: cannot be written\n"))
+        self.assertEqual(self.check_json("info", self.project())["size"], [9, 8, 7])
+
 
 class Refusals(CliTest):
     def test_wrong_usage(self):
@@ -318,6 +351,36 @@ class EndingEarly(CliTest):
             self.check_finished()
             self.clear()
 
+    def test_ctrl_c_at_any_time_leaves_nothing_or_what_can_be_gone_on_with(self):
+        begin = time.monotonic()
+        self.check("import", *self.arguments, "--quiet")
+        whole = time.monotonic() - begin
+        self.clear()
+        for step in range(8):
+            with self.subTest(step=step):
+                process = self.start()
+                time.sleep(whole * step / 7)
+                process.send_signal(signal.SIGINT)
+                _, said = process.communicate(timeout=60)
+                # Before there is anything to keep it ends at once, as any program does.
+                self.assertIn(process.returncode, (0, 1, -signal.SIGINT))
+                if process.returncode == 1:
+                    self.assertIn("the import was stopped; what is done is kept", said.splitlines()[-1])
+                self.assertEqual((self.folder / "project").exists(), process.returncode == 0)
+                if process.returncode != 0:
+                    self.check_finished()
+                self.clear()
+
+    def test_a_crash_leaves_what_is_done(self):
+        process = self.start()
+        self.wait_for_chunks(process, 30)
+        process.send_signal(signal.SIGSEGV)
+        process.communicate(timeout=60)
+        if process.returncode != 0:
+            self.assertEqual(process.returncode, -signal.SIGSEGV)
+            self.assertFalse((self.folder / "project").exists())
+            self.check_finished()
+
     def test_files_that_may_not_grow_are_one_sentence(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (200000, 200000))
@@ -332,17 +395,20 @@ class EndingEarly(CliTest):
     def test_a_full_disk_is_one_sentence(self):
         disk = self.folder / "disk"
         disk.mkdir()
-        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", disk], capture_output=True)
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], capture_output=True)
         if mount.returncode != 0:
             self.skipTest("this process may not mount a file system")
         try:
             self.arguments[1] = disk / "project"
-            said = self.check_refused("import", *self.arguments, "--quiet",
-                                      says=["disk/project.part/", "cannot be written: No space left on device", "kept"])
-            self.assertEqual(len(said.splitlines()), 1)
-            self.assertEqual([path.name for path in disk.iterdir()], ["project.part"])
+            # Full at the first small file, at the first chunks, half-way, and near the end.
+            for size in ("4k", "64k", "512k", "4m", "8m", "15m"):
+                subprocess.run(["mount", "-o", f"remount,size={size}", disk], check=True)
+                said = self.check_refused("import", *self.arguments, "--quiet",
+                                          says=["disk/project.part", "cannot be written: No space left on device", "kept"])
+                self.assertEqual(len(said.splitlines()), 1)
+                self.assertEqual([path.name for path in disk.iterdir()], ["project.part"])
             subprocess.run(["mount", "-o", "remount,size=64m", disk], check=True)
-            self.check("import", *self.arguments, "--quiet")
+            self.assertTrue(self.check_json("import", *self.arguments)["resumed"])
             self.assertEqual({name: content for name, content in content_of(disk / "project").items()}, self.expected)
         finally:
             subprocess.run(["umount", disk], check=True)

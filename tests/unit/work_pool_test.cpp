@@ -1,6 +1,8 @@
 #include "engine/volume/work_pool.h"
 
 #include <atomic>
+#include <chrono>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -24,6 +26,7 @@ TEST_CASE("every task of a batch runs once, and what one fails with is thrown")
     const std::string said = error_of([&] {
         pool.run(100000, [&](int64_t task, int) {
             if (task == 5) fail("task 5");
+            if (task > 5) std::this_thread::sleep_for(std::chrono::microseconds(100));
             ++later;
         });
     });
@@ -34,9 +37,9 @@ TEST_CASE("every task of a batch runs once, and what one fails with is thrown")
 
 TEST_CASE("urgent batches go before others, and who waits may end them")
 {
-    int polls = 0;
+    int polls_left = 1000000;
     WorkPool pool(1, [&] {
-        if (++polls == 2) fail("enough");
+        if (--polls_left == 0) fail("enough");
     });
     std::vector<int> order;
     std::atomic<bool> goes_on = false;
@@ -53,6 +56,7 @@ TEST_CASE("urgent batches go before others, and who waits may end them")
     CHECK(order == std::vector<int>{2, 2, 1, 1});
 
     std::atomic<int> done = 0;
+    polls_left = 2;
     CHECK(error_of([&] {
               pool.run(1000000, [&](int64_t, int) {
                   std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -62,4 +66,16 @@ TEST_CASE("urgent batches go before others, and who waits may end them")
     const int at_return = done;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     CHECK(done == at_return);
+}
+
+TEST_CASE("who waits for many short batches is asked as often as who waits for a long one")
+{
+    int polls = 0;
+    WorkPool pool(1, [&] { ++polls; });
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(400);
+    while (std::chrono::steady_clock::now() < end) {
+        pool.run(1, [](int64_t, int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+    }
+    CHECK(polls >= 3);
+    CHECK(polls <= 9);
 }
