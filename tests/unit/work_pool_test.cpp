@@ -1,6 +1,8 @@
 #include "engine/volume/work_pool.h"
 
 #include <atomic>
+#include <chrono>
+#include <thread>
 
 #include <doctest/doctest.h>
 
