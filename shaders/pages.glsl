@@ -35,7 +35,7 @@ Place place_at(const RaycastParams params, vec3 position)
     place.box_shift = 31u;
     place.slot = entry & PAGE_PAYLOAD_MASK;
     place.level = entry >> PAGE_LEVEL_SHIFT & 0xfu;
-    if (place.distance == 0u) {
+    if (place.distance == 0u && SLICE == 0u) {
         const uvec3 cell = voxel >> place.level + 2u & BRICK_CELLS - 1u;
         place.box_shift = place.cell_shift;
         place.cell_shift = place.level + 2u;

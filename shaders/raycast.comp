@@ -32,6 +32,8 @@ layout(constant_id = 5) const uint PICK = 0u;
 // Notes which bricks rays reach. A picture that is complete does without.
 layout(constant_id = 6) const uint FEEDBACK = 0u;
 layout(constant_id = 7) const uint DISTANCE_BLEND = 0u;
+// Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
+layout(constant_id = 8) const uint SLICE = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
@@ -108,6 +110,14 @@ vec4 table_entry(uint entry)
     return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
 }
 
+// Grey, evenly spaced to the eye: the inverse of the curve that pictures are encoded with (IEC 61966-2-1).
+vec4 slice_look(const RaycastParams params, float density)
+{
+    const float grey = clamp((density - params.slice_black) * params.slice_scale, 0.0, 1.0);
+    const float light = grey <= 0.04045 ? grey / 12.92 : exp2(2.4 * log2((grey + 0.055) / 1.055));
+    return vec4(vec3(light), 1.0);
+}
+
 // Colour and opacity of a full step for a density; the table is linear between its entries and nothing outside.
 vec4 classify(const RaycastParams params, float density)
 {
@@ -128,6 +138,10 @@ vec4 painted(const RaycastParams params, vec3 position, vec4 look)
     if (slot == 0u) return look;
     const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
+    if (SLICE != 0u) {
+        const float share = groups.looks[group].opacity > 0.0 ? params.slice_paint : 0.0;
+        return vec4(mix(look.rgb, groups.looks[group].color, share), 1.0);
+    }
     return vec4(groups.looks[group].color, groups.looks[group].opacity);
 }
 #endif
@@ -147,7 +161,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const
     const vec3 corner = floor(lattice);
     const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
-    vec4 look = classify(params, value_of(density));
+    vec4 look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density));
 #ifdef MASKED
     look = painted(params, position, look);
 #endif
@@ -208,6 +222,17 @@ void note(const Place place, inout Work work)
         work.last_entry = place.entry;
     }
 #endif
+}
+
+// The one sample of a slice. What the transfer function hides is there nevertheless; what the view does not reach is not.
+vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work)
+{
+    Place place = place_at(params, position);
+    note(place, work);
+#ifdef PAGED
+    if (place.distance > 0u) return vec4(0.0);
+#endif
+    return sample_look(params, ray, position, place, work);
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -277,10 +302,16 @@ void main()
     const float probe = PROBE != 0u ? length_to_probe(params, ray) : 1e30;
     if (PROBE != 0u) end = min(end, max(probe, begin));
 
-    const float extent = max(end - begin, 0.0);
-    const uint steps = uint(extent / params.step);
     vec4 sum = vec4(0.0);
     Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
+    if (SLICE != 0u) {
+        const float plane = 0.5 * length_to_far;
+        if (begin <= plane && plane <= end) sum = sliced(params, ray, position_at(params, ray, plane), work);
+        end = begin;
+    }
+
+    const float extent = max(end - begin, 0.0);
+    const uint steps = uint(extent / params.step);
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // loop of its own, and lanes meet again at the costly sample.

@@ -54,6 +54,9 @@ struct RaycastParams {
     vec3 blend_color;     ///< linear light
     float blend_size;     ///< distance blending: its share at depth 1
     float blend_rate;     ///< and how it grows there: depth^rate
+    float slice_black;    ///< slices: the code that is black
+    float slice_scale;    ///< 1 / (codes from black to white)
+    float slice_paint;    ///< how much of a painted voxel's colour is its group's
 };
 
 /// What a voxel of a colour group looks like, for one step.

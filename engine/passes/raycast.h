@@ -28,6 +28,7 @@ struct RaycastInput {
     uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
     glm::uvec2 tile{0};        ///< pixels of one dispatch, multiples of 64; 0 = all at once
     bool probe = false;        ///< params.probe_* are set
+    bool slice = false;        ///< params.slice_* are set: what lies half-way along the rays
     bool pick = false;         ///< positions instead of colours, see the kernel
 };
 

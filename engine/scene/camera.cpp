@@ -78,11 +78,12 @@ struct Plane {
     glm::dvec3 corner, dx, dy;
 };
 
-/// The pixel grid whose middle is `middle` (volume space), in voxel space.
+/// The pixel grid whose middle is `shift_right` to the right of `middle` (volume space), in voxel space.
 Plane pixel_plane(const glm::dvec3& middle, double pixel, const Axes& axes, const glm::uvec2& pixels,
-                  const glm::dvec3& spacing)
+                  double shift_right, const glm::dvec3& spacing)
 {
-    const glm::dvec3 corner = middle + axes.up * (0.5 * pixel * pixels.y) - axes.right * (0.5 * pixel * pixels.x);
+    const double to_left = 0.5 * pixel * pixels.x - shift_right * pixel * pixels.y;
+    const glm::dvec3 corner = middle + axes.up * (0.5 * pixel * pixels.y) - axes.right * to_left;
     return {corner / spacing, axes.right * pixel / spacing, -axes.up * pixel / spacing};
 }
 
@@ -147,6 +148,8 @@ void check_camera(const Camera& camera)
         !(camera.far_distance >= 0.0 && std::isfinite(camera.far_distance)))
         fail("camera: the clip planes are at ", camera.near_distance, " and ", camera.far_distance,
              "; expected finite distances of 0 or more");
+    if (!std::isfinite(camera.shift_right))
+        fail("camera: shift_right is ", camera.shift_right, "; expected a finite number of view heights");
     if (camera.eye == camera.target)
         fail("camera: eye and target are both ", shown(camera.eye), "; expected two points");
     if (!axes_of(camera))
@@ -184,7 +187,7 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     const double per_depth = 2.0 * std::tan(radians(0.5 * camera.fov_y_degrees)) / pixels.y;
     const auto plane_at = [&](double offset) {
         const double pixel = is_perspective ? per_depth * (anchor_depth + offset) : camera.height / pixels.y;
-        return pixel_plane(anchor + axes.forward * offset, pixel, axes, pixels, volume.spacing);
+        return pixel_plane(anchor + axes.forward * offset, pixel, axes, pixels, camera.shift_right, volume.spacing);
     };
     const Plane near_plane = plane_at(near_offset);
     const Plane far_plane = plane_at(far_offset);

@@ -22,6 +22,12 @@ bool is_perspective(const Camera& camera)
     return camera.projection == Camera::Projection::perspective;
 }
 
+/// Where the line from eye to target is seen.
+glm::dvec2 axis_pixel(const Camera& camera, const glm::uvec2& pixels)
+{
+    return 0.5 * glm::dvec2(pixels) - glm::dvec2(camera.shift_right * pixels.y, 0.0);
+}
+
 PixelBox pixels_around(const Camera& camera, const glm::uvec2& pixels, std::span<const glm::dvec3> corners)
 {
     glm::dvec2 lower(1e300), upper(-1e300);
@@ -95,7 +101,7 @@ std::optional<Projected> project(const Camera& camera, const glm::uvec2& pixels,
     const double depth = glm::dot(from_eye, axes.forward);
     if (is_perspective(camera) && !(depth > 0.0)) return std::nullopt;
     const double size = pixel_size(camera, pixels, depth);
-    const glm::dvec2 middle = 0.5 * glm::dvec2(pixels);
+    const glm::dvec2 middle = axis_pixel(camera, pixels);
     return Projected{{middle.x + glm::dot(from_eye, axes.right) / size, middle.y - glm::dot(from_eye, axes.up) / size},
                      depth};
 }
@@ -103,7 +109,7 @@ std::optional<Projected> project(const Camera& camera, const glm::uvec2& pixels,
 glm::dvec3 unproject(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double depth)
 {
     const CameraAxes axes = axes_of(camera);
-    const glm::dvec2 offset = (pixel - 0.5 * glm::dvec2(pixels)) * pixel_size(camera, pixels, depth);
+    const glm::dvec2 offset = (pixel - axis_pixel(camera, pixels)) * pixel_size(camera, pixels, depth);
     return camera.eye + axes.forward * depth + axes.right * offset.x - axes.up * offset.y;
 }
 

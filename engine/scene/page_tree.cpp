@@ -33,7 +33,7 @@ double most(const glm::dvec3& normal, const Box& box)
 /// What the rays of a picture can reach, in physical units, and how large a pixel is there.
 class Frustum {
 public:
-    explicit Frustum(const PageView& view) : camera_(view.camera), pixels_(view.pixels)
+    Frustum(const Camera& camera, const glm::uvec2& pixels) : camera_(camera), pixels_(pixels)
     {
         forward_ = glm::normalize(camera_.target - camera_.eye);
         const glm::dvec3 right = glm::normalize(glm::cross(forward_, camera_.up));
@@ -46,8 +46,9 @@ public:
         const double half_x = half * margin.x * double(pixels_.x) / double(pixels_.y);
         pixel_ = 2.0 * half / double(pixels_.y);
         size_t plane = 0;
-        for (const auto& [side, extent] :
-             {std::pair{right, half_x}, std::pair{-right, half_x}, std::pair{up, half_y}, std::pair{-up, half_y}}) {
+        const double shift = 2.0 * half * camera_.shift_right;
+        for (const auto& [side, extent] : {std::pair{right, half_x + shift}, std::pair{-right, half_x - shift},
+                                           std::pair{up, half_y}, std::pair{-up, half_y}}) {
             // Inside where dot(normal, p) >= offset.
             const glm::dvec3 normal = is_perspective ? extent * forward_ - side : -side;
             const double offset = glm::dot(normal, camera_.eye) - (is_perspective ? 0.0 : extent);
@@ -87,8 +88,10 @@ class Cutter {
 public:
     Cutter(const VolumeInfo& volume, int levels, const PageView& view,
            const std::function<bool(const BrickKey&)>& shows, size_t most_leaves)
-        : volume_(volume), levels_(levels), view_(view), frustum_(view), shows_(shows), most_leaves_(most_leaves)
+        : volume_(volume), levels_(levels), view_(view), shows_(shows), most_leaves_(most_leaves)
     {
+        frustums_.emplace_back(view.camera, view.pixels);
+        if (view.other_eye) frustums_.emplace_back(*view.other_eye, view.pixels);
         reference_ = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     }
 
@@ -108,10 +111,11 @@ public:
     std::vector<PageTree::Leaf>& leaves() { return leaves_; }
 
 private:
-    int level_at(double depth) const
+    /// The coarsest level that is fine enough at a depth.
+    int level_at(const Frustum& frustum, double depth) const
     {
         if (detail_ <= 0.0) return 0;
-        const double voxels = frustum_.pixel_at(depth) / (detail_ * reference_);
+        const double voxels = frustum.pixel_at(depth) / (detail_ * reference_);
         return voxels < 2.0 ? 0 : std::min(int(std::floor(std::log2(voxels))), levels_ - 1);
     }
 
@@ -123,9 +127,16 @@ private:
         if (glm::any(glm::lessThan(upper, view_.cut.lower)) || glm::any(glm::greaterThan(lower, view_.cut.upper)))
             return true;
         const Box box{lower * volume_.spacing, upper * volume_.spacing};
-        if (!frustum_.meets(box) || !shows_(key)) return true;
-        const double depth = frustum_.depth(box);
-        if (key.level <= level_at(depth)) {
+        double depth = std::numeric_limits<double>::infinity();
+        int level = levels_;
+        for (const Frustum& frustum : frustums_) {
+            if (!frustum.meets(box)) continue;
+            const double seen_at = frustum.depth(box);
+            depth = std::min(depth, seen_at);
+            level = std::min(level, level_at(frustum, seen_at));
+        }
+        if (level == levels_ || !shows_(key)) return true;
+        if (key.level <= level) {
             leaves_.push_back({key, depth});
             return leaves_.size() <= most_leaves_;
         }
@@ -138,7 +149,7 @@ private:
     const VolumeInfo& volume_;
     int levels_;
     const PageView& view_;
-    Frustum frustum_;
+    std::vector<Frustum> frustums_;  ///< of one eye, or two
     const std::function<bool(const BrickKey&)>& shows_;
     size_t most_leaves_;
     double reference_ = 1.0;

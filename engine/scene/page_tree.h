@@ -16,9 +16,11 @@ namespace shvr {
 
 struct PageView {
     Camera camera;
+    std::optional<Camera> other_eye;
     glm::uvec2 pixels{1};
     double detail = 1.0;  ///< voxels per pixel at least; 0: the finest level everywhere
     CutBox cut;
+    bool shows_all = false;  ///< whatever the transfer function says
     bool operator==(const PageView&) const = default;
 };
 

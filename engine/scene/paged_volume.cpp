@@ -105,7 +105,7 @@ bool PagedVolume::is_painted(const BrickKey& key) const
 
 bool PagedVolume::shows(const BrickKey& key) const
 {
-    if (is_painted(key)) return true;
+    if (is_painted(key) || (view_ && view_->shows_all)) return true;
     const std::optional<ValueRange> range = source_->brick_range(key.level, Size3(key.brick));
     if (!range) return true;
     return range->lower <= range->upper &&
@@ -145,7 +145,7 @@ PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
 {
     if (resident_.contains(key)) return LeafState::resident;
     const auto range = known_ranges_.find(key);
-    if (range != known_ranges_.end() && !is_painted(key) &&
+    if (range != known_ranges_.end() && !is_painted(key) && !(view_ && view_->shows_all) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
         return LeafState::empty;
     return store_.failure_of(key) ? LeafState::failed : LeafState::missing;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/passes/anaglyph.h"
 #include "engine/volume/pyramid_source.h"
 
 namespace shvr {
@@ -66,43 +67,56 @@ std::vector<gpu::GroupLook> group_looks(const Session& session, double step_voxe
     return looks;
 }
 
-double gradient_fade_codes(const Session& session, const DeviceVolume& volume, const VolumeStatistics& statistics)
+/// What depends on the camera: rays, what they meet of the volume, light and depth.
+void set_rays(gpu::RaycastParams& params, const Session& session, const Camera& camera, const VolumeInfo& info,
+              const glm::uvec2& pixels)
 {
-    const ValueRange range = statistics.range();
-    return session.light.gradient_fade * ((range.upper - range.lower) * volume.window().codes_per_unit);
-}
-
-/// Whether it makes a difference.
-bool shows_occlusion(const Light& light)
-{
-    return light.shaded && light.ambient > 0.0 && light.occlusion.strength > 0.0;
-}
-
-/// `step_voxels`: between samples, in reference lengths.
-gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
-                                  const VolumeBinding& binding, const VolumeStatistics& statistics,
-                                  const PicturePart& part, double step_voxels)
-{
-    const VolumeInfo& info = volume.info();
-    const RayPlanes planes = ray_planes(camera, part.pixels, info);
-    const TableMap map = table_map(session.transfer_function, volume.window());
-    const glm::vec3 size(info.size);
-    const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
-    gpu::RaycastParams params{};
+    const RayPlanes planes = ray_planes(camera, pixels, info);
     params.near_corner = planes.near_corner;
     params.near_dx = planes.near_dx;
     params.near_dy = planes.near_dy;
     params.far_corner = planes.far_corner;
     params.far_dx = planes.far_dx;
     params.far_dy = planes.far_dy;
+    params.box_lower = glm::max(glm::vec3(session.cut.lower), glm::vec3(0.0f));
+    params.box_upper = glm::min(glm::vec3(session.cut.upper), glm::vec3(info.size));
+    const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
+    if (planes.empty || cut_away) params.box_upper = params.box_lower = glm::vec3(-1.0f);
+    params.light = light_direction(session.light, camera);
+    if (session.blend.size > 0.0)
+        params.depth_plane = depth_plane(camera, params.box_lower, params.box_upper, info.spacing);
+}
+
+/// A slice shows the whole volume, whatever is cut away, in grey.
+void set_slice(gpu::RaycastParams& params, const Session& session, const DeviceVolume& volume,
+               const VolumeStatistics& statistics)
+{
+    const auto [lower, upper] = statistics.range();
+    const SliceSettings& slices = session.view.slices;
+    const double black = volume.window().code_of(slices.black.value_or(lower));
+    const double white = volume.window().code_of(slices.white.value_or(upper));
+    params.slice_black = float(black);
+    params.slice_scale = float(1.0 / std::max(white - black, 1e-6));
+    params.slice_paint = float(slices.paint_share);
+    params.box_lower = glm::vec3(0.0f);
+    params.box_upper = glm::vec3(volume.info().size);
+    params.blend_size = 0.0f;
+}
+
+/// `step_voxels`: between samples, in reference lengths.
+gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
+                                  const VolumeBinding& binding, const PicturePart& part, double step_voxels)
+{
+    const VolumeInfo& info = volume.info();
+    const TableMap map = table_map(session.transfer_function, volume.window());
+    const glm::vec3 size(info.size);
+    const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
+    gpu::RaycastParams params{};
     params.pixel_begin = part.begin;
     params.pixel_end = part.end;
     params.target = part.target;
-    params.box_lower = glm::max(glm::vec3(session.cut.lower), glm::vec3(0.0f));
-    params.box_upper = glm::min(glm::vec3(session.cut.upper), size);
     params.position_limit = last;
-    const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
-    if (planes.empty || cut_away) params.box_upper = params.box_lower = glm::vec3(-1.0f);
+    set_rays(params, session, camera, info, part.pixels);
     params.spacing = info.spacing / reference_length(info);
     params.inverse_spacing = reference_length(info) / info.spacing;
     params.cell_counts = binding.cell_counts;
@@ -119,14 +133,11 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     params.table_scale = map.scale;
     params.table_entries = TABLE_ENTRIES;
     params.background = session.render.background;
-    params.light = light_direction(session.light, camera);
     params.ambient = float(session.light.ambient);
     params.diffuse = float(session.light.diffuse);
     params.specular = float(session.light.specular);
     params.shininess = float(session.light.shininess);
-    params.gradient_fade = float(gradient_fade_codes(session, volume, statistics));
     if (session.blend.size > 0.0) {
-        params.depth_plane = depth_plane(camera, params.box_lower, params.box_upper, info.spacing);
         params.blend_color = session.blend.color.value_or(glm::dvec3(session.render.background));
         params.blend_size = float(session.blend.size);
         params.blend_rate = float(session.blend.rate);
@@ -137,21 +148,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
         params.probe_color = part.probe->color;
     }
     return params;
-}
-
-/// Adds up what the parts of a picture cost, pass by pass.
-void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> passes)
-{
-    for (gpu::PassReport& pass : passes) {
-        const auto known = std::ranges::find(sum, pass.name, &gpu::PassReport::name);
-        if (known == sum.end()) {
-            sum.push_back(std::move(pass));
-            continue;
-        }
-        known->gpu_ms += pass.gpu_ms;
-        known->dispatches += pass.dispatches;
-        for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];
-    }
 }
 
 int worker_count(int wanted)
@@ -323,13 +319,25 @@ Visibility Renderer::visibility_of(const Session& session)
             .visible_groups = visible_groups(session)};
 }
 
+double Renderer::gradient_fade_codes(const Session& session) const
+{
+    const auto [lower, upper] = statistics_.range();
+    return session.light.gradient_fade * ((upper - lower) * volume_->window().codes_per_unit);
+}
+
 /// Tells the volume what is looked at. The distance between samples, in reference lengths: samples of coarse bricks may
 /// lie farther apart.
-double Renderer::look(const Session& session, const Camera& camera, const glm::uvec2& pixels)
+double Renderer::look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
 {
     if (!paged_) return session.render.step_voxels;
-    check_camera(camera);
-    paged_->look({camera, pixels, session.render.detail, session.cut}, visibility_of(session));
+    check_camera(shot.camera);
+    paged_->look({.camera = shot.camera,
+                  .other_eye = shot.right_eye,
+                  .pixels = pixels,
+                  .detail = session.render.detail,
+                  .cut = shot.is_slice ? CutBox{} : session.cut,
+                  .shows_all = shot.is_slice},
+                 visibility_of(session));
     return std::ldexp(session.render.step_voxels, paged_->tree()->finest_level);
 }
 
@@ -359,59 +367,6 @@ VolumeBinding Renderer::import_prepared(FrameGraph& graph, const Session& sessio
     return volume;
 }
 
-Occlusion::Look Renderer::occlusion_look(const Session& session)
-{
-    const OcclusionSettings& settings = session.light.occlusion;
-    Occlusion::Look look{.function = session.transfer_function,
-                         .visibility = visibility_of(session),
-                         .cut = session.cut,
-                         .radius = settings.radius,
-                         .rays = settings.rays,
-                         .full_sphere = settings.full_sphere,
-                         .gradient_fade = gradient_fade_codes(session, *volume_, statistics_)};
-    for (uint32_t group = 1; group < 256; ++group) {
-        const ColorGroup of_group = group_of(session.groups, uint8_t(group));
-        look.groups[group] = of_group.visible ? of_group.opacity : 0.0;
-    }
-    return look;
-}
-
-/// Of the bricks that rays came by, those around them, too: light comes from there.
-void Renderer::want_around()
-{
-    if (!paged_ || std::exchange(reached_revision_, paged_->reached_revision()) == paged_->reached_revision()) return;
-    std::unordered_set<BrickKey, BrickKeyHash> keys;
-    for (const BrickKey& key : paged_->reached_bricks()) {
-        const int reach = occlusion_.reach(key.level);
-        const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
-        const glm::ivec3 first = glm::max(key.brick - reach, 0), last = glm::min(key.brick + reach, counts - 1);
-        for (int z = first.z; z <= last.z; ++z)
-            for (int y = first.y; y <= last.y; ++y)
-                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
-    }
-    paged_->want_around(std::move(keys));
-}
-
-/// Whether ambient occlusion is wanted and has room. Where it has none, that is said once, and pictures go without until
-/// it is switched off, or another volume comes.
-bool Renderer::draws_occlusion(const Session& session)
-{
-    if (!shows_occlusion(session.light)) {
-        occlusion_has_no_room_ = false;
-        return false;
-    }
-    if (occlusion_has_no_room_) return false;
-    if (occlusion_.exists_for(*volume_)) return true;
-    try {
-        occlusion_.look(occlusion_look(session), *volume_, mask_);
-    } catch (const Error& error) {
-        occlusion_.clear();
-        occlusion_has_no_room_ = true;
-        messages_.push_back(std::string("ambient occlusion is left out; ") + error.what());
-    }
-    return !occlusion_has_no_room_;
-}
-
 std::vector<std::string> Renderer::take_messages()
 {
     std::vector<std::string> messages = std::exchange(messages_, {});
@@ -420,58 +375,26 @@ std::vector<std::string> Renderer::take_messages()
     return messages;
 }
 
-std::optional<Renderer::OcclusionSlice> Renderer::next_occlusion(const Session& session, const Camera& camera,
-                                                                 const Occlusion::Most& most)
-{
-    if (!draws_occlusion(session)) {
-        occlusion_.clear();
-        reached_revision_ = 0;
-        if (paged_) paged_->want_around({});
-        return std::nullopt;
-    }
-    if (paged_ && !paged_->tree()) return std::nullopt;
-    occlusion_.look(occlusion_look(session), *volume_, mask_);
-    want_around();
-    if (!occlusion_.is_due()) return std::nullopt;
-    OcclusionSlice slice;
-    std::optional<MaskBinding> mask;
-    const VolumeBinding volume = import_prepared(slice.graph, session, mask, false);
-    slice.renewed = occlusion_.next(slice.graph, volume, mask, camera.eye / volume_->info().spacing, most);
-    return slice;
-}
-
-/// All that `session` wants and that can be made with the bricks that are there. Returns the passes.
-std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, const Camera& camera,
-                                                      const RenderOptions& options)
-{
-    constexpr Occlusion::Most MOST{.bricks = 64, .cell_bricks = 512};
-    std::vector<gpu::PassReport> passes;
-    if (paged_ && draws_occlusion(session)) {
-        occlusion_.look(occlusion_look(session), *volume_, mask_);
-        want_around();
-        static_cast<void>(paged_->advance(true));
-    }
-    while (std::optional<OcclusionSlice> slice = next_occlusion(session, camera, MOST))
-        append(passes, executor_.run(std::move(slice->graph), {.timestamps = options.timestamps}).passes);
-    return passes;
-}
-
-Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Camera& camera,
+Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Shot& shot,
                                      const PicturePart& part, bool feedback)
 {
     const glm::uvec2 detail_pixels = part.detail_pixels.x > 0 ? part.detail_pixels : part.pixels;
-    const double step_voxels = look(session, camera, detail_pixels);
+    const double step_voxels = look(session, shot, detail_pixels);
+    const bool is_shaded = session.light.shaded && !shot.is_slice;
     Prepared prepared;
     RaycastInput& input = prepared.input;
     prepared.volume = import_prepared(graph, session, input.mask, feedback);
-    if (draws_occlusion(session)) {
+    if (!shot.is_slice && draws_occlusion(session)) {
         const OcclusionSettings& settings = session.light.occlusion;
         input.occlusion =
             RaycastOcclusion{occlusion_.import(graph).values, {float(settings.strength), float(settings.curve)}};
     }
-    input.params = raycast_params(session, camera, *volume_, prepared.volume, statistics_, part, step_voxels);
+    input.params = raycast_params(session, shot.camera, *volume_, prepared.volume, part, step_voxels);
+    input.params.gradient_fade = float(gradient_fade_codes(session));
     input.table = upload_table(graph, table_of(session, step_voxels));
-    input.shaded = session.light.shaded;
+    input.shaded = is_shaded;
+    input.slice = shot.is_slice;
+    if (shot.is_slice) set_slice(input.params, session, *volume_, statistics_);
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
     input.probe = part.probe.has_value();
@@ -482,110 +405,29 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     return prepared;
 }
 
-Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                                Resource target, bool count_work)
 {
-    Prepared prepared = prepare(graph, session, camera, part, true);
-    prepared.input.count_work = count_work;
     Drawn drawn;
-    drawn.target = raycast(graph, prepared.volume, prepared.input, target);
+    Prepared prepared = prepare(graph, session, shot, part, true);
+    prepared.input.count_work = count_work;
+    if (!shot.right_eye) {
+        drawn.target = raycast(graph, prepared.volume, prepared.input, target);
+    } else {
+        const glm::uvec2 size = part.end - part.begin;
+        const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
+        RaycastInput right = prepared.input;
+        set_rays(right.params, session, *shot.right_eye, volume_->info(), part.pixels);
+        prepared.input.params.target = right.params.target = glm::uvec2(0);
+        const Resource seen_left = raycast(graph, prepared.volume, prepared.input, graph.create("left eye", desc));
+        const Resource seen_right = raycast(graph, prepared.volume, right, graph.create("right eye", desc));
+        drawn.target = anaglyph(graph, seen_left, seen_right, target, size, part.target);
+    }
     if (paged_) {
         drawn.reached = graph.read_back(prepared.volume.pages->reached, "what rays came by");
         drawn.tree = paged_->tree();
     }
     return drawn;
-}
-
-/// One part of a picture, with the bricks that are there. Its pixels go to `picture`; the read-back to the volume.
-void Renderer::render_part(Picture& picture, const Session& session, const Camera& camera, const PicturePart& part,
-                           const RenderOptions& options)
-{
-    picture.graph = FrameGraph();
-    const glm::uvec2 size = part.end - part.begin;
-    const Resource color = picture.graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
-    const Drawn drawn = draw(picture.graph, session, camera, part, color, options.count_work);
-    const uint32_t pixels = picture.graph.read_back(drawn.target);
-    gpu::FrameResult result =
-        executor_.run(picture.graph, {.timestamps = options.timestamps, .serialize = options.serialize});
-    if (drawn.reached) paged_->note_reached(drawn.tree, result.read_backs[*drawn.reached]);
-    const std::byte* row = result.read_backs[pixels].data();
-    const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
-    for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
-        std::memcpy(&picture.image.rgba[4 * (part.begin.x + size_t(part.pixels.x) * (part.begin.y + y))], row,
-                    row_bytes);
-    picture.wall_ms += result.wall_ms;
-    picture.passes = std::move(result.passes);
-}
-
-Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
-{
-    Picture picture;
-    const glm::uvec2 size = session.render.size;
-    picture.image = {int(size.x), int(size.y), {}};
-    picture.image.rgba.resize(size_t(size.x) * size.y * 4);
-    const PicturePart whole{.pixels = size, .end = size, .probe = options.probe};
-    if (!paged_) {
-        std::vector<gpu::PassReport> passes = make_occlusion(session, camera, options);
-        render_part(picture, session, camera, whole, options);
-        append(picture.passes, std::move(passes));
-        picture.complete = !occlusion_has_no_room_;
-        picture.warnings = take_messages();
-        return picture;
-    }
-    // Draw, load what rays came by, and draw again, until they come by nothing that is not there. What needs more bricks
-    // at once than there is room for is drawn in quarters.
-    std::vector<gpu::PassReport> passes;
-    std::vector<PicturePart> parts{whole};
-    while (!parts.empty()) {
-        const PicturePart part = parts.back();
-        parts.pop_back();
-        look(session, camera, size);
-        if (parts.size() > 0 || part.end - part.begin != size) paged_->forget_reached();
-        for (;;) {
-            append(passes, make_occlusion(session, camera, options));
-            render_part(picture, session, camera, part, options);
-            static_cast<void>(paged_->advance(true));
-            if (occlusion_.is_due()) continue;  // on what rays came by for the first time
-            if (paged_->state() == PagedVolume::State::complete && !paged_->is_stale()) break;
-            if (paged_->state() == PagedVolume::State::limited) break;
-        }
-        const glm::uvec2 extent = part.end - part.begin;
-        if (paged_->state() == PagedVolume::State::limited && extent.x * extent.y > 1) {
-            const glm::uvec2 middle = part.begin + (extent + 1u) / 2u;
-            for (const bool below : {true, false})
-                for (const bool right : {true, false}) {
-                    PicturePart quarter = part;
-                    (right ? quarter.begin.x : quarter.end.x) = middle.x;
-                    (below ? quarter.begin.y : quarter.end.y) = middle.y;
-                    if (quarter.begin.x < quarter.end.x && quarter.begin.y < quarter.end.y) parts.push_back(quarter);
-                }
-            continue;
-        }
-        picture.complete =
-            picture.complete && paged_->state() == PagedVolume::State::complete && paged_->missing() == 0;
-        append(passes, std::move(picture.passes));
-    }
-    picture.passes = std::move(passes);
-    picture.complete = picture.complete && !occlusion_has_no_room_;
-    picture.warnings = take_messages();
-    return picture;
-}
-
-std::optional<glm::dvec3> Renderer::pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
-                                         const glm::uvec2& pixel)
-{
-    FrameGraph graph;
-    Prepared prepared = prepare(graph, session, camera, {.pixels = pixels, .begin = pixel, .end = pixel + 1u}, false);
-    prepared.input.pick = true;
-    prepared.input.shaded = false;
-    prepared.input.params.opacity_limit = std::min(prepared.input.params.opacity_limit, 0.5f);
-    const Resource reached = graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1)));
-    const uint32_t index = graph.read_back(raycast(graph, prepared.volume, prepared.input, reached));
-    const gpu::FrameResult result = executor_.run(std::move(graph), {.timestamps = false});
-    glm::vec4 voxel_and_hit;
-    std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);
-    if (voxel_and_hit.w == 0.0f) return std::nullopt;
-    return glm::dvec3(voxel_and_hit) * volume_->info().spacing;
 }
 
 }  // namespace shvr

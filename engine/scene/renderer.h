@@ -41,8 +41,9 @@ struct PicturePart {
 
 struct RenderOptions {
     std::optional<ProbeLook> probe;
-    bool count_work = false;  ///< keep the exact work counters (a little slower)
-    bool serialize = false;   ///< a full barrier between passes
+    bool outlines_probe = false;  ///< through what hides it; an arrow where it is out of sight
+    bool count_work = false;      ///< keep the exact work counters (a little slower)
+    bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
 };
 
@@ -90,7 +91,7 @@ public:
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
 
-    /// The picture of `session` (its light, transfer function, groups, cut) from `camera`.
+    /// The picture of `session` (its light, transfer function, groups, cut, panes) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
 
     /// What has to be computed before parts of `session` are drawn, one short graph at a time; nothing when all is ready.
@@ -116,10 +117,10 @@ public:
         std::optional<uint32_t> reached;
         PagedVolume::TreeRef tree;
     };
-    /// Adds the passes that draw a part of `session` from `camera` into `target`, an rgba32_float image. The graph must be
+    /// Adds the passes that draw a part of what `shot` sees of `session` into `target`, an rgba32_float image. The graph must be
     /// submitted, and before any other that was made later.
-    Drawn draw(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
-               Resource target, bool count_work = false);
+    Drawn draw(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part, Resource target,
+               bool count_work = false);
 
     /// What is seen at a pixel: where its ray becomes half opaque, in volume space. Waits for the device.
     std::optional<glm::dvec3> pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
@@ -137,6 +138,7 @@ private:
     bool pages(const VolumeSource& source, Paging paging) const;
     const Table& table_of(const Session& session, double step_voxels);
     Visibility visibility_of(const Session& session);
+    double gradient_fade_codes(const Session& session) const;
     Occlusion::Look occlusion_look(const Session& session);
     bool draws_occlusion(const Session& session);
     std::vector<gpu::PassReport> make_occlusion(const Session& session, const Camera& camera,
@@ -144,8 +146,9 @@ private:
     void want_around();
     VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
                                   bool feedback);
-    double look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
-    void render_part(Picture& picture, const Session& session, const Camera& camera, const PicturePart& part,
+    double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
+    Picture render_pane(const Session& session, const Pane& pane, const RenderOptions& options);
+    void render_part(Picture& picture, const Session& session, const Shot& shot, const PicturePart& part,
                      const RenderOptions& options);
     Resource upload_table(FrameGraph& graph, const Table& table);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
@@ -153,7 +156,7 @@ private:
         VolumeBinding volume;
         RaycastInput input;
     };
-    Prepared prepare(FrameGraph& graph, const Session& session, const Camera& camera, const PicturePart& part,
+    Prepared prepare(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                      bool feedback);
 
     gpu::Device device_;

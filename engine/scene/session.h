@@ -10,6 +10,7 @@
 #include "engine/annotation/script.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/groups.h"
+#include "engine/scene/panes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/open_volume.h"
 #include "engine/volume/source_procedural.h"
@@ -100,6 +101,7 @@ struct Session {
     Light light;
     DistanceBlend blend;
     RenderSettings render;
+    ViewSettings view;
     CutBox cut;
     ProbeSettings probe;
     std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet

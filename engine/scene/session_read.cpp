@@ -220,6 +220,54 @@ RenderSettings read_render(const JsonNode& node)
     return render;
 }
 
+std::optional<double> read_intensity(const JsonNode& node)
+{
+    if (!node.exists()) return std::nullopt;
+    return node.number(0.0, range(-3.4e38, 3.4e38));
+}
+
+StereoSettings read_stereo(const JsonNode& node)
+{
+    StereoSettings stereo;
+    if (!node.exists()) return stereo;
+    node.expect_object({"output", "eye_distance", "toe_in"});
+    stereo.output = node["output"].choice(stereo.output, {{"side_by_side", StereoOutput::side_by_side},
+                                                          {"top_bottom", StereoOutput::top_bottom},
+                                                          {"anaglyph", StereoOutput::anaglyph}});
+    stereo.eye_distance = node["eye_distance"].number(stereo.eye_distance, SHARE);
+    stereo.toe_in = node["toe_in"].flag(stereo.toe_in);
+    return stereo;
+}
+
+SliceSettings read_slices(const JsonNode& node)
+{
+    SliceSettings slices;
+    if (!node.exists()) return slices;
+    node.expect_object({"black", "white", "paint_share", "zoom"});
+    slices.black = read_intensity(node["black"]);
+    slices.white = read_intensity(node["white"]);
+    if (slices.black && slices.white && !(*slices.black < *slices.white))
+        node["black"].refuse("an intensity below view.slices.white");
+    slices.paint_share = node["paint_share"].number(slices.paint_share, SHARE);
+    slices.zoom = node["zoom"].number(slices.zoom, above_zero(1e-3, 1e3));
+    return slices;
+}
+
+ViewSettings read_view(const JsonNode& node)
+{
+    ViewSettings view;
+    if (!node.exists()) return view;
+    node.expect_object({"arrangement", "stereo", "slices", "overview_zoom"});
+    view.arrangement = node["arrangement"].choice(view.arrangement, {{"single", Arrangement::single},
+                                                                     {"stereo", Arrangement::stereo},
+                                                                     {"overview", Arrangement::overview},
+                                                                     {"slices", Arrangement::slices}});
+    view.stereo = read_stereo(node["stereo"]);
+    view.slices = read_slices(node["slices"]);
+    view.overview_zoom = node["overview_zoom"].number(view.overview_zoom, above_zero(1e-3, 1e3));
+    return view;
+}
+
 CutBox read_cut(const JsonNode& node)
 {
     CutBox cut;
@@ -230,12 +278,6 @@ CutBox read_cut(const JsonNode& node)
     cut.upper = node["upper"].vector(cut.upper, voxel);
     if (glm::any(glm::greaterThan(cut.lower, cut.upper))) node.refuse("a lower corner that is not above the upper one");
     return cut;
-}
-
-std::optional<double> read_intensity(const JsonNode& node)
-{
-    if (!node.exists()) return std::nullopt;
-    return node.number(0.0, range(-3.4e38, 3.4e38));
 }
 
 ProbeSettings read_probe(const JsonNode& node)
@@ -309,11 +351,12 @@ CameraSpec read_camera(const JsonNode& node)
         {{"perspective", Camera::Projection::perspective}, {"orthographic", Camera::Projection::orthographic}});
     const bool is_perspective = camera.projection == Camera::Projection::perspective;
     if (is_perspective) {
-        node.expect_object({"side", "projection", "eye", "target", "up", "fov_y_degrees", "near", "far"});
+        node.expect_object(
+            {"side", "projection", "eye", "target", "up", "fov_y_degrees", "near", "far", "shift_right"});
         camera.fov_y_degrees = node["fov_y_degrees"].number(
             camera.fov_y_degrees, {1e-12, std::nextafter(180.0, 0.0), "a number of degrees above 0 and below 180"});
     } else {
-        node.expect_object({"projection", "eye", "target", "up", "height", "near", "far"});
+        node.expect_object({"projection", "eye", "target", "up", "height", "near", "far", "shift_right"});
         camera.height = node.required("height", "a number above 0").number(0.0, above_zero(1e-12, 1e15));
     }
     camera.eye = node.required("eye", "three numbers, [x, y, z]").vector(camera.eye, COORDINATE);
@@ -321,6 +364,7 @@ CameraSpec read_camera(const JsonNode& node)
     camera.up = node["up"].vector(camera.up, COORDINATE);
     camera.near_distance = node["near"].number(camera.near_distance, range(0.0, 1e15));
     camera.far_distance = node["far"].number(camera.far_distance, range(0.0, 1e15));
+    camera.shift_right = node["shift_right"].number(camera.shift_right, range(-1e3, 1e3));
     return node.checked([&] {
         check_camera(camera);
         return camera;
@@ -331,7 +375,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
 {
     const JsonNode document(json, origin);
     document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "blend", "render", "cut", "probe", "annotation"});
+                            "blend", "render", "view", "cut", "probe", "annotation"});
     document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
     Session session;
     read_volume(document.required("volume", "an object with path or procedural"), folder, session);
@@ -342,6 +386,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.light = read_light(document["light"]);
     session.blend = read_blend(document["blend"]);
     session.render = read_render(document["render"]);
+    session.view = read_view(document["view"]);
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);
     session.mask_path = read_mask_path(document["annotation"], folder);

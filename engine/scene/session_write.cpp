@@ -79,6 +79,7 @@ json write_camera(const CameraSpec& spec)
         written["height"] = camera.height;
     written["near"] = camera.near_distance;
     written["far"] = camera.far_distance;
+    if (camera.shift_right != 0.0) written["shift_right"] = camera.shift_right;
     return written;
 }
 
@@ -170,6 +171,41 @@ json write_render(const RenderSettings& render)
             {"skip_empty_space", render.skip_empty_space}};
 }
 
+const char* name_of(Arrangement arrangement)
+{
+    switch (arrangement) {
+        case Arrangement::single: return "single";
+        case Arrangement::stereo: return "stereo";
+        case Arrangement::overview: return "overview";
+        case Arrangement::slices: return "slices";
+    }
+    return "single";
+}
+
+const char* name_of(StereoOutput output)
+{
+    switch (output) {
+        case StereoOutput::side_by_side: return "side_by_side";
+        case StereoOutput::top_bottom: return "top_bottom";
+        case StereoOutput::anaglyph: return "anaglyph";
+    }
+    return "side_by_side";
+}
+
+json write_view(const ViewSettings& view)
+{
+    json slices{{"paint_share", view.slices.paint_share}, {"zoom", view.slices.zoom}};
+    if (view.slices.black) slices["black"] = *view.slices.black;
+    if (view.slices.white) slices["white"] = *view.slices.white;
+    return {{"arrangement", name_of(view.arrangement)},
+            {"stereo",
+             {{"output", name_of(view.stereo.output)},
+              {"eye_distance", view.stereo.eye_distance},
+              {"toe_in", view.stereo.toe_in}}},
+            {"slices", slices},
+            {"overview_zoom", view.overview_zoom}};
+}
+
 json write_probe(const ProbeSettings& probe)
 {
     const std::map<Brush, const char*> brushes{
@@ -221,6 +257,7 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["light"] = write_light(session.light);
     document["blend"] = write_blend(session.blend);
     document["render"] = write_render(session.render);
+    document["view"] = write_view(session.view);
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
     document["probe"] = write_probe(session.probe);
     if (!session.mask_path.empty()) document["annotation"] = {{"mask", path_text(session.mask_path, folder)}};

@@ -64,7 +64,8 @@ const std::string EVERYTHING = R"({
   "cameras": {
     "tele": {"projection": "perspective", "eye": [1.5, -400, 0.1], "target": [1, 2, 3], "up": [0, 0.1, 1],
              "fov_y_degrees": 12.5, "near": 3, "far": 900},
-    "plan": {"projection": "orthographic", "eye": [0, 0, 50], "target": [0, 0, 0], "up": [0, 1, 0], "height": 80},
+    "plan": {"projection": "orthographic", "eye": [0, 0, 50], "target": [0, 0, 0], "up": [0, 1, 0], "height": 80,
+             "shift_right": -0.25},
     "tilted": {"side": "left", "zoom": 1.5, "turn_degrees": 30, "tilt_degrees": -20}
   },
   "transfer_function": {"points": [{"intensity": 900.25, "color": "#ffffff", "opacity": 1},
@@ -77,6 +78,8 @@ const std::string EVERYTHING = R"({
   "blend": {"size": 0.75, "rate": 2, "color": "#204060"},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false},
+  "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
+           "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
             "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3},
@@ -121,6 +124,7 @@ TEST_CASE("every key of a session is read")
     const Camera plan = std::get<Camera>(session.cameras.at("plan"));
     CHECK(plan.projection == Camera::Projection::orthographic);
     CHECK(plan.height == 80.0);
+    CHECK(plan.shift_right == -0.25);
     CHECK(session.cameras.at("tilted") == CameraSpec(SideView{"left", 1.5, 30, -20}));
     REQUIRE(session.transfer_function.points().size() == 2);
     CHECK(session.transfer_function.points()[0] == ControlPoint{-200, color("#d03020"), 0.125});
@@ -132,6 +136,8 @@ TEST_CASE("every key of a session is read")
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render ==
           RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false});
+    CHECK(session.view ==
+          ViewSettings{Arrangement::slices, {StereoOutput::top_bottom, 0.0625, true}, {-20.0, 300.5, 0.25, 3.0}, 1.5});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
     CHECK(session.probe ==
           ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5, -3});
@@ -148,6 +154,7 @@ TEST_CASE("a session that says little has the defaults of the structures")
     CHECK(session.light == Light{});
     CHECK(session.blend == DistanceBlend{});
     CHECK(session.render == RenderSettings{});
+    CHECK(session.view == ViewSettings{});
     CHECK(session.cut == CutBox{});
     CHECK(session.probe == ProbeSettings{});
     CHECK(session.mask_path.empty());
