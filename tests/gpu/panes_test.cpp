@@ -70,8 +70,9 @@ TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the 
         const glm::uvec2 pixels = pane.box.end - pane.box.begin;
         const ImageF part = part_of(image, pane.box);
         const auto cross = project(seen, pixels, *session.probe.voxel * noise.spacing);
-        for (uint32_t y = 0; y < pixels.y; ++y)
-            for (uint32_t x = 0; x < pixels.x; ++x) {
+        constexpr uint32_t BORDER = 3;  // lines between panes
+        for (uint32_t y = BORDER; y < pixels.y; ++y)
+            for (uint32_t x = BORDER; x < pixels.x; ++x) {
                 const glm::dvec2 at = glm::dvec2(x, y) + 0.5;
                 if (glm::any(glm::lessThan(glm::abs(at - cross->pixel), glm::dvec2(4.0)))) continue;  // the cross
                 const glm::dvec3 voxel =

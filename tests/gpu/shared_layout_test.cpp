@@ -43,7 +43,9 @@ Members raycast_params()
             MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, probe_center),
             MEMBER(RaycastParams, probe_radius),  MEMBER(RaycastParams, probe_color),
             MEMBER(RaycastParams, depth_plane),   MEMBER(RaycastParams, blend_color),
-            MEMBER(RaycastParams, blend_size),    MEMBER(RaycastParams, blend_rate)};
+            MEMBER(RaycastParams, blend_size),    MEMBER(RaycastParams, blend_rate),
+            MEMBER(RaycastParams, slice_black),   MEMBER(RaycastParams, slice_scale),
+            MEMBER(RaycastParams, slice_paint)};
 }
 
 Members occupancy_params()
