@@ -49,7 +49,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),
-      view(renderer, view_options),
+      screen(renderer, view_options),
       touch(renderer, std::move(device), device_name)
 {
     if (session.mask_path.empty()) {

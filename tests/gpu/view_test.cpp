@@ -19,7 +19,7 @@ namespace {
 /// Everything slow: coarse sketches, tiles one by one.
 constexpr View::Options CRAWLING{.step_ms = 1e-6, .in_flight_ms = 1e-5, .motion_ms = 1e-5, .probe_ms = 1e-5};
 
-using Screen = std::vector<uint32_t>;  // 4 bytes a pixel
+using ScreenPixels = std::vector<uint32_t>;  // 4 bytes a pixel
 
 class Seen : public OnDevice {
 public:
@@ -36,15 +36,15 @@ public:
             view.advance();
         }
     }
-    static Screen shown(View& view)
+    static ScreenPixels shown(View& view)
     {
         const Image8 image = view.read_back();
-        Screen screen(image.rgba.size() / 4);
+        ScreenPixels screen(image.rgba.size() / 4);
         std::memcpy(screen.data(), image.rgba.data(), image.rgba.size());
         return screen;
     }
     /// The picture of Renderer::render, encoded.
-    Screen direct(const Camera& camera)
+    ScreenPixels direct(const Camera& camera)
     {
         const glm::uvec2 size = pixels();
         FrameGraph graph;
@@ -61,7 +61,7 @@ public:
         graph.read_back(encode(graph, light,
                                graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))), params));
         const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
-        Screen texels(bytes.size() / 4);
+        ScreenPixels texels(bytes.size() / 4);
         std::memcpy(texels.data(), bytes.data(), bytes.size());
         return texels;
     }
