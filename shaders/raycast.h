@@ -47,9 +47,6 @@ struct RaycastParams {
     float specular;
     float shininess;
     float gradient_fade;  ///< codes per reference length
-    vec3 probe_center;    ///< voxel space; the probe is a ball that rays stop at
-    float probe_radius;   ///< reference lengths
-    vec3 probe_color;     ///< linear light
     vec4 depth_plane;     ///< dot(xyz, voxel) + w: 0 where the drawn box begins along the view, 1 where it ends
     vec3 blend_color;     ///< linear light
     float blend_size;     ///< distance blending: its share at depth 1

@@ -36,6 +36,7 @@ double middle_of(const TransferFunction& function, const VolumeStatistics& stati
 void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
     renderer.load(source, opened.statistics, opened.session.render);
+    renderer.set_surfaces(opened.session.surfaces);
 }
 
 }  // namespace
@@ -72,9 +73,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 
 ProbeLook Document::probe_look() const
 {
-    const glm::dvec3 eraser(0.5);
-    const glm::dvec3 color = brush.group == 0 ? eraser : group_of(session.groups, brush.group).color;
-    return {.center = touch.probe(), .radius = probe_radius(), .color = color};
+    return {.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush.group)};
 }
 
 VoxelBox Document::voxels_around_probe() const
@@ -97,7 +96,8 @@ Session Document::saved_session() const
                    .region = brush.region,
                    .connectivity = brush.connectivity,
                    .paint_threshold = brush.threshold,
-                   .haptic_threshold = haptic_threshold};
+                   .haptic_threshold = haptic_threshold,
+                   .shown = session.probe.shown};
     return saved;
 }
 

@@ -142,11 +142,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
         params.blend_size = float(session.blend.size);
         params.blend_rate = float(session.blend.rate);
     }
-    if (part.probe) {
-        params.probe_center = part.probe->center / info.spacing;
-        params.probe_radius = float(part.probe->radius / reference_length(info));
-        params.probe_color = part.probe->color;
-    }
     return params;
 }
 
@@ -156,6 +151,20 @@ int worker_count(int wanted)
 }
 
 }  // namespace
+
+glm::dvec3 probe_color(const Session& session, uint8_t group)
+{
+    return group == 0 ? glm::dvec3(0.5) : group_of(session.groups, group).color;
+}
+
+std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume)
+{
+    const ProbeSettings& probe = session.probe;
+    if (!probe.shown) return std::nullopt;
+    return ProbeLook{.center = probe.voxel.value_or(0.5 * glm::dvec3(volume.size)) * volume.spacing,
+                     .radius = probe.radius_voxels * volume.spacing.x,
+                     .color = probe_color(session, probe.group)};
+}
 
 bool Renderer::LeapState::operator==(const LeapState& other) const
 {
@@ -174,7 +183,8 @@ Renderer::Renderer(const Options& options)
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
       mask_(executor_, memory_),
-      occlusion_(memory_)
+      occlusion_(memory_),
+      surfaces_(memory_)
 {}
 
 bool Renderer::filters(Sampling sampling) const
@@ -202,6 +212,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     occlusion_.clear();
     occlusion_.set_drawn(nullptr);
     occlusion_has_no_room_ = false;
+    surfaces_.set({});
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
@@ -375,6 +386,32 @@ std::vector<std::string> Renderer::take_messages()
     return messages;
 }
 
+void Renderer::set_surfaces(const std::vector<SurfaceLook>& surfaces)
+{
+    surfaces_.set(surface_tree(surfaces, volume().info()));
+}
+
+/// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.
+std::optional<Resource> Renderer::draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
+                                                const PicturePart& part)
+{
+    if (surfaces_.empty() && !part.probe) return std::nullopt;
+    const VolumeInfo& info = volume_->info();
+    SurfacesInput wanted{.params = input.params,
+                         .scene = surfaces_.params(ray_planes(camera, part.pixels, info), part.pixels, info),
+                         .listed = surfaces_.import(graph),
+                         .probe = part.probe.has_value(),
+                         .group_width = input.group_width,
+                         .tile = input.tile};
+    if (part.probe) {
+        const glm::dvec3 origin = glm::dvec3(wanted.scene.origin) + glm::dvec3(wanted.scene.origin_rest);
+        wanted.scene.probe_center = part.probe->center / reference_length(info) - origin;
+        wanted.scene.probe_radius = float(part.probe->radius / reference_length(info));
+        wanted.scene.probe_color = part.probe->color;
+    }
+    return surfaces(graph, wanted);
+}
+
 Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Shot& shot,
                                      const PicturePart& part, bool feedback)
 {
@@ -397,7 +434,7 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     if (shot.is_slice) set_slice(input.params, session, *volume_, statistics_);
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
-    input.probe = part.probe.has_value();
+    if (!shot.is_slice) input.surfaces = draw_surfaces(graph, input, shot.camera, part);
     if (input.mask) {
         input.params.mask_slots = input.mask->slots;
         input.groups = group_looks(session, step_voxels);
@@ -418,6 +455,7 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
         RaycastInput right = prepared.input;
         set_rays(right.params, session, *shot.right_eye, volume_->info(), part.pixels);
+        right.surfaces = draw_surfaces(graph, right, *shot.right_eye, part);
         prepared.input.params.target = right.params.target = glm::uvec2(0);
         const Resource seen_left = raycast(graph, prepared.volume, prepared.input, graph.create("left eye", desc));
         const Resource seen_right = raycast(graph, prepared.volume, right, graph.create("right eye", desc));

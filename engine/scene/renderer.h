@@ -3,6 +3,7 @@
 //
 //   [look changed]            upload transfer function
 //   [look or mask changed]    leap_occupancy -> leap_distance x, y, z      (one thread a cell)
+//   [surfaces or a probe]     surfaces                                     (one thread a pixel)
 //   every part of a picture   raycast                                      (one thread a pixel)
 //
 // `render` makes a whole picture and waits for it; `draw` adds the passes of a part to a graph that somebody else submits
@@ -18,6 +19,7 @@
 #include "engine/scene/paged_volume.h"
 #include "engine/scene/resident_volume.h"
 #include "engine/scene/session.h"
+#include "engine/scene/surfaces.h"
 #include "shaders/raycast.h"
 
 namespace shvr {
@@ -29,6 +31,10 @@ struct ProbeLook {
     glm::dvec3 color{1.0};   ///< linear light
     bool operator==(const ProbeLook&) const = default;
 };
+/// Its group's; grey where it erases.
+glm::dvec3 probe_color(const Session& session, uint8_t group);
+/// The probe of a session that says it is shown.
+std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume);
 
 /// A rectangle of a picture, and where it goes.
 struct PicturePart {
@@ -90,6 +96,10 @@ public:
 
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
+
+    /// Opaque balls and rods that rays stop at, instead of those before; `load` forgets them. Fails as `surface_tree` and
+    /// gpu::Memory::create do; then the ones before stay.
+    void set_surfaces(const std::vector<SurfaceLook>& surfaces);
 
     /// The picture of `session` (its light, transfer function, groups, cut, panes) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
@@ -158,6 +168,8 @@ private:
     };
     Prepared prepare(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                      bool feedback);
+    std::optional<Resource> draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
+                                          const PicturePart& part);
 
     gpu::Device device_;
     uint64_t host_budget_;
@@ -170,6 +182,7 @@ private:
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
     DeviceMask mask_;
     Occlusion occlusion_;
+    SurfaceScene surfaces_;
     bool occlusion_has_no_room_ = false;
     std::vector<std::string> messages_;
     uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen

@@ -11,6 +11,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/groups.h"
 #include "engine/scene/panes.h"
+#include "engine/scene/surface_tree.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/open_volume.h"
 #include "engine/volume/source_procedural.h"
@@ -86,8 +87,12 @@ struct ProbeSettings {
     int connectivity = 6;                    ///< 6 or 26
     std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
     std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    bool shown = false;                      ///< in pictures; the window shows it always
     bool operator==(const ProbeSettings&) const = default;
 };
+
+/// Of one file.
+inline constexpr size_t MOST_SESSION_SURFACES = 100'000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
@@ -104,7 +109,8 @@ struct Session {
     ViewSettings view;
     CutBox cut;
     ProbeSettings probe;
-    std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
+    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
+    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -86,6 +86,33 @@ TEST_CASE_FIXTURE(Seen, "a view comes to rest on the direct picture, bit for bit
     }
 }
 
+TEST_CASE_FIXTURE(Seen, "surfaces are in the sketch, in the tiles and around the probe")
+{
+    probe = ProbeLook{.center = {20, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
+    const std::vector<SurfaceLook> rods{{{5, 5, 5}, {30, 20, 40}, 3.0, 1.0, GREEN},
+                                        {{20, 25, 5}, {20, 10, 60}, 2.0, 2.0}};
+    for (const View::Options& options : {View::Options{}, CRAWLING}) {
+        View view(renderer(), options);
+        view.show_probe(probe);
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        const ScreenPixels without = shown(view);
+        for (int steps = 0; steps < 7; ++steps) view.advance();
+        renderer().set_surfaces(rods);
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        CHECK((shown(view) != without));
+        CHECK(shown(view) == direct(camera({1, 2, 3})));
+        for (int steps = 0; steps < 5; ++steps) view.advance();  // in the middle of a picture
+        view.look(session, camera({2, 2, 3}), pixels());
+        for (int steps = 0; steps < 20; ++steps) view.advance();
+        renderer().set_surfaces({});
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        CHECK((shown(view) == without));
+    }
+}
+
 TEST_CASE_FIXTURE(Seen, "nothing is submitted when nothing changed")
 {
     View view(renderer());
