@@ -37,6 +37,8 @@ layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 // Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
 layout(constant_id = 7) const uint SLICE = 0u;
+// An iso-surface in the region around the probe (shell.glsl).
+layout(constant_id = 8) const uint SHELL = SHELL_NONE;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
@@ -249,6 +251,8 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
+#include "shell.glsl"
+
 uint bricks_between(vec3 a, vec3 b)
 {
     const ivec3 d = abs(ivec3(a) / int(BRICK_SIZE) - ivec3(b) / int(BRICK_SIZE));
@@ -301,6 +305,9 @@ void main()
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(extent / params.step);
 
+    Shell shell = Shell(NO_SHELL, 0.0, 0.0, false);
+    if (SHELL != SHELL_NONE) shell = begin_shell(params, ray, begin, end);
+
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // loop of its own, and lanes meet again at the costly sample.
     uint i = 0u;
@@ -316,6 +323,8 @@ void main()
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (place.distance > 0u && i < steps);
+        if (SHELL != SHELL_NONE && i < steps)
+            add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
         if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
         ++i;
@@ -323,6 +332,7 @@ void main()
 
     // The rest of the ray is a step of its own, shorter and so more transparent.
     const float rest = extent - float(steps) * params.step;
+    if (SHELL != SHELL_NONE) add_shells(params, ray, end - 0.5 * rest, shell, sum);
     if (rest > 0.0 && sum.a < params.opacity_limit) {
         const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
         const Place place = place_at(params, position);
@@ -333,6 +343,8 @@ void main()
             accumulate(sum, look);
         }
     }
+
+    if (SHELL != SHELL_NONE) add_shells(params, ray, NO_SHELL, shell, sum);
 
     const bool is_stopped = sum.a >= params.opacity_limit;
 #ifdef SURFACED

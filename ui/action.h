@@ -92,6 +92,10 @@ struct ScaleProbe {
 struct SetBrush {
     PaintOp brush;
 };
+struct ShowShell {  ///< an iso-surface at the paint threshold around the probe
+    bool on = true;
+    double opacity = 0.4;
+};
 struct ChooseGroup {
     uint8_t group = 1;
 };
@@ -121,10 +125,11 @@ struct ShowHelp {
 };
 struct Quit {};
 
-using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
-                            SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo,
-                            ProbeOnto, PushProbe, ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold, Assist,
-                            SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+using Action =
+    std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
+                 SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto,
+                 PushProbe, ScaleProbe, SetBrush, ShowShell, ChooseGroup, Paint, SetHapticThreshold, Assist,
+                 SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

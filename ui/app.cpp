@@ -239,6 +239,7 @@ void App::work()
     // A running stroke or touch names what it needs itself.
     if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
         renderer_->paged()->prefer(document.voxels_around_probe());
+    renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
     for (const std::string& message : renderer_->take_messages()) say(message);

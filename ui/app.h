@@ -104,6 +104,7 @@ private:
     void apply(const PushProbe& action);
     void apply(const ScaleProbe& action);
     void apply(const SetBrush& action);
+    void apply(const ShowShell& action);
     void apply(const ChooseGroup& action);
     void apply(const Paint& action);
     void apply(const SetHapticThreshold& action);

@@ -246,6 +246,15 @@ void App::apply(const SetBrush& action)
     if (is_other) say(sentence("Brush: ", name_of(action.brush.brush)));
 }
 
+void App::apply(const ShowShell& action)
+{
+    ProbeSettings& probe = document_->session.probe;
+    if (action.on != probe.shell)
+        say(action.on ? "Iso-surface at the paint threshold around the probe" : "No iso-surface around the probe");
+    probe.shell = action.on;
+    probe.shell_opacity = action.opacity;
+}
+
 void App::apply(const ChooseGroup& action)
 {
     document_->brush.group = action.group;

@@ -183,6 +183,10 @@ constexpr KeyBinding BINDINGS[] = {
 
     tap(GLFW_KEY_SPACE, 0, PROBE, "Guide the probe",
         [](const Model& m, double) -> Action { return Assist{!m.assistance}; }),
+    tap(GLFW_KEY_F4, 0, PROBE, "Iso-surface around the probe",
+        [](const Model& m, double) -> Action {
+            return ShowShell{!m.session.probe.shell, m.session.probe.shell_opacity};
+        }),
     tap(GLFW_KEY_HOME, 0, PROBE, "Next way of guiding", next_law),
     hold(GLFW_KEY_PAGE_UP, 0, PROBE, "Larger probe", scale_probe<1>),
     hold(GLFW_KEY_PAGE_DOWN, 0, PROBE, "Smaller probe", scale_probe<-1>),

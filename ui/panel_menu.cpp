@@ -196,6 +196,7 @@ void probe_menu(const Model& model, Actions& actions)
     if (!ImGui::BeginMenu("Probe")) return;
     key_item("Guide the probe", model, actions, {.is_checked = model.assistance});
     key_item("Next way of guiding", model, actions);
+    key_item("Iso-surface around the probe", model, actions, {.is_checked = model.session.probe.shell});
     ImGui::Separator();
     key_item("Larger probe", model, actions);
     key_item("Smaller probe", model, actions);

@@ -44,6 +44,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("SLICE", input.slice);
+    pass.constant("SHELL", input.pick ? gpu::SHELL_NONE : input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.

@@ -29,10 +29,11 @@ struct RaycastInput {
     std::optional<Resource> surfaces;  ///< of the same pixels (engine/passes/surfaces.h)
     bool shaded = true;
     bool count_work = false;
-    uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
-    glm::uvec2 tile{0};        ///< pixels of one dispatch, multiples of 64; 0 = all at once
-    bool slice = false;        ///< params.slice_* are set: what lies half-way along the rays
-    bool pick = false;         ///< positions instead of colours, see the kernel
+    uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
+    glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
+    uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
+    bool slice = false;                ///< params.slice_* are set: what lies half-way along the rays
+    bool pick = false;                 ///< positions instead of colours, see the kernel
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied, over

@@ -9,6 +9,7 @@
 // `render` makes a whole picture and waits for it; `draw` adds the passes of a part to a graph that somebody else submits
 // (engine/scene/view.h does while a person looks). One thread, the one that owns the device.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -24,17 +25,32 @@
 
 namespace shvr {
 
-/// The probe as it is seen: a ball that rays stop at.
-struct ProbeLook {
-    glm::dvec3 center{0.0};  ///< volume space
-    double radius = 1.0;     ///< physical units
-    glm::dvec3 color{1.0};   ///< linear light
-    bool operator==(const ProbeLook&) const = default;
+/// A thin-shell iso-surface in the probe's region (shaders/shell.glsl).
+struct ShellLook {
+    double threshold = 0.0;  ///< intensity
+    double opacity = 0.4;    ///< of one crossing
+    bool is_box = false;     ///< the region; otherwise a ball
+    bool operator==(const ShellLook&) const = default;
 };
+
+/// The probe as it is seen: a ball that rays stop at, and a shell.
+struct ProbeLook {
+    glm::dvec3 center{0.0};   ///< volume space
+    double radius = 1.0;      ///< of its region, physical units
+    glm::dvec3 color{1.0};    ///< linear light
+    double ball_share = 1.0;  ///< of the radius, of the ball; 0: none
+    std::optional<ShellLook> shell;
+    bool operator==(const ProbeLook&) const = default;
+    /// Of a ball that holds all of it.
+    double reach() const { return shell && shell->is_box ? std::sqrt(3.0) * radius : radius; }
+};
+/// The ball beside a shell, which it must not hide.
+inline constexpr double BALL_IN_SHELL = 0.12;
 /// Its group's; grey where it erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);
-/// The probe of a session that says it is shown.
-std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume);
+/// What pictures of a session show of its probe.
+std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
+                                     const VolumeStatistics& statistics);
 
 /// A rectangle of a picture, and where it goes.
 struct PicturePart {
@@ -96,6 +112,10 @@ public:
 
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
+
+    /// Where bricks come and go, those of these voxels are among what views need, whatever the transfer function hides: for
+    /// a shell, which may lie where nothing else is seen. A brick is the finest grain of it. Null: none.
+    void show_always(const std::optional<VoxelBox>& voxels);
 
     /// Opaque balls and rods that rays stop at, instead of those before; `load` forgets them. Fails as `surface_tree` and
     /// gpu::Memory::create do; then the ones before stay.
@@ -180,6 +200,7 @@ private:
     std::unique_ptr<DeviceVolume> volume_;
     ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
+    std::optional<VoxelBox> always_shown_;
     DeviceMask mask_;
     Occlusion occlusion_;
     SurfaceScene surfaces_;

@@ -141,6 +141,11 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
                          .radius = options.probe->radius,
                          .color = options.probe->color,
                          .is_outlined = options.outlines_probe};
+    const std::optional<VoxelBox> shown_before = always_shown_;
+    if (options.probe && options.probe->shell) {
+        const glm::dvec3 middle = options.probe->center / info.spacing, reach = options.probe->radius / info.spacing;
+        show_always(VoxelBox{Size3(glm::floor(middle - reach)), Size3(glm::ceil(middle + reach))});
+    }
     Picture picture;
     picture.image = {int(size.x), int(size.y), std::vector<float>(size_t(size.x) * size.y * 4)};
     for (const Pane& pane : panes) {
@@ -155,6 +160,7 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
         picture.complete = picture.complete && drawn.complete;
         picture.graph = std::move(drawn.graph);
     }
+    always_shown_ = shown_before;
     picture.complete = picture.complete && !occlusion_has_no_room_;
     picture.warnings = take_messages();
     return picture;

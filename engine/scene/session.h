@@ -77,7 +77,7 @@ struct CutBox {
     bool operator==(const CutBox&) const = default;
 };
 
-/// Where a person works, and with what. What is not given here is chosen for the volume (`probe_for`).
+/// Where a person works, and with what. What is not given here is chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
     double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
@@ -88,6 +88,9 @@ struct ProbeSettings {
     std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
     std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
     bool shown = false;                      ///< in pictures; the window shows it always
+    /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
+    bool shell = false;
+    double shell_opacity = 0.4;  ///< of one crossing
     bool operator==(const ProbeSettings&) const = default;
 };
 
@@ -134,6 +137,10 @@ std::unique_ptr<VolumeSource> open_source(const Session& session);
 /// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
 /// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
+
+/// The middle of what a transfer function shows, weighted by its opacity: what painting starts from where nothing else is
+/// said.
+double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);

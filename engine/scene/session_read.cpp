@@ -285,7 +285,7 @@ ProbeSettings read_probe(const JsonNode& node)
     ProbeSettings probe;
     if (!node.exists()) return probe;
     node.expect_object({"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold",
-                        "haptic_threshold", "shown"});
+                        "haptic_threshold", "shown", "shell", "shell_opacity"});
     if (node["voxel"].exists()) probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-1048576.0, 2097152.0));
     probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
     probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
@@ -298,6 +298,8 @@ ProbeSettings read_probe(const JsonNode& node)
     probe.paint_threshold = read_intensity(node["paint_threshold"]);
     probe.haptic_threshold = read_intensity(node["haptic_threshold"]);
     probe.shown = node["shown"].flag(probe.shown);
+    probe.shell = node["shell"].flag(probe.shell);
+    probe.shell_opacity = node["shell_opacity"].number(probe.shell_opacity, SHARE);
     return probe;
 }
 

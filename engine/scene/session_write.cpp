@@ -219,6 +219,8 @@ json write_probe(const ProbeSettings& probe)
     if (probe.paint_threshold) document["paint_threshold"] = *probe.paint_threshold;
     if (probe.haptic_threshold) document["haptic_threshold"] = *probe.haptic_threshold;
     document["shown"] = probe.shown;
+    document["shell"] = probe.shell;
+    document["shell_opacity"] = probe.shell_opacity;
     return document;
 }
 

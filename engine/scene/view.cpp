@@ -183,9 +183,9 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
     PixelBox part{glm::uvec2(0), scene->pixels};
     if (is_patch) part = PixelBox{};
     if (is_patch && probe) {
-        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->radius);
+        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach());
         if (const auto& eye = scene->shot.right_eye)
-            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->radius));
+            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach()));
     }
     const uint32_t scale = scale_for(double(part.area()) * average_ms_per_pixel_, target_ms);
     sketch_ms_ = 0.0;

@@ -115,8 +115,8 @@ struct Studio {
 
     Image8 draw(const Session& session, const Camera& camera)
     {
-        const Picture picture =
-            renderer.render(session, camera, {.probe = shown_probe(session, renderer.volume().info())});
+        const Picture picture = renderer.render(
+            session, camera, {.probe = shown_probe(session, renderer.volume().info(), renderer.statistics())});
         REQUIRE(picture.complete);
         REQUIRE(count_not_finite(picture.image) == 0);
         return to_image8(picture.image);

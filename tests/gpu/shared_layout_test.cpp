@@ -44,7 +44,10 @@ Members raycast_params()
             MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, depth_plane),
             MEMBER(RaycastParams, blend_color),   MEMBER(RaycastParams, blend_size),
             MEMBER(RaycastParams, blend_rate),    MEMBER(RaycastParams, slice_black),
-            MEMBER(RaycastParams, slice_scale),   MEMBER(RaycastParams, slice_paint)};
+            MEMBER(RaycastParams, slice_scale),   MEMBER(RaycastParams, slice_paint),
+            MEMBER(RaycastParams, shell_center),  MEMBER(RaycastParams, shell_reach),
+            MEMBER(RaycastParams, shell_code),    MEMBER(RaycastParams, shell_color),
+            MEMBER(RaycastParams, shell_opacity)};
 }
 
 Members surface_params()

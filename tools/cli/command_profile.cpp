@@ -49,7 +49,8 @@ Profile measure_frames(const Options& options, Opened& opened)
     const auto started = std::chrono::steady_clock::now();
     const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
     double measured_from = 0.0;
-    const std::optional<ProbeLook> probe = shown_probe(opened.session, opened.source->info());
+    const std::optional<ProbeLook> probe =
+        shown_probe(opened.session, opened.source->info(), opened.renderer->statistics());
     for (int i = 0; i < options.warmup + options.frames; ++i) {
         const double begin = now();
         Picture picture = renderer.render(opened.session, camera, {.probe = probe, .serialize = options.serialize});
