@@ -9,7 +9,10 @@ namespace shvr {
 
 void apply(Document& document, const Change& change, Direction direction)
 {
-    std::visit([&](const MaskBrickChange& mask) { document.mask.apply(mask, direction); }, change);
+    if (const auto* mask = std::get_if<MaskBrickChange>(&change))
+        document.mask.apply(*mask, direction);
+    else
+        document.trace.apply(std::get<TraceChange>(change), direction);
 }
 
 void History::perform(Document& document, Command command)

@@ -10,15 +10,17 @@
 #include <vector>
 
 #include "engine/annotation/mask.h"
+#include "engine/annotation/tracing.h"
 
 namespace shvr {
 
 /// Everything that is annotated. Nothing but `apply` changes it.
 struct Document {
     Mask mask;
+    TraceGraph trace;
 };
 
-using Change = std::variant<MaskBrickChange>;
+using Change = std::variant<MaskBrickChange, TraceChange>;
 
 struct Command {
     std::string label;  ///< what the status bar says: "flood fill, group 3"

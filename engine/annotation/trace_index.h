@@ -1,0 +1,44 @@
+#pragma once
+// The nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points as they were when it was
+// built, and a list of those that changed since, which is searched one by one and stays below a 32nd of the tree. So a
+// question costs microseconds also between edits, and building costs each edit little.
+//
+// One thread changes it; any number may ask meanwhile nobody does.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace shvr {
+
+class TraceIndex {
+public:
+    /// Adds a point or moves it.
+    void set(uint32_t number, const glm::dvec3& position);
+    void erase(uint32_t number);
+
+    /// The smallest number of those nearest. Coordinates must be finite.
+    std::optional<uint32_t> nearest(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
+    /// All at most `distance` away, ascending.
+    std::vector<uint32_t> within(const glm::dvec3& position, double distance) const;
+
+private:
+    struct Point {
+        glm::dvec3 position;
+        uint32_t number;
+    };
+    void note(uint32_t number, const std::optional<glm::dvec3>& position);
+    void build();
+    void split(size_t begin, size_t end);
+    template <class Visit>
+    void search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const;
+
+    std::vector<Point> tree_;    ///< of a range, the median along its longest axis lies in the middle
+    std::vector<uint8_t> axes_;  ///< along which each splits
+    std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< since the tree was built; nothing: gone
+};
+
+}  // namespace shvr
