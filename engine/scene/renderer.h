@@ -67,6 +67,8 @@ struct RenderOptions {
     bool count_work = false;      ///< keep the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
+    /// Pixels a side of what is drawn at a time: it bounds what a picture of any size takes of the device.
+    uint32_t part_pixels = 1024;
 };
 
 struct Picture {
@@ -157,6 +159,7 @@ public:
                                    const glm::uvec2& pixel);
 
 private:
+    friend class PictureJob;
     /// A transfer function as the device reads it.
     struct Table {
         std::vector<ControlPoint> points;
@@ -177,9 +180,6 @@ private:
     VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
-    Picture render_pane(const Session& session, const Pane& pane, const RenderOptions& options);
-    void render_part(Picture& picture, const Session& session, const Shot& shot, const PicturePart& part,
-                     const RenderOptions& options);
     Resource upload_table(FrameGraph& graph, const Table& table);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
