@@ -116,7 +116,12 @@ struct SetProxyLaw {
 struct Undo {};
 struct Redo {};
 struct Save {};
-struct Screenshot {};
+struct Screenshot {
+    bool is_large = false;  ///< larger than the window, by the session's interaction.screenshot_scale
+};
+struct SetInteraction {
+    InteractionSettings interaction;
+};
 struct Open {
     std::filesystem::path path;
 };
@@ -129,7 +134,7 @@ using Action =
     std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
                  SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto,
                  PushProbe, ScaleProbe, SetBrush, ShowShell, ChooseGroup, Paint, SetHapticThreshold, Assist,
-                 SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+                 SetProxyLaw, Undo, Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -15,7 +15,6 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double FRAME_S = 1.0 / 60.0;
 /// While work is on its way the loop looks after it this often, so that the device never runs dry.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
@@ -74,6 +73,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     opened_s_ = window_.now_s();
     report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
     OpenedSession opened = open_session(path, settings);
+    large_screenshot_.reset();
     document_.reset();  // its volume gives way before the next takes memory
     std::string device_said;
     std::unique_ptr<HapticDevice> device = find_device(device_said);
@@ -112,9 +112,11 @@ void App::run()
         work();
         note_presented();
         const double now = window_.now_s();
+        const double frames_per_second =
+            (document_ ? document_->session.interaction : InteractionSettings{}).frames_per_second;
         if (now < next_frame_s_ || now < next_reason_to_draw_s()) continue;
         draw_ui();
-        next_frame_s_ = std::max(next_frame_s_ + FRAME_S, now);
+        next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
     }
     if (screenshot_.valid()) screenshot_.wait();
 }
@@ -150,7 +152,7 @@ double App::next_reason_to_draw_s() const
     if (waits_for_picture && unanswered_s_.empty()) return last_begun_s_ + SHARPEN_S;
     if (something_moves()) return 0.0;
     const bool sharpens_or_tells =
-        document_ && (document_->screen.revision() != drawn_revision_ || document_->assistance);
+        document_ && (document_->screen.revision() != drawn_revision_ || document_->assistance || large_screenshot_);
     return sharpens_or_tells ? last_begun_s_ + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
 
@@ -244,6 +246,7 @@ void App::work()
     document.screen.advance();
     for (const std::string& message : renderer_->take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
+    if (large_screenshot_) advance_large_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
         say(screenshot_.get());
 }

@@ -80,6 +80,8 @@ private:
     void save();
     bool closes();
     void finish_screenshot();
+    void advance_large_screenshot();
+    void write_screenshot(Image8 image);
     std::filesystem::path free_screenshot_path() const;
 
     // One for each action.
@@ -114,6 +116,7 @@ private:
     void apply(const Redo& action);
     void apply(const Save& action);
     void apply(const Screenshot& action);
+    void apply(const SetInteraction& action);
     void apply(const Open& action);
     void apply(const ShowHelp& action);
     void apply(const Quit& action);
@@ -132,7 +135,8 @@ private:
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
     bool wants_screenshot_ = false;
-    bool device_paints_ = false;  ///< its paint button is down
+    std::unique_ptr<PictureJob> large_screenshot_;  ///< under way
+    bool device_paints_ = false;                    ///< its paint button is down
     std::future<std::string> screenshot_;
     std::string status_;
 

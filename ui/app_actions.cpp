@@ -332,26 +332,67 @@ std::filesystem::path App::free_screenshot_path() const
     }
 }
 
-void App::apply(const Screenshot&)
+void App::apply(const Screenshot& action)
 {
-    wants_screenshot_ = true;
-    say("The screenshot is taken as soon as the picture is sharp");
+    if (!action.is_large) {
+        wants_screenshot_ = true;
+        return say("The screenshot is taken as soon as the picture is sharp");
+    }
+    Session session = document_->saved_session();
+    session.render.size = viewport_.pixels() * session.interaction.screenshot_scale;
+    RenderOptions options;
+    options.part_pixels = 96;  // what a hand that comes back waits for
+    large_screenshot_ = std::make_unique<PictureJob>(*renderer_, session, document_->camera, options);
+    say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
+                 " pixels is made while nothing else is to be drawn"));
+}
+
+void App::apply(const SetInteraction& action)
+{
+    document_->session.interaction = action.interaction;
+    document_->is_saved = false;
+    look_again();
+}
+
+/// A part of it, whenever the screen has all it wants. Paint would be in some parts and not in others.
+void App::advance_large_screenshot()
+{
+    if (document_->annotator.stroke_is_running()) {
+        large_screenshot_.reset();
+        return say("The large screenshot is given up: painting goes first");
+    }
+    if (something_moves() || !document_->screen.complete() || screenshot_.valid()) return;
+    try {
+        if (!large_screenshot_->is_done()) {
+            large_screenshot_->step();
+            status_ = sentence("Large screenshot: ", int(100.0 * large_screenshot_->progress()), " %");
+            return;
+        }
+        write_screenshot(to_image8(large_screenshot_->take().image));
+    } catch (const Error& error) {
+        say(error.what());
+    }
+    large_screenshot_.reset();
+}
+
+/// Packing the file takes long, and goes to another thread.
+void App::write_screenshot(Image8 image)
+{
+    screenshot_ = std::async(std::launch::async, [image = std::move(image), path = free_screenshot_path()] {
+        try {
+            write_png(path, image);
+            return "Screenshot: " + path.string();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+    });
 }
 
 void App::finish_screenshot()
 {
     if (!document_->screen.complete() || screenshot_.valid()) return;
     wants_screenshot_ = false;
-    // Reading back takes a millisecond or two; packing the file takes long, and goes to another thread.
-    screenshot_ =
-        std::async(std::launch::async, [image = document_->screen.read_back(), path = free_screenshot_path()] {
-            try {
-                write_png(path, image);
-                return "Screenshot: " + path.string();
-            } catch (const Error& error) {
-                return std::string(error.what());
-            }
-        });
+    write_screenshot(document_->screen.read_back());
 }
 
 void App::apply(const Open& action)

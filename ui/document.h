@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/scene/annotator.h"
+#include "engine/scene/picture_job.h"
 #include "engine/scene/screen.h"
 #include "engine/scene/session.h"
 #include "ui/touch.h"

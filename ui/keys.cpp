@@ -154,6 +154,7 @@ constexpr KeyBinding BINDINGS[] = {
     tap(GLFW_KEY_Z, CTRL | SHIFT, WORK, "Redo", redo),
     tap(GLFW_KEY_S, CTRL, WORK, "Save", [](const Model&, double) -> Action { return Save{}; }),
     tap(GLFW_KEY_P, 0, WORK, "Screenshot", [](const Model&, double) -> Action { return Screenshot{}; }),
+    tap(GLFW_KEY_P, CTRL, WORK, "Large screenshot", [](const Model&, double) -> Action { return Screenshot{true}; }),
     tap(GLFW_KEY_F8, 0, WORK, "Update ambient occlusion",
         [](const Model&, double) -> Action { return UpdateOcclusion{}; }),
     tap(GLFW_KEY_F12, 0, WORK, "Keys and mouse",

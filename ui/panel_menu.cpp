@@ -71,6 +71,7 @@ void file_menu(OpenDialog& dialog, const Model& model, Actions& actions)
     if (ImGui::MenuItem("Open...")) dialog.is_asked_for = true;
     key_item("Save", model, actions);
     key_item("Screenshot", model, actions);
+    key_item("Large screenshot", model, actions);
     ImGui::Separator();
     key_item("Quit", model, actions);
     ImGui::EndMenu();

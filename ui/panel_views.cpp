@@ -62,6 +62,23 @@ bool slice_controls(SliceSettings& slices, const VolumeStatistics& statistics)
     return is_other;
 }
 
+void interaction_controls(const Model& model, Actions& actions)
+{
+    InteractionSettings interaction = model.session.interaction;
+    double percent = 100.0 * interaction.resolution;
+    bool is_other = slider("In motion", percent, 10.0, 100.0, "%.0f %%");
+    hint("Pixels along each side that are drawn while something moves. What stands still is always sharp.");
+    interaction.resolution = percent / 100.0;
+    is_other |= slider("Frames", interaction.frames_per_second, 5.0, 120.0, "at most %.0f a second");
+    hint("More is smoother and leaves less time for other work.");
+    int scale = int(interaction.screenshot_scale);
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
+    hint("Of large screenshots (Ctrl + P): pixels for one of the window, along each side.");
+    interaction.screenshot_scale = uint32_t(scale);
+    if (is_other) actions.push_back(SetInteraction{interaction});
+}
+
 }  // namespace
 
 void views_panel(const Model& model, Actions& actions)
@@ -83,6 +100,8 @@ void views_panel(const Model& model, Actions& actions)
         case Arrangement::slices: is_other |= slice_controls(view.slices, model.statistics); break;
     }
     if (is_other) actions.push_back(SetView{view});
+    ImGui::Separator();
+    interaction_controls(model, actions);
 }
 
 }  // namespace shvr::ui

@@ -70,6 +70,14 @@ struct RenderSettings {
     bool operator==(const RenderSettings&) const = default;
 };
 
+/// What the window does while somebody works.
+struct InteractionSettings {
+    double resolution = 0.7;  ///< of the screen's, along each axis, while something moves; less where that is slow
+    double frames_per_second = 30.0;  ///< at most
+    uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
+    bool operator==(const InteractionSettings&) const = default;
+};
+
 /// The six cutting planes: the part of the volume that is drawn, in voxels.
 struct CutBox {
     glm::dvec3 lower{0.0};
@@ -110,6 +118,7 @@ struct Session {
     DistanceBlend blend;
     RenderSettings render;
     ViewSettings view;
+    InteractionSettings interaction;
     CutBox cut;
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file

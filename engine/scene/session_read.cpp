@@ -268,6 +268,17 @@ ViewSettings read_view(const JsonNode& node)
     return view;
 }
 
+InteractionSettings read_interaction(const JsonNode& node)
+{
+    InteractionSettings interaction;
+    if (!node.exists()) return interaction;
+    node.expect_object({"resolution", "frames_per_second", "screenshot_scale"});
+    interaction.resolution = node["resolution"].number(interaction.resolution, range(0.1, 1.0));
+    interaction.frames_per_second = node["frames_per_second"].number(interaction.frames_per_second, range(1.0, 1000.0));
+    interaction.screenshot_scale = uint32_t(node["screenshot_scale"].whole(interaction.screenshot_scale, 1, 32));
+    return interaction;
+}
+
 CutBox read_cut(const JsonNode& node)
 {
     CutBox cut;
@@ -410,7 +421,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
 {
     const JsonNode document(json, origin);
     document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "blend", "render", "view", "cut", "probe", "surfaces", "annotation"});
+                            "blend", "render", "view", "interaction", "cut", "probe", "surfaces", "annotation"});
     document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
     Session session;
     read_volume(document.required("volume", "an object with path or procedural"), folder, session);
@@ -422,6 +433,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.blend = read_blend(document["blend"]);
     session.render = read_render(document["render"]);
     session.view = read_view(document["view"]);
+    session.interaction = read_interaction(document["interaction"]);
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);
     session.surfaces = read_surfaces(document["surfaces"]);

@@ -277,6 +277,9 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["blend"] = write_blend(session.blend);
     document["render"] = write_render(session.render);
     document["view"] = write_view(session.view);
+    document["interaction"] = {{"resolution", session.interaction.resolution},
+                               {"frames_per_second", session.interaction.frames_per_second},
+                               {"screenshot_scale", session.interaction.screenshot_scale}};
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
     document["probe"] = write_probe(session.probe);
     if (!session.surfaces.empty()) document["surfaces"] = write_surfaces(session.surfaces);

@@ -12,14 +12,16 @@ namespace shvr {
 
 namespace {
 
-constexpr uint32_t MOST_SCALE = 8;
+constexpr double MOST_SCALE = 8.0;
 constexpr double PREPARATION_MS = 5.0;
 /// Seen through a translucent background.
 constexpr glm::vec3 BEHIND(0.05f);
 
-uint32_t scale_for(double ms, double target_ms)
+/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; no more than `most`, and no
+/// coarser than is any use. Whole pictures take `ms`.
+double share_for(double ms, double target_ms, double most)
 {
-    return std::clamp(uint32_t(std::ceil(std::sqrt(ms / target_ms))), 1u, MOST_SCALE);
+    return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MOST_SCALE, most), most);
 }
 
 PixelBox united(const PixelBox& a, const PixelBox& b)
@@ -101,7 +103,7 @@ void View::mark_due(const PixelBox& pixels, bool is_urgent)
 void View::reset_tiles()
 {
     const glm::uvec2 counts = tile_counts();
-    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = base_.shown.scale > 1});
+    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = base_.shown.share < 1.0});
 }
 
 void View::reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels)
@@ -162,7 +164,7 @@ bool View::submit_next(bool sketches_alone)
     if (submit_occlusion()) return true;
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
-    if (running_.empty() && patch_.shown.scale > 1 && !patch_.shown.part.empty()) {
+    if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
         start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
         return submit_next(sketches_alone);
     }
@@ -187,11 +189,16 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
         if (const auto& eye = scene->shot.right_eye)
             part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach()));
     }
-    const uint32_t scale = scale_for(double(part.area()) * average_ms_per_pixel_, target_ms);
+    // Where all is still it is made sharp, whatever it costs.
+    const double most = std::isinf(target_ms) ? 1.0 : scene->session.interaction.resolution;
+    const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     sketch_ms_ = 0.0;
-    Sketch::Content content{.scene = scene, .probe = probe, .scale = scale, .pixels = divided(scene->pixels, scale)};
+    Sketch::Content content{.scene = scene, .probe = probe, .share = share};
+    content.pixels = glm::uvec2(glm::ceil(glm::dvec2(scene->pixels) * share));
     if (!part.empty()) {
-        content.part = {part.begin / scale, glm::min(divided(part.end, scale), content.pixels)};
+        const glm::dvec2 scale = glm::dvec2(content.pixels) / glm::dvec2(scene->pixels);
+        content.part = {glm::uvec2(glm::floor(glm::dvec2(part.begin) * scale)),
+                        glm::min(glm::uvec2(glm::ceil(glm::dvec2(part.end) * scale)), content.pixels)};
         content.target = {content.part.begin * scene->pixels / content.pixels,
                           content.part.end * scene->pixels / content.pixels};
         reserve(sketch.images[1 - sketch.front], is_patch ? "probe's pixels" : "sketch", Format::rgba8_unorm,
@@ -232,7 +239,7 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene};
     const Resource light = draw(graph, part, running);
     sketch.next_row += rows;
-    if (job.scale == 1) {  // otherwise rows are enlarged together with their neighbours, when all are there
+    if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, when all are there
         encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
         sketch.next_encoded = sketch.next_row;
     }
@@ -487,7 +494,7 @@ bool View::is_finished() const
     if (!scene_) return true;
     if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
     if (occlusion_is_due()) return false;
-    return (patch_.shown.scale == 1 || patch_.shown.part.empty()) &&
+    return (patch_.shown.share == 1.0 || patch_.shown.part.empty()) &&
            std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
 }
 

@@ -2,6 +2,7 @@
 // A picture that is made while somebody looks at it: coarse at once, then sharp, tile by tile, nearest to the probe first.
 //
 //   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all of it is done
+//                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
 //   voxels painted    the tiles that show them, again
@@ -100,7 +101,7 @@ private:
         struct Content {
             SceneRef scene;
             std::optional<ProbeLook> probe;
-            uint32_t scale = 1;    ///< screen pixels per pixel, along each axis
+            double share = 1.0;    ///< of the screen's pixels, along each axis; 1: sharp
             glm::uvec2 pixels{0};  ///< of the whole picture, scaled
             PixelBox part;         ///< scaled pixels; may be empty
             PixelBox target;       ///< screen pixels that it covers

@@ -140,6 +140,22 @@ class View(CliTest):
         self.assertNotAlmostEqual(saved["cameras"]["window"]["target"][0], 32.0, places=2)
         self.check_photograph(session, self.folder / "session-view-3.png")
 
+    def test_a_large_screenshot_is_the_picture_of_render(self):
+        session = self.write_ball(interaction={"screenshot_scale": 2, "resolution": 1, "frames_per_second": 60})
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "key", "ctrl+p")
+        photograph = self.folder / "session-view-1.png"
+        self.wait_for_file(photograph)
+        self.do("key", "ctrl+s", pause_s=0.5)
+        self.finish()
+        width, height = read_png_header(photograph)[:2]
+        self.assertGreater(width, WINDOW[0])
+        picture = self.folder / "render.png"
+        self.check("render", session, "-o", picture, "--size", f"{width}x{height}")
+        self.assertEqual(self.check_json("compare", photograph, picture)["max_abs"], 0)
+
     def check_photograph(self, session, photograph):
         """It is what `shvr render` makes of what was saved, but for the probe's ball."""
         size = read_png_header(photograph)

@@ -80,6 +80,7 @@ const std::string EVERYTHING = R"({
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5},
+  "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
             "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25},
@@ -141,6 +142,7 @@ TEST_CASE("every key of a session is read")
           RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false});
     CHECK(session.view ==
           ViewSettings{Arrangement::slices, {StereoOutput::top_bottom, 0.0625, true}, {-20.0, 300.5, 0.25, 3.0}, 1.5});
+    CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
     CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5,
                                          -3, true, true, 0.25});
@@ -161,6 +163,7 @@ TEST_CASE("a session that says little has the defaults of the structures")
     CHECK(session.blend == DistanceBlend{});
     CHECK(session.render == RenderSettings{});
     CHECK(session.view == ViewSettings{});
+    CHECK(session.interaction == InteractionSettings{});
     CHECK(session.cut == CutBox{});
     CHECK(session.probe == ProbeSettings{});
     CHECK(session.surfaces.empty());
