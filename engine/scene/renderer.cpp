@@ -424,15 +424,15 @@ void Renderer::set_surfaces(const std::vector<SurfaceLook>& surfaces)
 }
 
 /// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.
-std::optional<Resource> Renderer::draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
-                                                const PicturePart& part)
+std::optional<Resource> Renderer::draw_surfaces(FrameGraph& graph, const Prepared& prepared, const RaycastInput& input,
+                                                const Camera& camera, const PicturePart& part)
 {
     const bool has_ball = part.probe && part.probe->ball_share > 0.0;
     if (surfaces_.empty() && !has_ball) return std::nullopt;
     const VolumeInfo& info = volume_->info();
     SurfacesInput wanted{.params = input.params,
                          .scene = surfaces_.params(ray_planes(camera, part.pixels, info), part.pixels, info),
-                         .listed = surfaces_.import(graph),
+                         .listed = prepared.listed,
                          .probe = has_ball,
                          .group_width = input.group_width,
                          .tile = input.tile};
@@ -468,7 +468,10 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
     if (part.probe && !shot.is_slice) set_shell(input, *part.probe, *volume_);
-    if (!shot.is_slice) input.surfaces = draw_surfaces(graph, input, shot.camera, part);
+    if (!shot.is_slice) {
+        prepared.listed = surfaces_.import(graph);
+        input.surfaces = draw_surfaces(graph, prepared, input, shot.camera, part);
+    }
     if (input.mask) {
         input.params.mask_slots = input.mask->slots;
         input.groups = group_looks(session, step_voxels);
@@ -489,7 +492,7 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
         RaycastInput right = prepared.input;
         set_rays(right.params, session, *shot.right_eye, volume_->info(), part.pixels);
-        right.surfaces = draw_surfaces(graph, right, *shot.right_eye, part);
+        right.surfaces = draw_surfaces(graph, prepared, right, *shot.right_eye, part);
         prepared.input.params.target = right.params.target = glm::uvec2(0);
         const Resource seen_left = raycast(graph, prepared.volume, prepared.input, graph.create("left eye", desc));
         const Resource seen_right = raycast(graph, prepared.volume, right, graph.create("right eye", desc));

@@ -185,11 +185,12 @@ private:
     struct Prepared {
         VolumeBinding volume;
         RaycastInput input;
+        std::optional<SurfaceList> listed;
     };
     Prepared prepare(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                      bool feedback);
-    std::optional<Resource> draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
-                                          const PicturePart& part);
+    std::optional<Resource> draw_surfaces(FrameGraph& graph, const Prepared& prepared, const RaycastInput& input,
+                                          const Camera& camera, const PicturePart& part);
 
     gpu::Device device_;
     uint64_t host_budget_;
