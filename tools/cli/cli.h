@@ -42,7 +42,7 @@ void print(const Json& result);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 
-/// A session opened with its volume on the device and its mask, if there is one, loaded.
+/// A session opened with its volume on the device and its mask and its trace, where there are any, loaded.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
