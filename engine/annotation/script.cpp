@@ -97,6 +97,46 @@ public:
         }
         refuse("key ", key, " is ", shown(value), "; expected one of: ", known);
     }
+    /// Far beyond any volume, and far below where squares overflow.
+    static constexpr double FARTHEST = 1e12;
+    glm::dvec3 point(const char* key) const
+    {
+        const Json& value = need(key);
+        const auto is_coordinate = [](const Json& c) { return c.is_number() && std::abs(c.get<double>()) <= FARTHEST; };
+        if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), is_coordinate))
+            refuse("key ", key, " is ", shown(value), "; expected three numbers [x,y,z] from -1e12 to 1e12");
+        return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+    }
+    /// Nothing where the key is missing.
+    std::optional<double> radius(const char* key) const
+    {
+        const Json* value = find(key);
+        if (!value) return std::nullopt;
+        if (number(key, *value) <= 0.0 || number(key, *value) > FARTHEST)
+            refuse("key ", key, " is ", shown(*value), "; expected a number above 0, up to 1e12");
+        return number(key, *value);
+    }
+    std::optional<uint8_t> group(const char* key) const
+    {
+        const Json* value = find(key);
+        return value ? std::optional(uint8_t(whole(key, *value, 0, 255))) : std::nullopt;
+    }
+    /// The one of `keys` that is there.
+    const char* one_of(std::initializer_list<const char*> keys) const
+    {
+        const char* found = nullptr;
+        std::string known;
+        for (const char* key : keys) {
+            known += (known.empty() ? "" : ", ") + std::string(key);
+            if (!find(key)) continue;
+            if (found) refuse("keys ", found, " and ", key, " are both given; expected one of them");
+            found = key;
+        }
+        if (!found) refuse("none of these keys is given: ", known, "; expected one of them");
+        return found;
+    }
+    uint32_t item(const char* key) const { return uint32_t(whole(key, need(key), 0, 4294967295)); }
+
     std::vector<glm::dvec3> path(const char* key, const Json& value) const
     {
         const auto is_coordinate = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
@@ -140,6 +180,59 @@ PaintOp read_paint(const Fields& fields)
     return op;
 }
 
+NodeOp read_node(const Fields& fields)
+{
+    fields.allow({"at", "radius", "group"});
+    return {fields.point("at"), fields.radius("radius"), fields.group("group")};
+}
+
+SelectOp read_select(const Fields& fields)
+{
+    fields.allow({"near", "near_internode", "within", "node", "internode"});
+    const std::string key = fields.one_of({"near", "near_internode", "node", "internode"});
+    SelectOp op;
+    op.is_internode = key == "near_internode" || key == "internode";
+    if (key == "near" || key == "near_internode") {
+        op.near = fields.point(key.c_str());
+        op.within_voxels = fields.radius("within");
+    } else {
+        if (fields.find("within")) fields.refuse("key within is given with ", key, "; expected it with near");
+        op.number = fields.item(key.c_str());
+    }
+    return op;
+}
+
+LinkOp read_link(const Fields& fields)
+{
+    fields.allow({"near", "node"});
+    LinkOp op;
+    if (fields.one_of({"near", "node"}) == std::string("near"))
+        op.near = fields.point("near");
+    else
+        op.node = fields.item("node");
+    return op;
+}
+
+RadiusOp read_radius(const Fields& fields)
+{
+    fields.allow({"radius", "group", "of"});
+    RadiusOp op;
+    if (const std::optional<uint8_t> group = fields.group("group")) {
+        op.group = *group;
+        op.of = RadiusOp::Of::nodes;
+        if (const Json* of = fields.find("of"); of && fields.choice("of", *of, {"nodes", "internodes"}) == 1)
+            op.of = RadiusOp::Of::internodes;
+    } else if (fields.find("of")) {
+        fields.refuse("key of is given without group; expected both, or neither for what is selected");
+    }
+    // Without a size of its own an internode tapers from node to node.
+    if (op.of != RadiusOp::Of::internodes || !fields.need("radius").is_null()) {
+        fields.need("radius");
+        op.radius_voxels = fields.radius("radius");
+    }
+    return op;
+}
+
 int read_count(const Fields& fields)
 {
     fields.allow({"count"});
@@ -180,6 +273,25 @@ ScriptOp read_op(const Fields& fields)
 {
     const Json& name = fields.need("op");
     if (name == "paint") return read_paint(fields);
+    if (name == "node") return read_node(fields);
+    if (name == "select") return read_select(fields);
+    if (name == "link") return read_link(fields);
+    if (name == "radius") return read_radius(fields);
+    if (name == "move") {
+        fields.allow({"to"});
+        return MoveOp{fields.point("to")};
+    }
+    if (name == "group") {
+        fields.allow({"group"});
+        fields.need("group");
+        return GroupOp{*fields.group("group")};
+    }
+    if (name == "select_segment" || name == "deselect" || name == "delete") {
+        fields.allow({});
+        if (name == "select_segment") return SelectSegmentOp{};
+        if (name == "deselect") return DeselectOp{};
+        return DeleteOp{};
+    }
     if (name == "undo") return UndoOp{read_count(fields)};
     if (name == "redo") return RedoOp{read_count(fields)};
     if (name == "expect") return read_expect(fields);
@@ -187,11 +299,10 @@ ScriptOp read_op(const Fields& fields)
         fields.allow({});
         return SaveOp{};
     }
-    const char* const later[] = {"density", "node",   "select", "deselect",      "link",
-                                 "move",    "delete", "group",  "select_segment"};
-    const bool is_later = std::any_of(std::begin(later), std::end(later), [&](const char* op) { return name == op; });
-    fields.refuse("op ", shown(name), is_later ? " is not supported by this version" : " is unknown",
-                  "; known: paint, undo, redo, save, expect");
+    fields.refuse(
+        "op ", shown(name), name == "density" ? " is not supported by this version" : " is unknown",
+        "; known: paint, node, select, select_segment, deselect, link, move, delete, group, radius, undo, redo, "
+        "save, expect");
 }
 
 /// Refuses what the parser itself lets pass: a key given twice, of which it would silently keep the last.

@@ -22,6 +22,37 @@ struct PaintOp {
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
 };
+/// Tracing, as the window will send it, too. Positions in voxel coordinates, radii in voxels along x.
+struct NodeOp {
+    glm::dvec3 at{0.0};
+    std::optional<double> radius_voxels;  ///< the probe's
+    std::optional<uint8_t> group;         ///< the probe's
+};
+struct SelectOp {
+    std::optional<glm::dvec3> near;  ///< the nearest node, or internode of the selected node
+    std::optional<uint32_t> number;  ///< where `near` is not given
+    bool is_internode = false;
+    std::optional<double> within_voxels;  ///< how far the nearest may be; any distance
+};
+struct SelectSegmentOp {};
+struct DeselectOp {};
+struct LinkOp {
+    std::optional<glm::dvec3> near;  ///< the nearest other node
+    std::optional<uint32_t> node;    ///< where `near` is not given
+};
+struct MoveOp {
+    glm::dvec3 to{0.0};
+};
+struct DeleteOp {};
+struct GroupOp {
+    uint8_t group = 1;
+};
+struct RadiusOp {
+    enum class Of { selected, nodes, internodes };
+    Of of = Of::selected;                 ///< the others: all of `group`
+    std::optional<double> radius_voxels;  ///< nothing, of internodes only: they taper
+    uint8_t group = 0;
+};
 struct UndoOp {
     int count = 1;
 };
@@ -34,7 +65,8 @@ struct ExpectOp {
     std::optional<int64_t> nodes;
     std::optional<int64_t> internodes;
 };
-using ScriptOp = std::variant<PaintOp, UndoOp, RedoOp, SaveOp, ExpectOp>;
+using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
+                              RadiusOp, UndoOp, RedoOp, SaveOp, ExpectOp>;
 
 struct ScriptLine {
     int number = 0;  ///< from 1

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/annotation/mask_file.h"
+#include "engine/annotation/trace_file.h"
 #include "engine/passes/paint.h"
 
 namespace shvr {
@@ -228,6 +229,14 @@ void Annotator::bring_to_device(const Command& command)
     renderer_.update_mask(document_.mask, bricks_of(command.changes));
 }
 
+void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
+{
+    SHVR_CHECK(!stroke_);
+    Command command{std::move(label), {}};
+    for (TraceChange& change : changes) command.changes.emplace_back(std::move(change));
+    history_.perform(document_, std::move(command));
+}
+
 const Command* Annotator::undo()
 {
     const Command* command = stroke_ ? nullptr : history_.undo(document_);
@@ -245,8 +254,10 @@ const Command* Annotator::redo()
 VoxelBox Annotator::reach_of(const Command& command) const
 {
     const Size3 counts = document_.mask.brick_counts(), size = document_.mask.size();
+    const std::vector<int64_t> bricks = bricks_of(command.changes);
+    if (bricks.empty()) return {};
     VoxelBox box{size, Size3(0)};
-    for (const int64_t brick : bricks_of(command.changes)) {
+    for (const int64_t brick : bricks) {
         const Size3 first = int64_t(gpu::BRICK_SIZE) *
                             Size3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
         box = {glm::min(box.lower, first), glm::max(box.upper, glm::min(first + int64_t(gpu::BRICK_SIZE), size))};
@@ -267,6 +278,16 @@ void Annotator::load(const std::filesystem::path& mask_file)
 void Annotator::save(const std::filesystem::path& mask_file) const
 {
     save_mask(mask_file, document_.mask);
+}
+
+void Annotator::load_trace(const std::filesystem::path& trace_file)
+{
+    document_.trace = shvr::load_trace(trace_file, space_of(renderer_.volume().info())).trace;
+}
+
+void Annotator::save_trace(const std::filesystem::path& trace_file) const
+{
+    shvr::save_trace(trace_file, document_.trace, space_of(renderer_.volume().info()));
 }
 
 }  // namespace shvr

@@ -41,15 +41,24 @@ public:
     /// Takes the device's answer, if it is there, paints it and asks the next. Returns the voxels that may have changed.
     std::optional<VoxelBox> advance();
 
+    /// Carries out what `trace_edit.h` made of the trace, as one command; nothing where `changes` is empty. No stroke is
+    /// running.
+    void edit_trace(std::string label, std::vector<TraceChange> changes);
+    /// No step of the history. What is selected must be there.
+    void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
+
     /// The command undone or redone; null where there is nothing left, or a stroke is running.
     const Command* undo();
     const Command* redo();
-    /// The bricks that a command changed lie in this box.
+    /// The bricks that a command changed lie in this box; empty where it changed none.
     VoxelBox reach_of(const Command& command) const;
 
     /// Replaces the (unpainted) mask by a file's; not a step of the history.
     void load(const std::filesystem::path& mask_file);
     void save(const std::filesystem::path& mask_file) const;
+    /// The same of the trace. Fails where the file is of a volume of another size, spacing or unit.
+    void load_trace(const std::filesystem::path& trace_file);
+    void save_trace(const std::filesystem::path& trace_file) const;
 
 private:
     /// Questions to the device about some positions of a stroke.

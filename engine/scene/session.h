@@ -122,7 +122,9 @@ struct Session {
     CutBox cut;
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
-    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
+    std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
+    /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
+    std::filesystem::path trace_path;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/annotation/trace_file.h"
 #include "engine/scene/session_json.h"
 #include "engine/volume/header_text.h"
 
@@ -346,11 +347,18 @@ std::vector<SurfaceLook> read_surfaces(const JsonNode& node)
     return surfaces;
 }
 
-std::filesystem::path read_mask_path(const JsonNode& node, const std::filesystem::path& folder)
+void read_annotation(const JsonNode& node, const std::filesystem::path& folder, Session& session)
 {
-    if (!node.exists()) return {};
-    node.expect_object({"mask"});
-    return read_path(node["mask"], folder);
+    if (!node.exists()) return;
+    node.expect_object({"mask", "trace"});
+    session.mask_path = read_path(node["mask"], folder);
+    session.trace_path = read_path(node["trace"], folder);
+    if (session.trace_path.empty() && !session.mask_path.empty()) {
+        session.trace_path = session.mask_path;
+        session.trace_path.replace_extension(".graphml");
+    }
+    if (!session.trace_path.empty() && !is_trace_file(session.trace_path))
+        node["trace"].refuse("a path that ends in .graphml, .txt or .swc");
 }
 
 std::map<std::string, CameraSpec> read_cameras(const JsonNode& node)
@@ -437,7 +445,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);
     session.surfaces = read_surfaces(document["surfaces"]);
-    session.mask_path = read_mask_path(document["annotation"], folder);
+    read_annotation(document["annotation"], folder, session);
     return session;
 }
 

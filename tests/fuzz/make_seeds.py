@@ -449,6 +449,31 @@ def png(kind, depth, width=3, height=2, lines=None, extra=b"", claimed=None):
             chunk(b"IDAT", zlib.compress(lines or row * height)) + chunk(b"IEND", b""))
 
 
+def make_trace():
+    """The first byte names the form."""
+    keys = "".join(f'<key id="{k}" for="all" attr.name="{k}" attr.type="string"/>' for k in
+                   ["x", "y", "z", "radius", "group", "unit", "size", "spacing", "internode_radii", "next_node"])
+
+    def graph(*inside):
+        return b"\0" + f"<graphml>{keys}<graph>{''.join(inside)}</graph></graphml>".encode()
+
+    def data(**values):
+        return "".join(f'<data key="{k}">{v}</data>' for k, v in values.items())
+
+    def node(name, x):
+        return f'<node id="{name}">{data(x=x, y=2.5, z=-3e-7, radius=1.5, group=7)}</node>'
+    seed("trace", "ring.graphml", graph(
+        data(unit="um", size="9 8 7", spacing="1 0.5 2", internode_radii="7=1.5 8=2", next_node=12),
+        node("n0", 1), node("n3", 2), node("n9", 3), '<edge id="e1" source="n0" target="n3"/>',
+        f'<edge id="e5" source="n3" target="n9">{data(group=8)}</edge>', '<edge id="e7" source="n9" target="n0"/>'))
+    seed("trace", "names.graphml", graph(node("a", 1), node("b", 2), '<edge source="b" target="a"/>'))
+    seed("trace", "two.txt", b"\1-v 1, 2.5, -3, 7, 1.5\n-v 2,3,4,0,0\n-l 1, 0, 255\n")
+    seed("trace", "star.swc", b"\2# unit um\n# size 9 8 7\n# spacing 1 0.5 2\n# SCALE 1 1 1\n"
+         b"1 7 1 2 3 1.5 -1\n2 7 1 2 4 1.5 1\n3 8 1 3 3 1 1\n4 0 0 2 3 0 1\n9 1 5 5 5 2 -1\n")
+    seed("trace", "ring.swc", b"\2" + b"1 1 0 0 0 1 3\n2 1 1 0 0 1 1\n3 1 1 1 0 1 2\n")
+    seed("trace", "numbers.graphml", graph(node("n4294967295", 1), data(next_node=4294967296)))
+
+
 def make_png():
     for kind, depth in [(0, 1), (0, 8), (0, 16), (2, 8), (2, 16), (3, 4), (4, 8), (6, 8), (6, 16)]:
         seed("png", f"kind_{kind}_{depth}.png", png(kind, depth))
@@ -467,6 +492,7 @@ def main():
     make_project()
     make_states()
     make_text()
+    make_trace()
     make_png()
     files = [file for file in SEEDS.rglob("*") if file.is_file()]
     print(f"{len(files)} seeds, {sum(file.stat().st_size for file in files)} bytes")

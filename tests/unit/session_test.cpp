@@ -198,6 +198,7 @@ TEST_CASE("what is written reads back the same")
         CHECK(second.probe == first.probe);
         CHECK((second.surfaces == first.surfaces));
         CHECK(second.mask_path == first.mask_path);
+        CHECK(second.trace_path == first.trace_path);
         REQUIRE(second.procedural.has_value() == first.procedural.has_value());
         if (first.procedural) {
             CHECK(second.procedural->kind == "speckles");
@@ -251,6 +252,12 @@ TEST_CASE("relative paths are relative to the file, and paths inside its folder 
                                       "annotation": {"mask": "labels.mask"}})");
     CHECK(session.volume_path == "/data/other/v.nhdr");
     CHECK(session.mask_path == "/data/scans/labels.mask");
+    CHECK(session.trace_path == "/data/scans/labels.graphml");
+    const Session traced =
+        parse(R"({"shvr_session": 1, "volume": {"path": "v.nhdr"}, "annotation": {"trace": "t.swc"}})");
+    CHECK(traced.mask_path.empty());
+    CHECK(traced.trace_path == "/data/scans/t.swc");
+    CHECK(to_text(traced, "/data/scans").find("\"trace\": \"t.swc\"") != std::string::npos);
     CHECK(parse(R"({"shvr_session": 1, "volume": {"path": "/abs/v.nhdr"}})").volume_path == "/abs/v.nhdr");
     const std::string text = to_text(session, "/data/scans/");
     CHECK(text.find("\"/data/other/v.nhdr\"") != std::string::npos);
@@ -371,6 +378,7 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
              Case{R"("cut": {"lower": [-1, 0, 0]})", "cut.lower.0 is -1; expected a number from 0 to"},
              Case{R"("annotation": {"mask": ""})", "annotation.mask is \"\"; expected a text that is not empty"},
              Case{R"("annotation": {"mask": "a\u0000b"})", "annotation.mask is \"a\\u0000b\"; expected a path"},
+             Case{R"("annotation": {"trace": "a.obj"})", "annotation.trace is \"a.obj\"; expected a path that ends in"},
              Case{R"("transfer_function": {})", "transfer_function.points is missing; expected an array"},
              Case{R"("transfer_function": [])", "transfer_function is []; expected an object"},
              Case{R"("transfer_function": {"points": 3})", "transfer_function.points is 3; expected an array"},

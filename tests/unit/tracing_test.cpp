@@ -120,13 +120,13 @@ TEST_CASE("a node is moved, and moved back")
     Desk desk;
     desk.add({0, 0, 0});
     desk.add({1, 0, 0});
-    desk.perform(move_selected(desk.trace(), {5, 6, 7}));
-    CHECK(desk.trace().node(1).position == glm::dvec3(5, 6, 7));
-    CHECK(desk.trace().nearest_node({5, 6, 6}) == 1u);
+    desk.perform(move_selected(desk.trace(), {-5, 6, 7}));
+    CHECK(desk.trace().node(1).position == glm::dvec3(-5, 6, 7));
+    CHECK(desk.trace().nearest_node({-5, 6, 6}) == 1u);  // where it was, the other one would be nearer
     desk.history.undo(desk.document);
     CHECK(desk.trace().node(1).position == glm::dvec3(1, 0, 0));
-    CHECK(desk.trace().nearest_node({5, 6, 6}, 0) == 1u);
-    CHECK(desk.trace().nearest_node({0.4, 0, 0}) == 0u);
+    CHECK(desk.trace().nearest_node({-5, 6, 6}) == 0u);
+    CHECK(desk.trace().nearest_node({0.6, 0, 0}) == 1u);
     CHECK(move_selected(desk.trace(), {1, 0, 0}).empty());
 }
 
@@ -176,6 +176,20 @@ TEST_CASE("an internode of the selected node is selected, deleted and brought ba
     CHECK(!desk.trace().internode_between(2, 3));
     desk.history.undo(desk.document);
     CHECK(desk.trace().selection().internode() == arm);
+}
+
+TEST_CASE("what is removed is no longer selected")
+{
+    Desk desk;
+    for (int i = 0; i < 3; ++i) desk.add({double(i), 0, 0});
+    desk.perform(link_selected(desk.trace(), 0));
+    desk.trace().select({{}, {2}});
+    desk.history.undo(desk.document);
+    CHECK(desk.trace().selection().empty());
+    desk.deselect();
+    desk.add({9, 9, 9});
+    desk.trace().apply(TraceNodeChange{3, desk.trace().node(3), {}}, Direction::forwards);
+    CHECK(desk.trace().selection().empty());
 }
 
 TEST_CASE("groups of nodes, of internodes and of segments are changed")

@@ -87,7 +87,7 @@ glm::uvec2 parse_size(const std::string& text)
     return {width, height};
 }
 
-Opened open(const std::string& path, const Common& common, bool with_mask)
+Opened open(const std::string& path, const Common& common, bool with_annotation)
 {
     OpenedSession session = open_session(path, common.settings);
     Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings), nullptr, nullptr};
@@ -102,8 +102,10 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
     opened.renderer->load(opened.source, session.statistics, opened.session.render);
     opened.renderer->set_surfaces(opened.session.surfaces);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
-    if (with_mask && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
+    if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);
+    if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
+        opened.annotator->load_trace(opened.session.trace_path);
     return opened;
 }
 

@@ -42,7 +42,7 @@ void print(const Json& result);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 
-/// A session opened with its volume on the device and its mask, if there is one, loaded.
+/// A session opened with its volume on the device and its mask and its trace, where there are any, loaded.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -50,7 +50,7 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
 };
-Opened open(const std::string& path, const Common& common, bool with_mask = true);
+Opened open(const std::string& path, const Common& common, bool with_annotation = true);
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);
@@ -66,6 +66,8 @@ void add_info(CLI::App& program);
 void add_import(CLI::App& program);
 void add_render(CLI::App& program);
 void add_annotate(CLI::App& program);
+void add_export(CLI::App& program);
+void add_evaluate(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);

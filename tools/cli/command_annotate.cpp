@@ -1,5 +1,6 @@
 // shvr annotate: replays a script of annotation commands.
 
+#include "engine/annotation/trace_edit.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -12,17 +13,115 @@ struct Options {
     bool fresh = false;
 };
 
-struct Replay {
+class Replay {
+public:
+    Replay(Opened& opened_session, const Options& given) : opened(opened_session), options(given) {}
+
     Opened& opened;
     const Options& options;
     int64_t voxels_changed = 0;
     std::string at;  ///< "file:line"
 
+private:
+    const TraceGraph& trace() const { return opened.annotator->document().trace; }
+    glm::dvec3 in_volume(const glm::dvec3& voxel) const { return voxel * opened.source->info().spacing; }
+    double in_volume(double radius_voxels) const { return radius_voxels * opened.source->info().spacing.x; }
+
+    /// What `act` returns; what it cannot do is said with the line.
+    template <class Act>
+    auto in_words(const Act& act) const
+    {
+        try {
+            return act();
+        } catch (const Error& error) {
+            fail(at, ": ", error.what());
+        }
+    }
+    template <class Make>
+    void edit(std::string label, const Make& make)
+    {
+        opened.annotator->edit_trace(std::move(label), in_words(make));
+    }
+
+public:
     void operator()(const PaintOp& op)
     {
         const int64_t voxels = opened.annotator->paint(op);
         voxels_changed += voxels;
         say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+    }
+    void operator()(const NodeOp& op)
+    {
+        const ProbeSettings& probe = opened.session.probe;
+        const TraceNode node{in_volume(op.at), in_volume(op.radius_voxels.value_or(probe.radius_voxels)),
+                             op.group.value_or(probe.group)};
+        edit(sentence("node, group ", int(node.group)), [&] { return add_node(trace(), node); });
+        say(options.common, sentence(at, ": node ", *trace().selection().node(), " in group ", int(node.group)));
+    }
+    void operator()(const SelectOp& op)
+    {
+        const TraceGraph& graph = trace();
+        const char* what = op.is_internode ? "internode" : "node";
+        if (op.number &&
+            !(op.is_internode ? graph.internodes().contains(*op.number) : graph.nodes().contains(*op.number)))
+            fail(at, ": there is no ", what, " ", *op.number, "; expected one that the trace has");
+        TraceSelection selection;
+        if (op.number) (op.is_internode ? selection.internodes : selection.nodes) = {*op.number};
+        if (op.near)
+            selection = in_words([&] {
+                return op.is_internode ? nearest_internode_selection(graph, in_volume(*op.near))
+                                       : nearest_node_selection(graph, in_volume(*op.near));
+            });
+        if (op.within_voxels) {
+            const double away = op.is_internode
+                                    ? distance_to(graph, graph.internode(selection.internodes[0]), in_volume(*op.near))
+                                    : glm::length(graph.node(selection.nodes[0]).position - in_volume(*op.near));
+            if (away > in_volume(*op.within_voxels))
+                fail(at, ": the nearest ", what, " is ", away / in_volume(1.0), " voxels away; expected one within ",
+                     *op.within_voxels);
+        }
+        opened.annotator->select_trace(std::move(selection));
+    }
+    void operator()(const SelectSegmentOp&)
+    {
+        opened.annotator->select_trace(in_words([&] { return segment_selection(trace()); }));
+    }
+    void operator()(const DeselectOp&) { opened.annotator->select_trace({}); }
+    void operator()(const LinkOp& op)
+    {
+        if (op.node && !trace().nodes().contains(*op.node))
+            fail(at, ": there is no node ", *op.node, "; expected one that the trace has");
+        edit("link", [&] {
+            const std::optional<uint32_t> to =
+                op.node ? op.node : trace().nearest_node(in_volume(*op.near), trace().selection().node());
+            if (!to) fail("there is no other node; expected one to link with");
+            return link_selected(trace(), *to);
+        });
+    }
+    void operator()(const MoveOp& op)
+    {
+        edit("move", [&] { return move_selected(trace(), in_volume(op.to)); });
+    }
+    void operator()(const DeleteOp&)
+    {
+        edit("delete", [&] { return delete_selected(trace()); });
+    }
+    void operator()(const GroupOp& op)
+    {
+        edit(sentence("group ", int(op.group)), [&] { return set_group_of_selected(trace(), op.group); });
+    }
+    void operator()(const RadiusOp& op)
+    {
+        std::optional<double> radius;
+        if (op.radius_voxels) radius = in_volume(*op.radius_voxels);
+        edit("size", [&] {
+            switch (op.of) {
+                case RadiusOp::Of::nodes: return set_node_radii(trace(), op.group, radius.value());
+                case RadiusOp::Of::internodes: return set_internode_radius(trace(), op.group, radius);
+                case RadiusOp::Of::selected: break;
+            }
+            return set_radius_of_selected(trace(), radius.value());
+        });
     }
     void operator()(const UndoOp& op)
     {
@@ -36,10 +135,15 @@ struct Replay {
     }
     void operator()(const SaveOp&)
     {
-        const std::filesystem::path& path = opened.session.mask_path;
-        if (path.empty()) fail(at, ": the session names no mask to save to; expected the key annotation.mask");
-        opened.annotator->save(path);
-        say(options.common, sentence(at, ": saved ", path.string()));
+        const std::filesystem::path &mask = opened.session.mask_path, &trace_file = opened.session.trace_path;
+        if (mask.empty() && (trace_file.empty() || !opened.annotator->document().mask.painted_bricks().empty()))
+            fail(at, ": the session names no mask to save to; expected the key annotation.mask");
+        if (!mask.empty()) opened.annotator->save(mask);
+        // A trace that was there and is empty now is saved as such; one that never was makes no file.
+        const bool has_trace = !trace().nodes().empty() || std::filesystem::exists(trace_file);
+        if (has_trace) opened.annotator->save_trace(trace_file);
+        for (const auto& [path, is_saved] : {std::pair(&mask, !mask.empty()), {&trace_file, has_trace}})
+            if (is_saved) say(options.common, sentence(at, ": saved ", path->string()));
     }
     void operator()(const ExpectOp& op)
     {
@@ -48,10 +152,11 @@ struct Replay {
             if (counts[group] != voxels)
                 throw GateError(
                     sentence(at, ": group ", int(group), " has ", counts[group], " voxels; expected ", voxels));
-        const std::pair<const char*, std::optional<int64_t>> traced[] = {{"nodes", op.nodes},
-                                                                         {"internodes", op.internodes}};
-        for (const auto& [what, expected] : traced)
-            if (expected.value_or(0) != 0) throw GateError(sentence(at, ": 0 ", what, "; expected ", *expected));
+        const std::tuple<const char*, std::optional<int64_t>, size_t> traced[] = {
+            {"nodes", op.nodes, trace().nodes().size()}, {"internodes", op.internodes, trace().internodes().size()}};
+        for (const auto& [what, expected, found] : traced)
+            if (expected && *expected != int64_t(found))
+                throw GateError(sentence(at, ": ", found, " ", what, "; expected ", *expected));
     }
 };
 
@@ -66,7 +171,7 @@ void run(const Options& options)
             } catch (const Error& error) {
                 fail(options.script, ":", line.number, ": ", error.what());
             }
-    Replay replay{.opened = opened, .options = options};
+    Replay replay{opened, options};
     for (const ScriptLine& line : script) {
         replay.at = sentence(options.script, ":", line.number);
         std::visit(replay, line.op);
@@ -75,8 +180,8 @@ void run(const Options& options)
     if (options.common.json)
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},
-               {"nodes", 0},
-               {"internodes", 0},
+               {"nodes", opened.annotator->document().trace.nodes().size()},
+               {"internodes", opened.annotator->document().trace.internodes().size()},
                {"journal_bytes", 0}});
 }
 
@@ -88,13 +193,14 @@ void add_annotate(CLI::App& program)
     CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
-    command->add_flag("--fresh", options->fresh, "Start from an unpainted mask instead of the saved one");
+    command->add_flag("--fresh", options->fresh, "Start without the saved mask and trace");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
         "Example:\n  shvr annotate scan/ --script strokes.jsonl\nwith lines such as\n"
         "  {\"op\":\"paint\",\"brush\":\"flood\",\"region\":\"ball\",\"group\":1,\"threshold\":1200,\"radius\":8,"
-        "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
+        "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"node\",\"at\":[40,52,18],\"radius\":3,\"group\":2}\n"
+        "  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
     command->callback([options] { run(*options); });
 }
 

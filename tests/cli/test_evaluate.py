@@ -1,0 +1,107 @@
+"""shvr evaluate: scores of constructed annotations with known answers."""
+import unittest
+
+from harness import CliTest
+
+KEYS = ["dice", "dice_by_group", "node_score", "node_out", "internode_score", "internode_out", "segments",
+        "topological_errors", "centreline_rms_um"]
+
+
+def trace_text(chains, radius=1.5):
+    """Chains of places along straight lines, a node every 2, in the thesis's text. Equal places are one node."""
+    index, lines, links = {}, [], []
+
+    def number(place):
+        if place not in index:
+            index[place] = len(index)
+            lines.append("-v {}, {}, {}, 1, {}\n".format(*place, radius))
+        return index[place]
+    for a, b in chains:
+        parts = max(1, round(max(abs(q - p) for p, q in zip(a, b)) / 2))
+        places = [tuple(p + (q - p) * i / parts for p, q in zip(a, b)) for i in range(parts + 1)]
+        places[0], places[-1] = tuple(map(float, a)), tuple(map(float, b))
+        links += [f"-l {number(p)}, {number(q)}, 1\n" for p, q in zip(places, places[1:])]
+    return "".join(lines + links)
+
+
+class Evaluate(CliTest):
+    SIZE = (32, 24, 20)
+    TRUTH = [((4, 12, 10), (16, 12, 10)), ((16, 12, 10), (28, 20, 10)), ((16, 12, 10), (28, 4, 10))]
+
+    def setUp(self):
+        super().setUp()
+        self.session = self.write_session(volume={"procedural": "constant", "size": list(self.SIZE), "unit": "mm"})
+
+    def mask(self, name, group_at):
+        width, height, depth = self.SIZE
+        path = self.folder / name
+        path.write_bytes(bytes(group_at(x, y, z) for z in range(depth) for y in range(height) for x in range(width)))
+        return path
+
+    def trace(self, name, chains, radius=1.5):
+        path = self.folder / name
+        path.write_text(trace_text(chains, radius))
+        return path
+
+    def evaluate(self, *arguments):
+        return self.check_json("evaluate", *arguments)
+
+    def test_dice_of_two_bare_masks_needs_no_volume(self):
+        truth = self.mask("truth.mask", lambda x, y, z: 1 if x < 8 else 2 if x < 16 else 0)
+        mine = self.mask("mine.mask", lambda x, y, z: 1 if x < 4 else 2 if x < 12 else 0)
+        for arguments in [(), ("--volume", self.session)]:
+            result = self.evaluate("--truth-mask", truth, "--mask", mine, *arguments)
+            self.assert_keys(result, KEYS)
+            self.assertAlmostEqual(result["dice"], 2 * 12 / 28)
+            self.assertAlmostEqual(result["dice_by_group"]["1"], 2 * 4 / 12)
+            self.assertAlmostEqual(result["dice_by_group"]["2"], 2 * 4 / 16)
+            self.assertIsNone(result["node_score"])
+
+    def test_a_trace_is_scored_in_the_true_mask_and_against_the_true_trace(self):
+        truth_mask = self.mask("truth.mask", lambda x, y, z: int(8 <= z < 12))
+        truth = self.trace("truth.txt", self.TRUTH)
+        arguments = ["--truth-mask", truth_mask, "--truth-trace", truth, "--volume", self.session]
+        result = self.evaluate(*arguments, "--trace", truth)
+        self.assertEqual((result["node_score"], result["internode_score"]), (1, 1))
+        nodes = truth.read_text().count("-v")
+        self.assertEqual((result["node_out"], result["internode_out"]), ([0, nodes], [0, nodes - 1]))
+        self.assertEqual((result["segments"], result["topological_errors"]), ([3, 3], 0))
+        self.assertAlmostEqual(result["centreline_rms_um"], 0, places=6)
+
+        # One arm is missing, and one is linked to where nothing is.
+        mine = self.trace("mine.txt", self.TRUTH[:2] + [((4, 12, 10), (4, 12, 18))])
+        result = self.evaluate(*arguments, "--trace", mine)
+        self.assertEqual((result["segments"], result["topological_errors"]), ([2, 3], 1))
+        self.assertEqual(result["topological_errors_by_kind"], {"wrong": 1, "doubled": 0, "gaps": 0})
+        # Nodes at z 10 are inside, those at 12 half or less, those at 14, 16 and 18 outside.
+        self.assertEqual(result["node_out"][1], mine.read_text().count("-v"))
+        self.assertGreaterEqual(result["node_out"][0], 3)
+
+    def test_a_trace_one_voxel_beside_the_truth(self):
+        truth_mask = self.mask("truth.mask", lambda x, y, z: 1)
+        truth = self.trace("truth.txt", self.TRUTH)
+        moved = self.trace("moved.txt", [tuple((x, y, z + 1) for x, y, z in chain) for chain in self.TRUTH])
+        result = self.evaluate("--truth-mask", truth_mask, "--truth-trace", truth, "--trace", moved,
+                               "--volume", self.session)
+        self.assertAlmostEqual(result["centreline_rms_um"], 1000, places=6)  # a voxel of 1 mm
+        self.assertEqual((result["segments"], result["topological_errors"]), ([3, 3], 0))
+        thin = self.trace("thin.txt", [tuple((x, y, z + 1) for x, y, z in chain) for chain in self.TRUTH], 0)
+        none = self.trace("none.txt", self.TRUTH, 0)
+        result = self.evaluate("--truth-mask", truth_mask, "--truth-trace", none, "--trace", thin,
+                               "--volume", self.session, "--slack", "0.5")
+        self.assertEqual((result["segments"], result["topological_errors"]), ([0, 3], 3))
+
+    def test_what_is_missing_or_does_not_fit_is_said(self):
+        mask = self.mask("a.mask", lambda x, y, z: 1)
+        trace = self.trace("a.txt", self.TRUTH)
+        self.check_refused("evaluate", "--truth-mask", mask, status=2, says=["--mask", "--trace"])
+        self.check_refused("evaluate", "--truth-mask", mask, "--trace", trace, status=2, says=["--volume"])
+        self.check_refused("evaluate", "--truth-mask", mask, "--mask", mask, "--truth-trace", trace, status=2)
+        (self.folder / "short.mask").write_bytes(bytes(7))
+        self.check_refused("evaluate", "--truth-mask", mask, "--mask", self.folder / "short.mask",
+                           says=["short.mask", "7 bytes", str(32 * 24 * 20)])
+        self.check_refused("evaluate", "--truth-mask", self.folder / "no.mask", "--mask", mask, says=["no.mask"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,153 @@
+"""shvr export: what other programs get, read back by shvr or in plain Python."""
+import csv
+import math
+import struct
+import unittest
+
+from harness import CliTest, Volume
+
+KEYS = ["written", "voxels_by_group", "nodes", "internodes", "length_um_by_group"]
+
+
+def node(x, y, z, radius=2, group=1):
+    return {"op": "node", "at": [x, y, z], "radius": radius, "group": group}
+
+
+class Export(CliTest):
+    SIZE = [24, 20, 40]
+    SPACING = [0.5, 1.0, 2.0]
+
+    def setUp(self):
+        super().setUp()
+        self.session = self.write_session(
+            volume={"procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
+        script = self.write_script("script.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "box", "group": 3, "threshold": 0, "radius": 6,
+             "path": [[5, 5, 33]]},
+            node(2, 2, 2), node(8, 2, 2, 2, 4), node(8, 6, 2, 2, 4), {"op": "select", "node": 1}, node(8, 2, 4),
+            {"op": "save"}])
+        self.check("annotate", self.session, "--script", script)
+
+    def export(self, *arguments, status=0):
+        if status:
+            return self.check_refused("export", self.session, *arguments, status=status)
+        return self.check_json("export", self.session, *arguments)
+
+    def test_keys_and_figures(self):
+        result = self.export()
+        self.assert_keys(result, KEYS)
+        self.assertEqual(result["written"], [])
+        self.assertEqual((result["nodes"], result["internodes"]), (4, 3))
+        # 6 voxels of 0.5 mm; 4 of 1 mm and 2 of 2 mm.
+        self.assertEqual(result["length_um_by_group"], {"1": 4000, "4": 7000})
+        self.assertEqual(result["length_by_group"], {"1": 4, "4": 7})
+        self.assertEqual(result["unit"], "mm")
+        voxels = (self.folder / "paint.mask").read_bytes().count(3)
+        self.assertGreater(voxels, 0)
+        self.assertEqual(result["voxels_by_group"], {"3": voxels})
+
+    def test_masks_are_the_saved_one_and_keep_spacing_and_unit(self):
+        saved = (self.folder / "paint.mask").read_bytes()
+        for name in ["a.mask", "a.nrrd", "a.tif"]:
+            with self.subTest(name=name):
+                path = self.folder / name
+                self.assertEqual(self.export("--mask", path)["written"], [str(path)])
+                if name == "a.mask":
+                    self.assertEqual(path.read_bytes(), saved)
+                    continue
+                info = self.check_json("info", path)
+                self.assertEqual(info["size"], self.SIZE)
+                self.assertEqual(info["type"], "uint8")
+                self.assertEqual([round(s, 6) for s in info["spacing"]], self.SPACING)
+                self.assertEqual(info["unit"], "mm")
+                result = self.check_json("evaluate", "--truth-mask", path, "--mask", self.folder / "paint.mask",
+                                         "--volume", self.session)
+                self.assertEqual((result["dice"], result["dice_by_group"]), (1, {"3": 1}))
+        self.assertTrue((self.folder / "a.nrrd").read_bytes().endswith(saved))
+
+    def test_the_text_of_the_thesis(self):
+        path = self.folder / "a.txt"
+        self.export("--trace", path)
+        self.assertEqual(path.read_text(), "-v 1, 2, 4, 1, 1\n-v 4, 2, 4, 4, 1\n-v 4, 6, 4, 4, 1\n-v 4, 2, 8, 1, 1\n"
+                                           "-l 0, 1, 4\n-l 1, 2, 4\n-l 1, 3, 1\n")
+
+    def test_every_form_of_the_trace_that_is_read_gives_the_same_trace(self):
+        self.export("--trace", self.folder / "first.txt")
+        for name in ["a.txt", "a.swc", "a.graphml"]:
+            with self.subTest(name=name):
+                self.export("--trace", self.folder / name)
+                other = self.write_session(
+                    "other.json", volume={"procedural": "constant", "size": self.SIZE, "spacing": self.SPACING,
+                                          "unit": "mm"}, annotation={"trace": name})
+                self.check("export", other, "--trace", self.folder / "second.txt")
+                self.assertEqual((self.folder / "second.txt").read_text(), (self.folder / "first.txt").read_text())
+
+    def test_a_loop_is_refused_by_trees_or_broken_when_asked(self):
+        script = self.write_script("loop.jsonl", [{"op": "select", "node": 3}, {"op": "link", "near": [8, 6, 2]},
+                                                  {"op": "save"}])
+        self.check("annotate", self.session, "--script", script)
+        for name in ["a.swc", "a.rsml"]:
+            path = self.folder / name
+            self.export("--trace", path, status=1)
+            self.assertFalse(path.exists())
+            result = self.export("--trace", path, "--break-loops")
+            self.assertEqual(len(result["left_out"]), 1)
+            self.assertIn("internode 3 between nodes 3 and 2", result["left_out"][0])
+        self.assertIn("internode 3 between nodes 3 and 2", (self.folder / "a.swc").read_text())
+
+    def test_tubes(self):
+        self.export("--mesh", self.folder / "a.ply")
+        self.export("--mesh", self.folder / "a.obj")
+        data = (self.folder / "a.ply").read_bytes()
+        header, body = data.split(b"end_header\n", 1)
+        vertices = int(header.split(b"element vertex ")[1].split()[0])
+        self.assertIn(b"unit mm", header)
+        points = [struct.unpack_from("<3f", body, 12 * i) for i in range(vertices)]
+        text = [tuple(map(float, line.split()[1:])) for line in (self.folder / "a.obj").read_text().splitlines()
+                if line.startswith("v ")]
+        self.assertEqual(len(text), vertices)
+        self.assertTrue(all(math.isclose(a, b, abs_tol=1e-5) for p, q in zip(points, text) for a, b in zip(p, q)))
+        # Radius 1 around nodes from (1, 2, 4) to (4, 6, 8).
+        self.assertAlmostEqual(min(p[0] for p in points), 0, delta=0.2)
+        self.assertAlmostEqual(max(p[2] for p in points), 9, delta=0.2)
+
+    def test_measures(self):
+        path = self.folder / "a.csv"
+        self.export("--metrics", path)
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["item", "number", "group", "measure", "value", "unit"])
+        self.assertTrue(all(row["unit"] for row in rows))
+        values = {(row["item"], row["number"], row["group"], row["measure"]): float(row["value"]) for row in rows}
+        self.assertEqual(values["mask", "", "3", "components"], 1)
+        self.assertEqual(values["mask", "", "3", "loops"], 0)
+        self.assertEqual(values["trace", "", "", "branches"], 1)
+        self.assertEqual(values["trace", "", "4", "length"], 7)
+        self.assertEqual(values["segment", "0", "4", "length"], 3)
+        self.assertEqual(values["segment", "0", "4", "tortuosity"], 1)
+        self.assertEqual([row["value"] for row in rows if row["measure"] == "angle"], ["90", "90", "90"])
+        self.assertEqual({row["unit"] for row in rows if row["measure"] == "length"}, {"mm"})
+
+    def test_a_project_is_exported(self):
+        header = Volume((8, 8, 8), [100] * 512).write(self.folder)
+        self.check("import", header, self.folder / "project")
+        script = self.write_script("script.jsonl", [node(2, 2, 2), node(4, 2, 2), {"op": "save"}])
+        self.check("annotate", self.folder / "project", "--script", script)
+        result = self.check_json("export", self.folder / "project", "--trace", self.folder / "p.swc")
+        self.assertEqual((result["nodes"], result["internodes"]), (2, 1))
+
+    def test_wrong_usage_writes_nothing(self):
+        for option, name in [("--mask", "a.png"), ("--trace", "a.obj"), ("--mesh", "a.swc"), ("--metrics", "a.txt")]:
+            with self.subTest(option=option):
+                stderr = self.export("--trace", self.folder / "b.txt", option, self.folder / name, status=2) \
+                    if option != "--trace" else self.export(option, self.folder / name, status=2)
+                self.assertIn("ends in one of", stderr)
+                self.assertFalse((self.folder / "b.txt").exists())
+        (self.folder / "paint.graphml").unlink()
+        stderr = self.export("--trace", self.folder / "b.txt", status=1)
+        self.assertIn("paint.graphml", stderr)
+        self.assertEqual(self.export()["nodes"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

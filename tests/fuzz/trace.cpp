@@ -1,0 +1,36 @@
+// A trace: the first byte says which form the rest is. What opens is written in every form and read again.
+
+#include "engine/annotation/measures.h"
+#include "engine/annotation/trace_file.h"
+#include "tests/fuzz/support/attempt.h"
+#include "tests/fuzz/support/input_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    using namespace shvr;
+    using namespace shvr::fuzz;
+    if (size < 1) return 0;
+    const char* const names[] = {"a.graphml", "a.txt", "a.swc"};
+    const InputFolder& folder = input_folder();
+    folder.clear();
+    const auto file = folder.write(names[data[0] % 3], text_of({data + 1, size - 1}));
+    accepts([&] {
+        const TraceFile opened = load_trace(file, {});
+        const TraceGraph& trace = opened.trace;
+        const TraceSpace space = opened.space.value_or(TraceSpace{{4, 4, 4}, {1.0, 1.0, 1.0}, "um"});
+        save_trace(folder.path() / "b.graphml", trace, space);
+        expect(load_trace(folder.path() / "b.graphml", space).trace == trace, "a trace that GraphML does not keep");
+        save_trace(folder.path() / "b.txt", trace, space);
+        const TraceGraph renumbered = load_trace(folder.path() / "b.txt", space).trace;
+        expect(renumbered.nodes().size() == trace.nodes().size(), "a trace that the thesis's text does not keep");
+        save_trace(folder.path() / "b.swc", trace, space, Loops::break_open);
+        const TraceGraph tree = load_trace(folder.path() / "b.swc", space).trace;
+        const Topology topology = topology_of(trace);
+        expect(topology_of(tree) == Topology{topology.components, 0, 0}, "a trace whose trees SWC does not keep");
+        save_trace(folder.path() / "b.rsml", trace, space, Loops::break_open);
+        size_t internodes = 0;
+        for (const SegmentMeasures& segment : measure(trace).segments) internodes += segment.internodes;
+        expect(internodes == trace.internodes().size(), "an internode that belongs to no segment, or to two");
+    });
+    return 0;
+}

@@ -1,0 +1,142 @@
+// shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
+
+#include "engine/annotation/mask_export.h"
+#include "engine/annotation/mask_file.h"
+#include "engine/annotation/measures.h"
+#include "engine/annotation/trace_mesh.h"
+#include "engine/base/atomic_file.h"
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+namespace {
+
+struct Options {
+    Common common;
+    std::string project, mask, trace, mesh, metrics;
+    bool break_loops = false;
+};
+
+void check_extension(const char* option, const std::string& path, const std::vector<std::string>& known)
+{
+    if (path.empty()) return;
+    std::string all;
+    for (const std::string& extension : known) {
+        if (std::filesystem::path(path).extension() == extension) return;
+        all += (all.empty() ? "" : ", ") + extension;
+    }
+    throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
+}
+
+/// The saved mask, or an unpainted one.
+Mask saved_mask(const Session& session, const Size3& size)
+{
+    Mask mask(size);
+    if (!session.mask_path.empty() && std::filesystem::exists(session.mask_path))
+        for (const MaskBrickChange& change : load_mask(session.mask_path, size))
+            mask.apply(change, Direction::forwards);
+    return mask;
+}
+
+TraceGraph saved_trace(const Session& session, const TraceSpace& space, bool is_needed)
+{
+    if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
+        return load_trace(session.trace_path, space).trace;
+    if (is_needed)
+        fail(session.trace_path.empty() ? "the session" : session.trace_path.string(),
+             session.trace_path.empty() ? ": names no trace; expected the key annotation.trace"
+                                        : ": does not exist; expected the trace that shvr annotate saves");
+    return {};
+}
+
+/// Of all that is painted (-1), and of each group.
+std::map<int, Topology> topology_by_group(const Mask& mask)
+{
+    std::map<int, Topology> topology{{-1, topology_of(mask)}};
+    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group)
+        if (voxels[size_t(group)] > 0) topology[group] = topology_of(mask, uint8_t(group));
+    return topology;
+}
+
+Json to_json(const std::vector<std::string>& written, const Mask& mask, const TraceGraph& trace,
+             const TraceSpace& space, const std::vector<std::string>& left_out)
+{
+    const TraceMeasures measures = measure(trace);
+    const std::optional<double> micrometres = micrometres_in(space.unit);
+    Json voxels = Json::object(), lengths = Json::object(), lengths_um = Json::object();
+    const std::array<int64_t, 256> counts = mask.voxels_by_group();
+    for (size_t group = 1; group < 256; ++group)
+        if (counts[group] > 0) voxels[std::to_string(group)] = counts[group];
+    for (const auto& [group, length] : measures.length_by_group) {
+        lengths[std::to_string(group)] = length;
+        if (micrometres) lengths_um[std::to_string(group)] = length * *micrometres;
+    }
+    return {{"written", written},
+            {"voxels_by_group", voxels},
+            {"nodes", trace.nodes().size()},
+            {"internodes", trace.internodes().size()},
+            {"length_um_by_group", micrometres ? lengths_um : Json(nullptr)},
+            {"length_by_group", lengths},
+            {"unit", space.unit},
+            {"left_out", left_out}};
+}
+
+void run(const Options& options)
+{
+    check_extension("--mask", options.mask, {".mask", ".nrrd", ".tif", ".tiff"});
+    check_extension("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
+    check_extension("--mesh", options.mesh, {".obj", ".ply"});
+    check_extension("--metrics", options.metrics, {".csv"});
+    const OpenedSession opened = open_session(options.project, options.common.settings);
+    warn(opened.source->info().warnings, options.common);
+    const TraceSpace space = space_of(opened.source->info());
+    const Mask mask = saved_mask(opened.session, space.size);
+    const TraceGraph trace = saved_trace(opened.session, space, !options.trace.empty() || !options.mesh.empty());
+
+    std::vector<std::string> written, left_out;
+    const auto wrote = [&](const std::string& path) {
+        written.push_back(path);
+        say(options.common, "wrote " + path);
+    };
+    if (!options.trace.empty()) {
+        left_out = save_trace(options.trace, trace, space, options.break_loops ? Loops::break_open : Loops::refuse);
+        warn(left_out, options.common);
+        wrote(options.trace);
+    }
+    if (!options.mask.empty()) {
+        export_mask(options.mask, mask, space);
+        wrote(options.mask);
+    }
+    if (!options.mesh.empty()) {
+        save_trace_mesh(options.mesh, trace, space);
+        wrote(options.mesh);
+    }
+    if (!options.metrics.empty()) {
+        const std::string text = metrics_csv(measure(trace), mask.voxels_by_group(), topology_by_group(mask), space);
+        write_file_atomically(options.metrics, std::as_bytes(std::span(text)));
+        wrote(options.metrics);
+    }
+    if (options.common.json) print(to_json(written, mask, trace, space, left_out));
+}
+
+}  // namespace
+
+void add_export(CLI::App& program)
+{
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("export", "Writes mask, trace and measures for other programs");
+    command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
+    command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif)");
+    command->add_option("--trace", options->trace, "Nodes and internodes (.graphml, .txt, .swc, .rsml)");
+    command->add_flag("--break-loops", options->break_loops,
+                      "Open each loop where its last internode closed it, for .swc and .rsml, which hold trees");
+    command->add_option("--mesh", options->mesh, "The trace as tubes (.obj, .ply)");
+    command->add_option("--metrics", options->metrics, "Counts, lengths, angles, radii, topology (.csv)");
+    add_input_options(*command, options->common);
+    add_output_options(*command, options->common);
+    command->footer("Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace shvr::cli
