@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
 #include <imgui/imgui.h>
 
+#include "engine/base/assets.h"
 #include "engine/base/image_file.h"
 #include "haptics/hid_device.h"
 
@@ -29,20 +29,6 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
 }
 
-/// $SHVR_ASSETS/devices, or what lies where the program was installed or built. Empty where there is none.
-std::filesystem::path device_profile_folder()
-{
-    std::vector<std::filesystem::path> candidates;
-    if (const char* assets = std::getenv("SHVR_ASSETS")) candidates.emplace_back(assets);
-    std::error_code unknown;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
-    candidates.push_back(program / "../share/shvr");
-    candidates.push_back(program / "../../assets");
-    for (const std::filesystem::path& candidate : candidates)
-        if (std::filesystem::is_directory(candidate / "devices")) return candidate / "devices";
-    return {};
-}
-
 }  // namespace
 
 App::App(const AppOptions& options) : options_(options), window_("SHVR", options.window_size)
@@ -55,6 +41,11 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     set_style(window_.content_scale());
     window_.attach(renderer_->device(), renderer_->memory());
     attached_.reset(&window_);
+    try {
+        presets_ = transfer_presets();
+    } catch (const Error& error) {
+        say(error.what());
+    }
     if (!options.input.empty())
         open(options.input, options.settings);
     else
@@ -94,7 +85,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
 std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 {
     try {
-        const std::filesystem::path profiles = device_profile_folder();
+        const std::filesystem::path profiles = asset_folder("devices");
         return profiles.empty() ? nullptr : open_hid_device(load_hid_profiles(profiles), options_.allow_force);
     } catch (const Error& error) {
         said = error.what();
@@ -351,6 +342,7 @@ Model App::model()
         .statistics = document.statistics,
         .cameras = document.cameras(),
         .panes = document.screen.parts(),
+        .presets = presets_,
         .brush = document.brush,
         .haptic_threshold = document.haptic_threshold,
         .probe_voxel = document.probe_voxel(),

@@ -130,6 +130,7 @@ private:
     std::unique_ptr<Window, Detach> attached_;  ///< the window lets go of the device before that goes
     std::unique_ptr<Document> document_;
     Viewport viewport_;
+    std::vector<TransferPreset> presets_;
     Actions actions_;
     bool shows_help_ = false;
     bool look_is_stale_ = true;

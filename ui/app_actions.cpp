@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/image_file.h"
+#include "engine/scene/trace_look.h"
 #include "ui/app.h"
 
 namespace shvr::ui {
@@ -163,6 +164,7 @@ void App::apply(const SetGroup& action)
 {
     document_->session.groups[action.group] = action.settings;
     document_->is_saved = false;
+    show_surfaces(*renderer_, document_->session, document_->annotator.document().trace);
     look_again();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/atomic_file.h"
+#include "engine/scene/trace_look.h"
 
 namespace shvr::ui {
 
@@ -23,7 +24,6 @@ std::filesystem::path session_path_of(const std::filesystem::path& input)
 void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
     renderer.load(source, opened.statistics, opened.session.render);
-    renderer.set_surfaces(opened.session.surfaces);
 }
 
 }  // namespace
@@ -45,6 +45,9 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         session.mask_path.replace_extension(".mask");
     }
     if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
+    if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
+        annotator.load_trace(session.trace_path);
+    show_surfaces(renderer, session, annotator.document().trace);
     const ProbeSettings& probe = session.probe;
     const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
     brush = {.brush = probe.brush,

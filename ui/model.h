@@ -9,6 +9,7 @@
 #include "engine/scene/annotator.h"
 #include "engine/scene/screen.h"
 #include "engine/scene/session.h"
+#include "engine/scene/transfer_presets.h"
 #include "haptics/servo.h"
 
 namespace shvr::ui {
@@ -20,6 +21,7 @@ struct Model {
     std::vector<std::string> cameras;  ///< names that LookFrom takes
 
     const std::vector<Screen::Part>& panes;
+    const std::vector<TransferPreset>& presets;
 
     // The probe
     const PaintOp& brush;  ///< the group it paints, its radius, its threshold

@@ -368,6 +368,21 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     if (changed) send(std::move(points), actions);
 }
 
+/// Replaces the whole function by one that is made for the volume.
+void preset_list(const Model& model, Actions& actions)
+{
+    ImGui::SetNextItemWidth(-1.0f);
+    if (!ImGui::BeginCombo("##presets", "Start from ...")) return;
+    if (ImGui::Selectable("the histogram"))
+        actions.push_back(SetTransferFunction{automatic_transfer_function(model.statistics)});
+    for (const TransferPreset& preset : model.presets) {
+        if (ImGui::Selectable(preset.name.c_str()))
+            actions.push_back(SetTransferFunction{transfer_function_of(preset, model.statistics)});
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.note.c_str());
+    }
+    ImGui::EndCombo();
+}
+
 }  // namespace
 
 void transfer_function_panel(const Model& model, Actions& actions)
@@ -375,10 +390,9 @@ void transfer_function_panel(const Model& model, Actions& actions)
     static WidgetState state;
     const TransferFunction& function = model.session.transfer_function;
     const size_t count = function.points().size();
+    if (!model.statistics.histogram.empty()) preset_list(model, actions);
     if (count < 2) {
         ImGui::TextWrapped("There is no transfer function, so nothing is seen.");
-        if (!model.statistics.histogram.empty() && ImGui::Button("Make one"))
-            actions.push_back(SetTransferFunction{automatic_transfer_function(model.statistics)});
     } else {
         state.selected = std::min(state.selected, count - 1);
         const size_t edited = state.selected;  // of the points as they are in this frame

@@ -1,6 +1,7 @@
 #include "engine/scene/session.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/scene/session_color.h"
 #include "engine/scene/session_json.h"
+#include "engine/scene/transfer_presets.h"
 
 namespace shvr {
 namespace {
@@ -61,6 +63,9 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     opened.source = open_source(opened.session);
     opened.statistics = measure(*opened.source);
     opened.warnings = warnings_of(opened.statistics);
+    if (std::string& preset = opened.session.transfer_preset; !preset.empty())
+        opened.session.transfer_function =
+            transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);
     if (!document.contains("transfer_function")) {
         TransferFunction& function = opened.session.transfer_function;
         function = automatic_transfer_function(opened.statistics);

@@ -113,6 +113,7 @@ struct Session {
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
     TransferFunction transfer_function;
+    std::string transfer_preset;  ///< `open_session` makes a function of it, and forgets it
     Groups groups;
     Light light;
     DistanceBlend blend;
@@ -122,7 +123,7 @@ struct Session {
     CutBox cut;
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
-    std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
+    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
     /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
     std::filesystem::path trace_path;
 };
@@ -144,6 +145,13 @@ OpenedSession open_session(const std::filesystem::path& path, const std::vector<
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
+
+/// Where the darker of two classes of voxels ends, the air around a scanned object (Otsu's threshold, but never less than
+/// half of all voxels), and where nine tenths of the rest lie below.
+struct TissueRange {
+    double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
+};
+TissueRange tissue_range(const VolumeStatistics& statistics);
 
 /// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
 /// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.

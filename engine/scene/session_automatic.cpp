@@ -68,24 +68,32 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
     return std::clamp(0.5 * (middle + function.lower()), lower, upper);
 }
 
-TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
+TissueRange tissue_range(const VolumeStatistics& statistics)
 {
     const double minimum = statistics.range().lower;
     const double maximum = statistics.range().upper;
     const std::vector<int64_t>& histogram = statistics.histogram;
+    // Nothing tells voxels apart.
+    if (!(minimum < maximum) || histogram.size() < 4) return {minimum - 0.5, minimum + 0.5};
     const auto bins = static_cast<double>(histogram.size());
-    // Nothing tells voxels apart: a thin haze shows that there is a volume.
-    if (!(minimum < maximum) || histogram.size() < 4)
-        return TransferFunction({point(minimum - 0.5, "#808080", 0.02), point(minimum + 0.5, "#808080", 0.02)});
-
     const auto intensity_of = [&](size_t split) {
         return minimum + (maximum - minimum) * static_cast<double>(split) / bins;
     };
     const size_t median = quantile_split(histogram, 0, 0.5);
     const size_t lowest = std::min(std::max(otsu_split(histogram), median), histogram.size() - 2);
     const size_t full = std::clamp(quantile_split(histogram, lowest, FULL_QUANTILE), lowest + 1, histogram.size() - 1);
-    return TransferFunction({point(intensity_of(lowest), "#5c6066", 0.0), point(intensity_of(full), "#e8a860", 0.3),
-                             point(maximum, "#fff4e0", 0.6)});
+    return {intensity_of(lowest), intensity_of(full)};
+}
+
+TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
+{
+    const TissueRange tissue = tissue_range(statistics);
+    const auto [minimum, maximum] = statistics.range();
+    // A thin haze shows that there is a volume.
+    if (!(minimum < maximum) || statistics.histogram.size() < 4)
+        return TransferFunction({point(tissue.lower, "#808080", 0.02), point(tissue.upper, "#808080", 0.02)});
+    return TransferFunction(
+        {point(tissue.lower, "#5c6066", 0.0), point(tissue.upper, "#e8a860", 0.3), point(maximum, "#fff4e0", 0.6)});
 }
 
 }  // namespace shvr

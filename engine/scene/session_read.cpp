@@ -106,7 +106,11 @@ SideView read_side_view(const JsonNode& node)
 TransferFunction read_transfer_function(const JsonNode& node)
 {
     if (!node.exists()) return {};
-    node.expect_object({"points"});
+    node.expect_object({"points", "preset"});
+    if (node["preset"].exists()) {
+        if (node["points"].exists()) node["preset"].refuse("either points or a preset");
+        return {};
+    }
     constexpr double LARGEST = std::numeric_limits<float>::max();
     std::vector<ControlPoint> points;
     for (const JsonNode& element : node.required("points", "an array").elements()) {
@@ -436,6 +440,8 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.cameras = read_cameras(document["cameras"]);
     session.camera_name = read_camera_choice(document, json, session);
     session.transfer_function = read_transfer_function(document["transfer_function"]);
+    if (document["transfer_function"].exists())
+        session.transfer_preset = document["transfer_function"]["preset"].text("");
     session.groups = read_groups(document["groups"]);
     session.light = read_light(document["light"]);
     session.blend = read_blend(document["blend"]);

@@ -271,7 +271,10 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
         document["camera"] = is_camera_object(name) ? json::parse(name) : json(name);
     }
     document["cameras"] = write_cameras(session);
-    document["transfer_function"] = {{"points", write_points(session.transfer_function)}};
+    if (session.transfer_preset.empty())
+        document["transfer_function"] = {{"points", write_points(session.transfer_function)}};
+    else
+        document["transfer_function"] = {{"preset", session.transfer_preset}};
     document["groups"] = write_groups(session);
     document["light"] = write_light(session.light);
     document["blend"] = write_blend(session.blend);

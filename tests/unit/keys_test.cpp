@@ -20,11 +20,13 @@ struct World {
     VolumeInfo volume;
     VolumeStatistics statistics;
     std::vector<Screen::Part> panes;
+    std::vector<TransferPreset> presets;
     PaintOp brush;
     Model model{.session = session,
                 .volume = volume,
                 .statistics = statistics,
                 .panes = panes,
+                .presets = presets,
                 .brush = brush,
                 .pass_times = {}};
 };

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "engine/scene/trace_look.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
@@ -100,12 +101,12 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads});
     opened.renderer->load(opened.source, session.statistics, opened.session.render);
-    opened.renderer->set_surfaces(opened.session.surfaces);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);
     if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
         opened.annotator->load_trace(opened.session.trace_path);
+    show_surfaces(*opened.renderer, opened.session, opened.annotator->document().trace);
     return opened;
 }
 

@@ -19,8 +19,12 @@ void run(Options options)
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
     }
-    if (!options.transfer_function.empty())
-        options.common.settings.push_back("transfer_function=" + read_text(options.transfer_function, 1 << 20));
+    if (!options.transfer_function.empty()) {
+        const bool is_file = std::filesystem::exists(options.transfer_function);
+        options.common.settings.push_back("transfer_function=" +
+                                          (is_file ? read_text(options.transfer_function, 1 << 20)
+                                                   : Json{{"preset", options.transfer_function}}.dump()));
+    }
     Opened opened = open(options.input, options.common);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
@@ -65,7 +69,9 @@ void add_render(CLI::App& program)
         ->required();
     command->add_option("--size", options->size, "Pixels, as in 512x384");
     command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
-    command->add_option("--tf", options->transfer_function, "Transfer function: JSON file with its points");
+    command->add_option(
+        "--tf", options->transfer_function,
+        "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
