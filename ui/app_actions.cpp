@@ -164,7 +164,7 @@ void App::apply(const SetGroup& action)
 {
     document_->session.groups[action.group] = action.settings;
     document_->is_saved = false;
-    show_surfaces(*renderer_, document_->session, document_->annotator.document().trace);
+    show_surfaces(*renderer_, document_->surfaces, document_->annotator.document().trace, document_->session.groups);
     look_again();
 }
 

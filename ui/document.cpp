@@ -1,6 +1,7 @@
 #include "ui/document.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/scene/trace_look.h"
@@ -23,7 +24,7 @@ std::filesystem::path session_path_of(const std::filesystem::path& input)
 
 void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
-    renderer.load(source, opened.statistics, opened.session.render);
+    renderer.load(source, opened.statistics, opened.session.render, shows_occlusion(opened.session.light));
 }
 
 }  // namespace
@@ -47,7 +48,8 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
     if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
         annotator.load_trace(session.trace_path);
-    show_surfaces(renderer, session, annotator.document().trace);
+    surfaces = std::exchange(session.surfaces, {});
+    show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
     const ProbeSettings& probe = session.probe;
     const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
     brush = {.brush = probe.brush,
@@ -84,6 +86,7 @@ VoxelBox Document::voxels_around_probe() const
 Session Document::saved_session() const
 {
     Session saved = session;
+    saved.surfaces = surfaces;
     saved.cameras[WINDOW_CAMERA] = camera;
     saved.camera_name = WINDOW_CAMERA;
     saved.probe = {.voxel = probe_voxel(),

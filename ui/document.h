@@ -25,7 +25,8 @@ struct Document {
     Annotator annotator;
     Screen screen;
     Touch touch;
-    bool is_saved = true;  ///< the session and the paint
+    std::vector<SurfaceLook> surfaces;  ///< the session's; taken out of it, since views copy that at every turn
+    bool is_saved = true;               ///< the session and the paint
     bool paint_is_saved = true;
 
     /// Loads the volume and, where there is one, the mask onto the device.

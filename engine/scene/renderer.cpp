@@ -219,16 +219,17 @@ bool Renderer::filters(Sampling sampling) const
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
-bool Renderer::pages(const VolumeSource& source, Paging paging) const
+bool Renderer::pages(const VolumeSource& source, Paging paging, bool with_occlusion) const
 {
     if (paging != Paging::automatic) return paging == Paging::always;
     if (source.levels() > 1) return true;
     // What pictures need beside the volume must find room, too.
-    return ResidentVolume::bytes_for(source.info()) > memory_.device_bytes_left() / 16 * 15;
+    const uint64_t bytes = ResidentVolume::bytes_for(source.info());
+    return (with_occlusion ? 2 * bytes : bytes) > memory_.device_bytes_left() / 16 * 15;
 }
 
 void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
-                    const RenderSettings& settings)
+                    const RenderSettings& settings, bool with_occlusion)
 {
     const IntensityWindow window = window_for(source->info().type, statistics);
     occlusion_.clear();
@@ -241,7 +242,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     leap_state_.reset();
     statistics_ = statistics;
     const bool filtered = filters(settings.sampling);
-    const bool comes_and_goes = pages(*source, settings.paging);
+    const bool comes_and_goes = pages(*source, settings.paging, with_occlusion);
     mask_.clear(comes_and_goes);  // paint belongs to the volume it was painted on
     if (!comes_and_goes) {
         auto volume = std::make_unique<ResidentVolume>(executor_, memory_, *source, window, filtered, threads_);
@@ -249,10 +250,11 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
         volume_ = std::move(volume);
         return;
     }
-    const PagedVolume::Options options{.filtered = filtered,
-                                       .threads = threads_,
-                                       .host_bytes = host_budget_ / 4,
-                                       .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * 3)};
+    const PagedVolume::Options options{
+        .filtered = filtered,
+        .threads = threads_,
+        .host_bytes = host_budget_ / 4,
+        .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * (with_occlusion ? 2 : 3))};
     auto volume = std::make_unique<PagedVolume>(executor_, memory_, with_levels(std::move(source), options.host_bytes),
                                                 window, options);
     paged_ = volume.get();

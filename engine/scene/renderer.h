@@ -96,9 +96,10 @@ public:
     gpu::Executor& executor() { return executor_; }
 
     /// Replaces the volume. The statistics give the intensity window and the scale of gradients; of `settings` sampling
-    /// and paging decide how the device holds the bricks.
+    /// and paging decide how the device holds the bricks. `with_occlusion`: they leave room for ambient occlusion, which takes
+    /// about as much again.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
-              const RenderSettings& settings = {});
+              const RenderSettings& settings = {}, bool with_occlusion = false);
     DeviceVolume& volume() const;
     /// Null where bricks come and go.
     ResidentVolume* resident() const { return resident_; }
@@ -168,7 +169,7 @@ private:
         std::vector<uint32_t> visible_intervals;
     };
     bool filters(Sampling sampling) const;
-    bool pages(const VolumeSource& source, Paging paging) const;
+    bool pages(const VolumeSource& source, Paging paging, bool with_occlusion) const;
     const Table& table_of(const Session& session, double step_voxels);
     Visibility visibility_of(const Session& session);
     double gradient_fade_codes(const Session& session) const;
@@ -222,6 +223,9 @@ private:
     uint32_t leap_stage_ = 0;  ///< the next of LEAP_STAGES
     CellBox leap_changed_;     ///< the cells that the stages are about
 };
+
+/// Whether the light of a session makes ambient occlusion.
+bool shows_occlusion(const Light& light);
 
 /// Entries of the transfer function's table on the device.
 inline constexpr uint32_t TABLE_ENTRIES = gpu::TABLE_WIDTH * gpu::TABLE_HEIGHT;

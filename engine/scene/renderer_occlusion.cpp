@@ -6,15 +6,10 @@
 
 namespace shvr {
 
-namespace {
-
-/// Whether it makes a difference.
 bool shows_occlusion(const Light& light)
 {
     return light.shaded && light.ambient > 0.0 && light.occlusion.strength > 0.0;
 }
-
-}  // namespace
 
 Occlusion::Look Renderer::occlusion_look(const Session& session)
 {

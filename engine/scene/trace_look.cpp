@@ -32,10 +32,9 @@ std::vector<SurfaceLook> surfaces_of(const TraceGraph& trace, const Groups& grou
     return surfaces;
 }
 
-void show_surfaces(Renderer& renderer, const Session& session, const TraceGraph& trace)
+void show_surfaces(Renderer& renderer, std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups)
 {
-    std::vector<SurfaceLook> surfaces = session.surfaces;
-    const std::vector<SurfaceLook> of_trace = surfaces_of(trace, session.groups, renderer.volume().info().spacing);
+    const std::vector<SurfaceLook> of_trace = surfaces_of(trace, groups, renderer.volume().info().spacing);
     surfaces.insert(surfaces.end(), of_trace.begin(), of_trace.end());
     renderer.set_surfaces(surfaces);
 }

@@ -13,7 +13,8 @@ namespace shvr {
 /// axis.
 std::vector<SurfaceLook> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
-/// The surfaces of the session and of the trace, from now on.
-void show_surfaces(Renderer& renderer, const Session& session, const TraceGraph& trace);
+/// Pictures show these surfaces and those of the trace, from now on.
+void show_surfaces(Renderer& renderer, std::vector<SurfaceLook> surfaces, const TraceGraph& trace,
+                   const Groups& groups);
 
 }  // namespace shvr

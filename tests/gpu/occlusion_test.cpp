@@ -453,6 +453,13 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
     CHECK(without.image.rgba == plain.image.rgba);
     CHECK(renderer.render(session, camera).warnings.empty());
+    // Told in time, the volume leaves room: its bricks come and go.
+    renderer.load(source, measure(*source), session.render, true);
+    REQUIRE(renderer.paged() != nullptr);
+    const Picture with = renderer.render(session, camera);
+    CHECK(with.complete);
+    CHECK(with.warnings.empty());
+    CHECK(with.image.rgba != plain.image.rgba);
     // Smaller volumes have room.
     const std::shared_ptr<const VolumeSource> small = open_procedural({.kind = "tubes", .size = Size3(64)});
     renderer.load(small, measure(*small), session.render);

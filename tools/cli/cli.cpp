@@ -100,13 +100,14 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
         Renderer::Options{.device = {common.device, validation && *validation == '1'},
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads});
-    opened.renderer->load(opened.source, session.statistics, opened.session.render);
+    opened.renderer->load(opened.source, session.statistics, opened.session.render,
+                          shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);
     if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
         opened.annotator->load_trace(opened.session.trace_path);
-    show_surfaces(*opened.renderer, opened.session, opened.annotator->document().trace);
+    show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
     return opened;
 }
 
