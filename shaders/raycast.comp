@@ -3,7 +3,8 @@
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
 //   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
-// variants: PAGED FILTERED MASKED OCCLUDED
+//   SURFACED   rays end at opaque surfaces (surfaces.comp)
+// variants: PAGED FILTERED MASKED OCCLUDED SURFACED
 //
 // Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
@@ -18,22 +19,26 @@
 #ifdef OCCLUDED
 #include "occlusion.h"
 #endif
+#ifdef SURFACED
+#include "surfaces.h"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint SHADED = 1u;
 layout(constant_id = 1) const uint COUNT_WORK = 0u;
-// A group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels; rows of bricks lie along x in memory, so a wider
-// group uses more of each cache line on devices whose images are linear.
+// Rows of bricks lie along x in memory, so a wider group of pixels uses more of each cache line on devices whose images are
+// linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-layout(constant_id = 4) const uint PROBE = 0u;
 // Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
-layout(constant_id = 5) const uint PICK = 0u;
+layout(constant_id = 4) const uint PICK = 0u;
 // Notes which bricks rays reach. A picture that is complete does without.
-layout(constant_id = 6) const uint FEEDBACK = 0u;
-layout(constant_id = 7) const uint DISTANCE_BLEND = 0u;
+layout(constant_id = 5) const uint FEEDBACK = 0u;
+layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 // Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
-layout(constant_id = 8) const uint SLICE = 0u;
+layout(constant_id = 7) const uint SLICE = 0u;
+// An iso-surface in the region around the probe (shell.glsl).
+layout(constant_id = 8) const uint SHELL = SHELL_NONE;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
@@ -56,7 +61,11 @@ layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
 layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
 #endif
+#ifdef SURFACED
+layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
+#endif
 
+#include "rays.glsl"
 #include "counters.glsl"
 #ifdef MASKED
 #ifdef PAGED
@@ -242,24 +251,7 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
-// Length along the ray to the probe's ball; far beyond any volume where the ray misses it.
-float length_to_probe(const RaycastParams params, const Ray ray)
-{
-    const vec3 direction = ray.direction * params.spacing;  // of length 1
-    const vec3 from_center = (ray.origin - params.probe_center) * params.spacing;
-    const float middle = -dot(from_center, direction);
-    // From the ray's nearest point, not from the origin: b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
-    const vec3 nearest = from_center + middle * direction;
-    const float half_chord_squared = params.probe_radius * params.probe_radius - dot(nearest, nearest);
-    const float half_chord = sqrt(max(half_chord_squared, 0.0));
-    return half_chord_squared < 0.0 || middle + half_chord < 0.0 ? 1e30 : max(middle - half_chord, 0.0);
-}
-
-vec4 probe_look(const RaycastParams params, const Ray ray, float s)
-{
-    const vec3 at = (ray.origin + s * ray.direction - params.probe_center) * params.spacing;
-    return vec4(lit(params, params.ambient, params.probe_color, at / params.probe_radius, 1.0, ray.half_way), 1.0);
-}
+#include "shell.glsl"
 
 uint bricks_between(vec3 a, vec3 b)
 {
@@ -270,15 +262,13 @@ uint bricks_between(vec3 a, vec3 b)
 void main()
 {
     const RaycastParams params = params_block.data;
-    const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);
-    const uvec2 in_group = uvec2(gl_LocalInvocationIndex % GROUP_WIDTH, gl_LocalInvocationIndex / GROUP_WIDTH);
-    const uvec2 in_part = gl_WorkGroupID.xy * group_size + in_group;
+    const uvec2 in_part = thread_in_part();
     const uvec2 pixel = params.pixel_begin + in_part;
     if (any(greaterThanEqual(pixel, params.pixel_end))) return;
 
     const vec2 centre = vec2(pixel) + 0.5;
-    const vec3 near = params.near_corner + centre.x * params.near_dx + centre.y * params.near_dy;
-    const vec3 far = params.far_corner + centre.x * params.far_dx + centre.y * params.far_dy;
+    const vec3 near = on_plane(params.near_corner, params.near_dx, params.near_dy, centre);
+    const vec3 far = on_plane(params.far_corner, params.far_dx, params.far_dy, centre);
     const vec3 physical = (far - near) * params.spacing;
     const float length_to_far = length(physical);
     Ray ray;
@@ -299,8 +289,10 @@ void main()
                                   still.z && (near.z < params.box_lower.z || near.z > params.box_upper.z)));
     const float begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
     float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
-    const float probe = PROBE != 0u ? length_to_probe(params, ray) : 1e30;
-    if (PROBE != 0u) end = min(end, max(probe, begin));
+#ifdef SURFACED
+    const vec4 surface = imageLoad(surfaces, ivec3(in_part, 0));
+    end = min(end, max(surface.a, begin));
+#endif
 
     vec4 sum = vec4(0.0);
     Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
@@ -312,6 +304,9 @@ void main()
 
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(extent / params.step);
+
+    Shell shell = Shell(NO_SHELL, 0.0, 0.0, false);
+    if (SHELL != SHELL_NONE) shell = begin_shell(params, ray, begin, end);
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // loop of its own, and lanes meet again at the costly sample.
@@ -328,6 +323,8 @@ void main()
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (place.distance > 0u && i < steps);
+        if (SHELL != SHELL_NONE && i < steps)
+            add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
         if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
         ++i;
@@ -335,6 +332,7 @@ void main()
 
     // The rest of the ray is a step of its own, shorter and so more transparent.
     const float rest = extent - float(steps) * params.step;
+    if (SHELL != SHELL_NONE) add_shells(params, ray, end - 0.5 * rest, shell, sum);
     if (rest > 0.0 && sum.a < params.opacity_limit) {
         const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
         const Place place = place_at(params, position);
@@ -346,10 +344,18 @@ void main()
         }
     }
 
-    if (PROBE != 0u && probe < length_to_far && sum.a < params.opacity_limit) accumulate(sum, probe_look(params, ray, probe));
+    if (SHELL != SHELL_NONE) add_shells(params, ray, NO_SHELL, shell, sum);
+
+    const bool is_stopped = sum.a >= params.opacity_limit;
+#ifdef SURFACED
+    if (!is_stopped && surface.a < NO_SURFACE) accumulate(sum, vec4(surface.rgb, 1.0));
+#endif
 
     if (PICK != 0u) {
-        const vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
+        vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
+#ifdef SURFACED
+        if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may lie outside the volume
+#endif
         imageStore(color, ivec3(params.target + in_part, 0), sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
         return;
     }

@@ -12,6 +12,11 @@ SHARED_CONST uint TABLE_HEIGHT = 16u;
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess where that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
+/// The specialization constant SHELL: no iso-surface, or where there is one.
+SHARED_CONST uint SHELL_NONE = 0u;
+SHARED_CONST uint SHELL_BALL = 1u;
+SHARED_CONST uint SHELL_BOX = 2u;
+
 struct RaycastParams {
     // The ray of a pixel joins two points on planes close to the volume, made in double on the CPU; voxel space.
     vec3 near_corner;
@@ -47,9 +52,6 @@ struct RaycastParams {
     float specular;
     float shininess;
     float gradient_fade;  ///< codes per reference length
-    vec3 probe_center;    ///< voxel space; the probe is a ball that rays stop at
-    float probe_radius;   ///< reference lengths
-    vec3 probe_color;     ///< linear light
     vec4 depth_plane;     ///< dot(xyz, voxel) + w: 0 where the drawn box begins along the view, 1 where it ends
     vec3 blend_color;     ///< linear light
     float blend_size;     ///< distance blending: its share at depth 1
@@ -57,6 +59,11 @@ struct RaycastParams {
     float slice_black;    ///< slices: the code that is black
     float slice_scale;    ///< 1 / (codes from black to white)
     float slice_paint;    ///< how much of a painted voxel's colour is its group's
+    vec3 shell_center;    ///< voxel space; of the region with an iso-surface
+    vec3 shell_reach;     ///< voxels; half of a box, or the ball's radius along each axis
+    float shell_code;     ///< what the surface is at
+    vec3 shell_color;     ///< linear light
+    float shell_opacity;  ///< of one crossing
 };
 
 /// What a voxel of a colour group looks like, for one step.

@@ -13,7 +13,7 @@
 
 namespace shvr::ui {
 
-// ---- Looking. Angles in degrees, pixels are those of the graphics window.
+// ---- Looking. Angles in degrees; pixels are those of a pane, counted as in Screen::parts.
 struct Orbit {
     double right_degrees = 0.0, up_degrees = 0.0;
 };
@@ -25,8 +25,17 @@ struct Move {
     glm::dvec3 heights{0.0};
 };
 struct Zoom {
+    size_t pane = 0;
     glm::dvec2 pixel{0.0};
     double factor = 1.0;
+};
+/// Moves the camera in the plane of a map, so that it goes along with the mouse.
+struct DragInMap {
+    size_t pane = 0;
+    glm::dvec2 pixels{0.0};
+};
+struct SetView {
+    ViewSettings view;
 };
 struct LookFrom {
     std::string camera;  ///< a camera of the session, or a side
@@ -65,12 +74,15 @@ struct UpdateOcclusion {};  ///< renews it where it is not renewed by itself
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
+    size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 struct ProbeOnto {  ///< onto what is seen there
+    size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
-struct PushProbe {  ///< away from the viewer, in voxels
+struct PushProbe {  ///< away from the viewer of a pane, in voxels
+    size_t pane = 0;
     double voxels = 0.0;
 };
 struct ScaleProbe {
@@ -79,6 +91,10 @@ struct ScaleProbe {
 /// Everything about the brush but its path and group: shape, radius, threshold, connectivity.
 struct SetBrush {
     PaintOp brush;
+};
+struct ShowShell {  ///< an iso-surface at the paint threshold around the probe
+    bool on = true;
+    double opacity = 0.4;
 };
 struct ChooseGroup {
     uint8_t group = 1;
@@ -109,10 +125,11 @@ struct ShowHelp {
 };
 struct Quit {};
 
-using Action = std::variant<Orbit, Roll, Move, Zoom, LookFrom, MoveCut, MoveClip, ResetCuts, SetTransferFunction,
-                            SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto, PushProbe,
-                            ScaleProbe, SetBrush, ChooseGroup, Paint, SetHapticThreshold, Assist, SetProxyLaw, Undo,
-                            Redo, Save, Screenshot, Open, ShowHelp, Quit>;
+using Action =
+    std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
+                 SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto,
+                 PushProbe, ScaleProbe, SetBrush, ShowShell, ChooseGroup, Paint, SetHapticThreshold, Assist,
+                 SetProxyLaw, Undo, Redo, Save, Screenshot, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -139,25 +139,26 @@ bool App::something_moves() const
     if (window_.now_s() < ui_until_s_ || !unanswered_s_.empty()) return true;
     if (!document_) return false;
     constexpr double STIR_VOXELS = 0.05;
-    return look_is_stale_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
+    return look_is_stale_ || camera_moved_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
 }
 
 /// When the interface should be drawn next, as far as is known: at once, a little later, or not at all.
 double App::next_reason_to_draw_s() const
 {
     // Until there is something to see, the device is there for the first picture.
-    const bool waits_for_picture = document_ && !document_->view.shown_camera() && viewport_.pixels().x > 0;
+    const bool waits_for_picture = document_ && !document_->screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && unanswered_s_.empty()) return last_begun_s_ + SHARPEN_S;
     if (something_moves()) return 0.0;
     const bool sharpens_or_tells =
-        document_ && (document_->view.revision() != drawn_revision_ || document_->assistance);
+        document_ && (document_->screen.revision() != drawn_revision_ || document_->assistance);
     return sharpens_or_tells ? last_begun_s_ + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
 
 double App::time_to_wait() const
 {
-    const bool has_work = document_ && (!document_->view.complete() || document_->annotator.stroke_is_running() ||
-                                        document_->assistance || look_is_stale_ || screenshot_.valid());
+    const bool has_work =
+        document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
+                      document_->assistance || look_is_stale_ || camera_moved_ || screenshot_.valid());
     const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
     return std::clamp(until_frame, 0.0, has_work ? WORK_S : IDLE_S);
 }
@@ -219,7 +220,7 @@ void App::work()
     }
     extend_stroke();
     const bool stroke_was_running = document.annotator.stroke_is_running();
-    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.view.changed(*painted);
+    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
     if (stroke_was_running && !document.annotator.stroke_is_running()) {
         const int64_t voxels = document.annotator.last_stroke_voxels();
         if (voxels > 0) document.is_saved = document.paint_is_saved = false;
@@ -228,13 +229,19 @@ void App::work()
                 : std::string("The stroke changed nothing: no voxel at or above the paint threshold here, or all of "
                               "them are in this group"));
     }
-    if (std::exchange(look_is_stale_, false) && viewport_.pixels().x > 0 && viewport_.pixels().y > 0)
-        document.view.look(document.session, document.camera, viewport_.pixels());
+    if (viewport_.pixels().x > 0 && viewport_.pixels().y > 0) {
+        const bool moved = std::exchange(camera_moved_, false);
+        if (std::exchange(look_is_stale_, false))
+            document.screen.look(document.session, document.camera, viewport_.pixels(), document.probe_voxel());
+        else if (moved)
+            document.screen.look_from(document.camera, document.probe_voxel());
+    }
     // A running stroke or touch names what it needs itself.
     if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
         renderer_->paged()->prefer(document.voxels_around_probe());
-    document.view.show_probe(document.probe_look());
-    document.view.advance();
+    renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
+    document.screen.show_probe(document.probe_look());
+    document.screen.advance();
     for (const std::string& message : renderer_->take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
@@ -247,15 +254,15 @@ void App::draw_ui()
     const bool moves = something_moves();
     // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
     // for below; and the view learns what its work costs without the interface's share.
-    if (document_ && renderer_->device().traits().is_cpu) document_->view.wait();
+    if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
     window_.begin_ui();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
     if (document_) {
         layout = draw_panels(model(), window_.pixels(), actions_);
-        draw_probe();
-        layers = document_->view.layers();
-        drawn_revision_ = document_->view.revision();
+        draw_strokes();
+        layers = document_->screen.layers();
+        drawn_revision_ = document_->screen.revision();
         drawn_probe_voxel_ = document_->probe_voxel();
     } else {
         ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
@@ -274,7 +281,7 @@ void App::draw_ui()
                           .begun_s = begun,
                           .inputs_s = std::exchange(unanswered_s_, {}),
                           .shows_picture = !layers.empty(),
-                          .shows_sharp_picture = !layers.empty() && document_->view.complete()});
+                          .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
 }
 
 void App::note_presented()
@@ -293,32 +300,43 @@ void App::note_presented()
     });
 }
 
-/// The probe's outline shows through what hides it, and a line goes to where assistance pulls it.
-void App::draw_probe() const
+/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a line
+/// goes to where assistance pulls the probe.
+void App::draw_strokes() const
 {
     const Document& document = *document_;
-    const glm::uvec2 pixels = viewport_.pixels();
-    if (pixels.x == 0 || pixels.y == 0 || !document.view.shown_camera()) return;
-    const Camera& camera = *document.view.shown_camera();  // so that it lies on what is seen, which may lag behind
+    if (!document.screen.shows_anything()) return;
     const ProbeLook look = document.probe_look();
-    const std::optional<Projected> center = project(camera, pixels, look.center);
-    if (!center) return;
-    const glm::dvec2 origin(viewport_.layout().begin);
-    const auto on_screen = [&](const glm::dvec2& pixel) {
-        return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
-    };
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
-    const float radius = float(look.radius / pixel_size(camera, pixels, center->depth));
-    list.AddCircle(on_screen(center->pixel), radius + 1.5f, IM_COL32(0, 0, 0, 140), 0, 3.5f);
-    list.AddCircle(on_screen(center->pixel), radius + 1.5f, color_of(look.color, 1.0f), 0, 1.8f);
     const ServoState* servo = document.touch.servo();
-    if (servo && servo->step.in_contact)
-        if (const auto proxy = project(camera, pixels, servo->step.proxy)) {
-            list.AddLine(on_screen(center->pixel), on_screen(proxy->pixel), IM_COL32(255, 255, 255, 200), 1.5f);
-            list.AddCircleFilled(on_screen(proxy->pixel), 3.0f, IM_COL32(255, 255, 255, 230));
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const Screen::Part& part : document.screen.parts()) {
+        const glm::dvec2 origin(viewport_.layout().begin + part.pane.box.begin);
+        const glm::uvec2 pixels = part.pane.box.end - part.pane.box.begin;
+        const auto on_screen = [&](const glm::dvec2& pixel) {
+            return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
+        };
+        list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
+        for (const Stroke& stroke : document.screen.strokes(part, look))
+            list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
+                         float(stroke.width));
+        if (document.screen.parts().size() > 1) {
+            const char* const name = part.pane.name.c_str();
+            const ImVec2 size = ImGui::CalcTextSize(name), at = on_screen({8.0, 6.0});
+            list.AddRectFilled({at.x - 4.0f, at.y - 2.0f}, {at.x + size.x + 4.0f, at.y + size.y + 2.0f},
+                               IM_COL32(20, 20, 20, 170), 3.0f);
+            list.AddText(at, IM_COL32(255, 255, 255, 235), name);
         }
-    list.PopClipRect();
+        const Camera* const camera = part.view->shown_camera();
+        if (servo && servo->step.in_contact && camera) {
+            const auto center = project(*camera, pixels, look.center),
+                       proxy = project(*camera, pixels, servo->step.proxy);
+            if (center && proxy) {
+                list.AddLine(on_screen(center->pixel), on_screen(proxy->pixel), IM_COL32(255, 255, 255, 200), 1.5f);
+                list.AddCircleFilled(on_screen(proxy->pixel), 3.0f, IM_COL32(255, 255, 255, 230));
+            }
+        }
+        list.PopClipRect();
+    }
 }
 
 Model App::model()
@@ -329,6 +347,7 @@ Model App::model()
         .volume = document.volume(),
         .statistics = document.statistics,
         .cameras = document.cameras(),
+        .panes = document.screen.parts(),
         .brush = document.brush,
         .haptic_threshold = document.haptic_threshold,
         .probe_voxel = document.probe_voxel(),
@@ -344,8 +363,8 @@ Model App::model()
         .status = status_,
         .shows_help = shows_help_,
         .gpu_name = renderer_->device().traits().name,
-        .pass_times = document.view.pass_times(),
-        .view_is_complete = document.view.complete(),
+        .pass_times = document.screen.pass_times(),
+        .view_is_complete = document.screen.complete(),
         .view_is_limited = renderer_->paged() != nullptr && renderer_->paged()->state() == PagedVolume::State::limited,
         .relevance_age_ms = document.touch.relevance_age_ms(),
         .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
@@ -360,8 +379,8 @@ AppReport App::report()
     report.status = status_;
     if (document_) {
         report.relevance_ms = document_->touch.mirror_ms();
-        report.view_submissions = document_->view.submissions();
-        report.view_complete = document_->view.complete();
+        report.view_submissions = document_->screen.submissions();
+        report.view_complete = document_->screen.complete();
         report.servo = document_->touch.last_state();
         report.probe_voxel = document_->probe_voxel();
         report.voxels_by_group = document_->annotator.document().mask.voxels_by_group();

@@ -64,7 +64,7 @@ private:
     void handle_events(double timeout_s);
     void work();
     void draw_ui();
-    void draw_probe() const;
+    void draw_strokes() const;
     Model model();
     bool something_moves() const;
     double next_reason_to_draw_s() const;
@@ -72,6 +72,8 @@ private:
     void apply_all();
     void say(const std::string& status);
     void look_again() { look_is_stale_ = true; }
+    void look_from_elsewhere() { camera_moved_ = true; }
+    const Pane& pane(size_t index) const;
     void note_presented();
     TouchSettings touch_settings() const;
     void extend_stroke();
@@ -85,6 +87,8 @@ private:
     void apply(const Roll& action);
     void apply(const Move& action);
     void apply(const Zoom& action);
+    void apply(const DragInMap& action);
+    void apply(const SetView& action);
     void apply(const LookFrom& action);
     void apply(const MoveCut& action);
     void apply(const MoveClip& action);
@@ -100,6 +104,7 @@ private:
     void apply(const PushProbe& action);
     void apply(const ScaleProbe& action);
     void apply(const SetBrush& action);
+    void apply(const ShowShell& action);
     void apply(const ChooseGroup& action);
     void apply(const Paint& action);
     void apply(const SetHapticThreshold& action);
@@ -125,6 +130,7 @@ private:
     Actions actions_;
     bool shows_help_ = false;
     bool look_is_stale_ = true;
+    bool camera_moved_ = false;
     bool wants_screenshot_ = false;
     bool device_paints_ = false;  ///< its paint button is down
     std::future<std::string> screenshot_;

@@ -15,6 +15,21 @@ const char* name_of(Brush brush)
     return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
 }
 
+std::string name_of(StereoOutput output)
+{
+    switch (output) {
+        case StereoOutput::side_by_side: return "side by side";
+        case StereoOutput::top_bottom: return "one above the other";
+        case StereoOutput::anaglyph: return "for red and cyan glasses";
+    }
+    return {};
+}
+
+glm::uvec2 size_of(const Pane& pane)
+{
+    return pane.box.end - pane.box.begin;
+}
+
 /// What the view turns about: the middle of what is looked at.
 glm::dvec3 pivot_of(const Document& document)
 {
@@ -34,31 +49,65 @@ double height_of(const Camera& camera)
 void App::apply(const Orbit& action)
 {
     document_->camera = orbited(document_->camera, pivot_of(*document_), action.right_degrees, action.up_degrees);
-    look_again();
+    look_from_elsewhere();
 }
 
 void App::apply(const Roll& action)
 {
     document_->camera = rolled(document_->camera, action.degrees);
-    look_again();
+    look_from_elsewhere();
 }
 
 void App::apply(const Move& action)
 {
     document_->camera = moved(document_->camera, action.heights * height_of(document_->camera));
-    look_again();
+    look_from_elsewhere();
 }
 
 void App::apply(const Zoom& action)
 {
-    document_->camera = zoomed(document_->camera, viewport_.pixels(), action.pixel, action.factor);
+    document_->camera = zoomed(document_->camera, size_of(pane(action.pane)), action.pixel, action.factor);
+    look_from_elsewhere();
+}
+
+const Pane& App::pane(size_t index) const
+{
+    const std::vector<Screen::Part>& parts = document_->screen.parts();
+    if (index >= parts.size()) fail("the window has no such part any more");
+    return parts[index].pane;
+}
+
+void App::apply(const DragInMap& action)
+{
+    const Pane& map = pane(action.pane);
+    const CameraAxes axes = axes_of(map.shot.camera);
+    const glm::dvec2 way = action.pixels * pixel_size(map.shot.camera, size_of(map), 1.0);
+    const glm::dvec3 moved = axes.right * way.x - axes.up * way.y;
+    document_->camera.eye += moved;
+    document_->camera.target += moved;
+    look_from_elsewhere();
+}
+
+void App::apply(const SetView& action)
+{
+    const bool is_other = action.view.arrangement != document_->session.view.arrangement;
+    document_->session.view = action.view;
+    document_->is_saved = false;
+    if (is_other) {
+        switch (action.view.arrangement) {
+            case Arrangement::single: say("Full screen"); break;
+            case Arrangement::stereo: say("Two eyes: " + name_of(action.view.stereo.output)); break;
+            case Arrangement::overview: say("Overview: drag in a map to move the camera"); break;
+            case Arrangement::slices: say("Slices through the probe: the wheel moves a slice"); break;
+        }
+    }
     look_again();
 }
 
 void App::apply(const LookFrom& action)
 {
     document_->camera = camera_named(document_->session, action.camera, document_->volume());
-    look_again();
+    look_from_elsewhere();
     say("Looking from " + action.camera);
 }
 
@@ -141,7 +190,7 @@ void App::apply(const SetOcclusion& action)
 
 void App::apply(const UpdateOcclusion&)
 {
-    document_->view.update_occlusion();
+    document_->screen.update_occlusion();
     say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is renewed"
                                                           : "Ambient occlusion is off: its strength is 0");
 }
@@ -150,17 +199,25 @@ void App::apply(const UpdateOcclusion&)
 
 void App::apply(const ProbeTo& action)
 {
-    const CameraAxes axes = axes_of(document_->camera);
-    const double depth = glm::dot(document_->touch.probe() - document_->camera.eye, axes.forward);
-    const double shallowest = 1e-3 * glm::distance(document_->camera.eye, document_->camera.target);
-    document_->touch.wish(unproject(document_->camera, viewport_.pixels(), action.pixel, std::max(depth, shallowest)));
+    const Pane& seen = pane(action.pane);
+    const Camera& camera = seen.shot.camera;
+    const double depth = glm::dot(document_->touch.probe() - camera.eye, axes_of(camera).forward);
+    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
+    document_->touch.wish(unproject(camera, size_of(seen), action.pixel, std::max(depth, shallowest)));
 }
 
 void App::apply(const ProbeOnto& action)
 {
-    const glm::uvec2 pixels = viewport_.pixels();
-    const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
-    const auto point = renderer_->pick(document_->session, document_->camera, pixels, pixel);
+    const Pane& seen = pane(action.pane);
+    const glm::uvec2 pixels = size_of(seen);
+    std::optional<glm::dvec3> point;
+    if (seen.shot.is_slice) {
+        const Camera& camera = seen.shot.camera;
+        point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
+    } else {
+        const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+        point = renderer_->pick(document_->session, seen.shot.camera, pixels, pixel);
+    }
     if (!point) return say("Nothing is seen there that is half opaque; the probe stays where it is");
     document_->touch.place(*point);
     const glm::dvec3 voxel = document_->probe_voxel();
@@ -169,9 +226,9 @@ void App::apply(const ProbeOnto& action)
 
 void App::apply(const PushProbe& action)
 {
-    const double voxel =
-        std::min({document_->volume().spacing.x, document_->volume().spacing.y, document_->volume().spacing.z});
-    document_->touch.wish(document_->touch.probe() + axes_of(document_->camera).forward * (action.voxels * voxel));
+    const glm::dvec3 forward = axes_of(pane(action.pane).shot.camera).forward;
+    const double voxel = glm::length(forward * document_->volume().spacing);
+    document_->touch.wish(document_->touch.probe() + forward * (action.voxels * voxel));
 }
 
 void App::apply(const ScaleProbe& action)
@@ -187,6 +244,15 @@ void App::apply(const SetBrush& action)
     document_->brush = action.brush;
     document_->brush.group = group;
     if (is_other) say(sentence("Brush: ", name_of(action.brush.brush)));
+}
+
+void App::apply(const ShowShell& action)
+{
+    ProbeSettings& probe = document_->session.probe;
+    if (action.on != probe.shell)
+        say(action.on ? "Iso-surface at the paint threshold around the probe" : "No iso-surface around the probe");
+    probe.shell = action.on;
+    probe.shell_opacity = action.opacity;
 }
 
 void App::apply(const ChooseGroup& action)
@@ -238,7 +304,7 @@ void App::apply(const Undo&)
 {
     const Command* command = document_->annotator.undo();
     if (!command) return say("Nothing is left to undo");
-    document_->view.changed(document_->annotator.reach_of(*command));
+    document_->screen.changed(document_->annotator.reach_of(*command));
     document_->is_saved = document_->paint_is_saved = false;
     say("Undone: " + command->label);
 }
@@ -247,7 +313,7 @@ void App::apply(const Redo&)
 {
     const Command* command = document_->annotator.redo();
     if (!command) return say("Nothing is left to redo");
-    document_->view.changed(document_->annotator.reach_of(*command));
+    document_->screen.changed(document_->annotator.reach_of(*command));
     document_->is_saved = document_->paint_is_saved = false;
     say("Redone: " + command->label);
 }
@@ -274,17 +340,18 @@ void App::apply(const Screenshot&)
 
 void App::finish_screenshot()
 {
-    if (!document_->view.complete() || screenshot_.valid()) return;
+    if (!document_->screen.complete() || screenshot_.valid()) return;
     wants_screenshot_ = false;
     // Reading back takes a millisecond or two; packing the file takes long, and goes to another thread.
-    screenshot_ = std::async(std::launch::async, [image = document_->view.read_back(), path = free_screenshot_path()] {
-        try {
-            write_png(path, image);
-            return "Screenshot: " + path.string();
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-    });
+    screenshot_ =
+        std::async(std::launch::async, [image = document_->screen.read_back(), path = free_screenshot_path()] {
+            try {
+                write_png(path, image);
+                return "Screenshot: " + path.string();
+            } catch (const Error& error) {
+                return std::string(error.what());
+            }
+        });
 }
 
 void App::apply(const Open& action)

@@ -20,22 +20,10 @@ std::filesystem::path session_path_of(const std::filesystem::path& input)
     return beside.replace_extension(".session.json");
 }
 
-/// The middle of what the transfer function shows, weighted by its opacity.
-double middle_of(const TransferFunction& function, const VolumeStatistics& statistics)
-{
-    double weight = 0.0, sum = 0.0;
-    for (const ControlPoint& point : function.points()) {
-        weight += point.opacity;
-        sum += point.opacity * point.intensity;
-    }
-    const auto [lower, upper] = statistics.range();
-    const double middle = weight > 0.0 ? sum / weight : 0.5 * (lower + upper);
-    return std::clamp(0.5 * (middle + function.lower()), lower, upper);
-}
-
 void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
 {
     renderer.load(source, opened.statistics, opened.session.render);
+    renderer.set_surfaces(opened.session.surfaces);
 }
 
 }  // namespace
@@ -49,7 +37,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),
-      view(renderer, view_options),
+      screen(renderer, view_options),
       touch(renderer, std::move(device), device_name)
 {
     if (session.mask_path.empty()) {
@@ -58,7 +46,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     }
     if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
     const ProbeSettings& probe = session.probe;
-    const double threshold = probe.paint_threshold.value_or(middle_of(session.transfer_function, statistics));
+    const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
     brush = {.brush = probe.brush,
              .region = probe.region,
              .group = probe.group,
@@ -72,9 +60,14 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 
 ProbeLook Document::probe_look() const
 {
-    const glm::dvec3 eraser(0.5);
-    const glm::dvec3 color = brush.group == 0 ? eraser : group_of(session.groups, brush.group).color;
-    return {.center = touch.probe(), .radius = probe_radius(), .color = color};
+    ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush.group)};
+    if (session.probe.shell) {
+        look.ball_share = BALL_IN_SHELL;
+        look.shell = ShellLook{.threshold = brush.threshold,
+                               .opacity = session.probe.shell_opacity,
+                               .is_box = brush.region == RegionShape::box};
+    }
+    return look;
 }
 
 VoxelBox Document::voxels_around_probe() const
@@ -97,7 +90,10 @@ Session Document::saved_session() const
                    .region = brush.region,
                    .connectivity = brush.connectivity,
                    .paint_threshold = brush.threshold,
-                   .haptic_threshold = haptic_threshold};
+                   .haptic_threshold = haptic_threshold,
+                   .shown = session.probe.shown,
+                   .shell = session.probe.shell,
+                   .shell_opacity = session.probe.shell_opacity};
     return saved;
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "engine/scene/annotator.h"
+#include "engine/scene/screen.h"
 #include "engine/scene/session.h"
-#include "engine/scene/view.h"
 #include "ui/touch.h"
 
 namespace shvr::ui {
@@ -22,7 +22,7 @@ struct Document {
     bool assistance = false;
     ProxyLaw law = ProxyLaw::potential;
     Annotator annotator;
-    View view;
+    Screen screen;
     Touch touch;
     bool is_saved = true;  ///< the session and the paint
     bool paint_is_saved = true;

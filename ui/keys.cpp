@@ -59,6 +59,14 @@ Action scale_probe(const Model&, double amount)
     return ScaleProbe{std::pow(PROBE_FACTOR, DIRECTION * amount)};
 }
 
+template <Arrangement ARRANGEMENT>
+Action arrange(const Model& model, double)
+{
+    ViewSettings view = model.session.view;
+    view.arrangement = ARRANGEMENT;
+    return SetView{view};
+}
+
 Action next_law(const Model& model, double)
 {
     return SetProxyLaw{model.law == ProxyLaw::potential ? ProxyLaw::mean : ProxyLaw::potential};
@@ -137,8 +145,8 @@ constexpr KeyBinding hold(int key, int mods, const char* group, const char* name
 }
 
 constexpr int CTRL = GLFW_MOD_CONTROL, ALT = GLFW_MOD_ALT, SHIFT = GLFW_MOD_SHIFT;
-constexpr const char *WORK = "Work", *PAINTING = "Painting", *PROBE = "Probe", *TURN = "Turn the view",
-                     *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes",
+constexpr const char *WORK = "Work", *PAINTING = "Painting", *PROBE = "Probe", *VIEWS = "Views",
+                     *TURN = "Turn the view", *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes",
                      *BLEND = "Distance blending";
 
 constexpr KeyBinding BINDINGS[] = {
@@ -151,6 +159,11 @@ constexpr KeyBinding BINDINGS[] = {
     tap(GLFW_KEY_F12, 0, WORK, "Keys and mouse",
         [](const Model& m, double) -> Action { return ShowHelp{!m.shows_help}; }),
     tap(GLFW_KEY_Q, CTRL, WORK, "Quit", [](const Model&, double) -> Action { return Quit{}; }),
+
+    tap(GLFW_KEY_F6, 0, VIEWS, "Slices", arrange<Arrangement::slices>),
+    tap(GLFW_KEY_F9, 0, VIEWS, "Overview", arrange<Arrangement::overview>),
+    tap(GLFW_KEY_F10, 0, VIEWS, "Full screen", arrange<Arrangement::single>),
+    tap(GLFW_KEY_F11, 0, VIEWS, "Two eyes", arrange<Arrangement::stereo>),
 
     // The application begins and ends the stroke.
     tap(GLFW_KEY_F, 0, PAINTING, "Paint while held", nullptr),
@@ -170,6 +183,10 @@ constexpr KeyBinding BINDINGS[] = {
 
     tap(GLFW_KEY_SPACE, 0, PROBE, "Guide the probe",
         [](const Model& m, double) -> Action { return Assist{!m.assistance}; }),
+    tap(GLFW_KEY_F4, 0, PROBE, "Iso-surface around the probe",
+        [](const Model& m, double) -> Action {
+            return ShowShell{!m.session.probe.shell, m.session.probe.shell_opacity};
+        }),
     tap(GLFW_KEY_HOME, 0, PROBE, "Next way of guiding", next_law),
     hold(GLFW_KEY_PAGE_UP, 0, PROBE, "Larger probe", scale_probe<1>),
     hold(GLFW_KEY_PAGE_DOWN, 0, PROBE, "Smaller probe", scale_probe<-1>),

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/scene/annotator.h"
+#include "engine/scene/screen.h"
 #include "engine/scene/session.h"
-#include "engine/scene/view.h"
 #include "haptics/servo.h"
 
 namespace shvr::ui {
@@ -18,6 +18,8 @@ struct Model {
     const VolumeInfo& volume;
     const VolumeStatistics& statistics;
     std::vector<std::string> cameras;  ///< names that LookFrom takes
+
+    const std::vector<Screen::Part>& panes;
 
     // The probe
     const PaintOp& brush;  ///< the group it paints, its radius, its threshold
@@ -38,7 +40,7 @@ struct Model {
 
     // The device
     std::string gpu_name;
-    const std::vector<View::PassTime>& pass_times;
+    std::vector<View::PassTime> pass_times;
     bool view_is_complete = true;
     bool view_is_limited = false;   ///< coarser than the screen: more is seen than the budget holds
     double relevance_age_ms = 0.0;  ///< of what the servo uses; 0 without assistance

@@ -142,6 +142,12 @@ void view_menu(const Model& model, Actions& actions)
             if (ImGui::MenuItem(camera.c_str())) actions.push_back(LookFrom{camera});
         ImGui::EndMenu();
     }
+    const Arrangement arrangement = model.session.view.arrangement;
+    key_item("Full screen", model, actions, {.is_checked = arrangement == Arrangement::single});
+    key_item("Two eyes", model, actions, {.is_checked = arrangement == Arrangement::stereo});
+    key_item("Overview", model, actions, {.is_checked = arrangement == Arrangement::overview});
+    key_item("Slices", model, actions, {.is_checked = arrangement == Arrangement::slices});
+    ImGui::Separator();
     key_buttons("Turn the view", model, actions);
     key_buttons("Move the view", model, actions);
     ImGui::Separator();
@@ -190,6 +196,7 @@ void probe_menu(const Model& model, Actions& actions)
     if (!ImGui::BeginMenu("Probe")) return;
     key_item("Guide the probe", model, actions, {.is_checked = model.assistance});
     key_item("Next way of guiding", model, actions);
+    key_item("Iso-surface around the probe", model, actions, {.is_checked = model.session.probe.shell});
     ImGui::Separator();
     key_item("Larger probe", model, actions);
     key_item("Smaller probe", model, actions);

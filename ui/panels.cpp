@@ -115,6 +115,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     section("Transfer function", true, transfer_function_panel, model, actions);
     section("Light and depth", false, light_panel, model, actions);
     section("Ambient occlusion", false, occlusion_panel, model, actions);
+    section("Views", false, views_panel, model, actions);
     section("Colour groups", true, groups_panel, model, actions);
     section("GPU passes", false, passes_panel, model, actions);
     ImGui::End();

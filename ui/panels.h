@@ -23,6 +23,7 @@ void probe_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);
+void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);

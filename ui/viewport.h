@@ -6,6 +6,8 @@
 //   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
 //   middle drag        move (also Shift + left drag)           double click   put the probe onto what is seen there
 //   right held, or F   paint
+//
+// In a map, left and middle drag move the camera and the wheel takes it forward; in a slice the wheel moves the slice.
 
 #include <optional>
 
@@ -24,15 +26,18 @@ public:
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, bool ui_has_keys, Actions& actions);
 
 private:
-    enum class Gesture { none, turn, move, paint };
-    void press(const ButtonEvent& event, double time_s, Actions& actions);
+    enum class Gesture { none, turn, move, move_in_map, paint };
+    void press(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
     void release(const ButtonEvent& event, Actions& actions);
-    void follow(const MoveEvent& event, bool ui_has_mouse, Actions& actions);
+    void follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions);
+    void scroll(const ScrollEvent& event, const Model& model, Actions& actions);
+    size_t pane_at(const glm::dvec2& at, const Model& model) const;
+    glm::dvec2 in_pane(const glm::dvec2& at, const Model& model) const;
     bool contains(const glm::dvec2& at) const;
-    glm::dvec2 local(const glm::dvec2& at) const { return at - glm::dvec2(layout_.begin); }
 
     Layout layout_;
     Gesture gesture_ = Gesture::none;
+    size_t pane_ = 0;  ///< under the mouse, or where the gesture began
     int button_ = 0;
     glm::dvec2 last_{0.0};
     std::optional<double> last_click_s_;

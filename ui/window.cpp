@@ -86,12 +86,23 @@ struct Window::Input {
     {
         of(window).events.push_back({std::move(event), glfwGetTime()});
     }
-    /// Screen coordinates to pixels: they differ on some HiDPI systems.
+    /// Where the mouse was when the event happened: GLFW itself tells where it is by now, which is too late where a turn of
+    /// the loop takes in a whole gesture.
+    std::optional<glm::dvec2> last_cursor;
     static glm::dvec2 cursor(GLFWwindow* window)
     {
-        glm::dvec2 at(0.0);
+        std::optional<glm::dvec2>& last = of(window).last_cursor;
+        if (!last) {
+            glm::dvec2 at(0.0);
+            glfwGetCursorPos(window, &at.x, &at.y);
+            last = in_pixels(window, at);
+        }
+        return *last;
+    }
+    /// Screen coordinates to pixels: they differ on some HiDPI systems.
+    static glm::dvec2 in_pixels(GLFWwindow* window, const glm::dvec2& at)
+    {
         glm::ivec2 size(1), pixels(1);
-        glfwGetCursorPos(window, &at.x, &at.y);
         glfwGetWindowSize(window, &size.x, &size.y);
         glfwGetFramebufferSize(window, &pixels.x, &pixels.y);
         return at * glm::dvec2(pixels) / glm::dvec2(glm::max(size, glm::ivec2(1)));
@@ -114,7 +125,10 @@ struct Window::Input {
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
             add(w, ButtonEvent{button, mods, action == GLFW_PRESS, cursor(w)});
         });
-        glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { add(w, MoveEvent{cursor(w)}); });
+        glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+            of(w).last_cursor = in_pixels(w, {x, y});
+            add(w, MoveEvent{cursor(w)});
+        });
         glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) {
             add(w, ScrollEvent{y, mods(w), cursor(w)});
         });

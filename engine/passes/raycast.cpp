@@ -4,24 +4,20 @@
 
 namespace shvr {
 
-namespace {
-
-uint32_t squarings(float shininess)
+uint32_t shininess_squarings(float shininess)
 {
     for (uint32_t k = 0; k < gpu::NOT_A_POWER_OF_TWO; ++k)
         if (shininess == std::ldexp(1.0f, int(k))) return k;
     return gpu::NOT_A_POWER_OF_TWO;
 }
 
-}  // namespace
-
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    Pass pass =
-        graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "") +
-                          (input.mask ? "_masked" : "") + (input.occlusion ? "_occluded" : ""),
-                      "raycast");
+    Pass pass = graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") +
+                                  (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : "") +
+                                  (input.occlusion ? "_occluded" : "") + (input.surfaces ? "_surfaced" : ""),
+                              "raycast");
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     if (volume.pages) {
@@ -42,12 +38,13 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         pass.read("occlusion", input.occlusion->values);
         pass.block("occlusion_look", std::span<const gpu::OcclusionLook>(&input.occlusion->look, 1));
     }
+    if (input.surfaces) pass.read("surfaces", *input.surfaces);
     pass.constant("SHADED", input.shaded);
-    if (input.shaded) pass.constant("SHININESS_SQUARINGS", squarings(input.params.shininess));
+    if (input.shaded) pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
-    pass.constant("PROBE", input.probe);
     pass.constant("SLICE", input.slice);
+    pass.constant("SHELL", input.pick ? gpu::SHELL_NONE : input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.

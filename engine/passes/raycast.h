@@ -17,19 +17,23 @@ struct RaycastOcclusion {
     gpu::OcclusionLook look;
 };
 
+/// log2 of the shininess where the kernels can square their way there, gpu::NOT_A_POWER_OF_TWO elsewhere.
+uint32_t shininess_squarings(float shininess);
+
 struct RaycastInput {
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image: linear RGB, opacity of a full step
     std::optional<MaskBinding> mask;
     std::vector<gpu::GroupLook> groups;  ///< 256, used with a mask
     std::optional<RaycastOcclusion> occlusion;
+    std::optional<Resource> surfaces;  ///< of the same pixels (engine/passes/surfaces.h)
     bool shaded = true;
     bool count_work = false;
-    uint32_t group_width = 8;  ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
-    glm::uvec2 tile{0};        ///< pixels of one dispatch, multiples of 64; 0 = all at once
-    bool probe = false;        ///< params.probe_* are set
-    bool slice = false;        ///< params.slice_* are set: what lies half-way along the rays
-    bool pick = false;         ///< positions instead of colours, see the kernel
+    uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
+    glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
+    uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
+    bool slice = false;                ///< params.slice_* are set: what lies half-way along the rays
+    bool pick = false;                 ///< positions instead of colours, see the kernel
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied, over

@@ -175,14 +175,16 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     // Along the axis, from the anchor.
     const double hair =
         is_perspective ? NEAR_HAIR * std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z}) : 0.0;
-    const double near_offset =
-        std::max(centre_offset - sphere.radius, std::max(camera.near_distance, hair) - anchor_depth);
-    double far_offset = centre_offset + sphere.radius;
-    if (camera.far_distance > 0.0) far_offset = std::min(far_offset, camera.far_distance - anchor_depth);
-
-    RayPlanes planes{};
-    planes.empty = !(near_offset < far_offset);
-    if (planes.empty) return planes;
+    const double clip_near = std::max(camera.near_distance, hair) - anchor_depth;
+    const double clip_far =
+        camera.far_distance > 0.0 ? camera.far_distance - anchor_depth : std::numeric_limits<double>::infinity();
+    double near_offset = std::max(centre_offset - sphere.radius, clip_near);
+    double far_offset = std::min(centre_offset + sphere.radius, clip_far);
+    const bool empty = !(near_offset < far_offset);
+    if (empty) {
+        near_offset = clip_near;
+        far_offset = clip_near + 2.0 * sphere.radius;
+    }
 
     const double per_depth = 2.0 * std::tan(radians(0.5 * camera.fov_y_degrees)) / pixels.y;
     const auto plane_at = [&](double offset) {
@@ -191,7 +193,18 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     };
     const Plane near_plane = plane_at(near_offset);
     const Plane far_plane = plane_at(far_offset);
-    planes = {near_plane.corner, near_plane.dx, near_plane.dy, far_plane.corner, far_plane.dx, far_plane.dy, false};
+    const auto share = [&](double offset) { return (offset - near_offset) / (far_offset - near_offset); };
+    const double target_offset = glm::distance(camera.eye, camera.target) - anchor_depth;
+    const RayPlanes planes{near_plane.corner,
+                           near_plane.dx,
+                           near_plane.dy,
+                           far_plane.corner,
+                           far_plane.dx,
+                           far_plane.dy,
+                           empty,
+                           share(clip_near),
+                           share(std::clamp(target_offset, near_offset, far_offset)),
+                           share(clip_far)};
     if (!is_finite(planes.near_corner) || !is_finite(planes.far_corner) || !is_finite(planes.far_dx) ||
         !is_finite(planes.far_dy))
         fail("camera: eye ", shown(camera.eye), " is too far from the volume; expected finite rays");

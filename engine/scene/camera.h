@@ -45,12 +45,18 @@ using CameraSpec = std::variant<Camera, SideView>;
 struct RayPlanes {
     glm::dvec3 near_corner, near_dx, near_dy;
     glm::dvec3 far_corner, far_dx, far_dy;
-    bool empty = false;  ///< near plane behind far plane, or volume out of the clip range: only background is seen
+    bool empty =
+        false;  ///< near plane behind far plane, or volume out of the clip range: nothing of the volume is seen
+    // Shares of the way from the near plane to the far one, for what may lie beyond the volume.
+    double begin = 0.0;   ///< where the camera's clip range begins; at most 0 unless `empty`
+    double middle = 0.5;  ///< where its target is, or the plane of the two that is closer to it
+    double end = 1.0;     ///< where the clip range ends; infinite without a far clip plane
 };
 
 /// The planes stand perpendicular to the view direction, touching the volume's bounding sphere (or at the clip
 /// distances where those are tighter; a perspective eye in or at the sphere puts the near plane 1/1000 of the finest
-/// spacing before the eye). Fails as `check_camera` does.
+/// spacing before the eye). Where the volume is out of the clip range they stand in that range instead, one bounding
+/// sphere apart. Fails as `check_camera` does.
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);
 
 /// The depth of a voxel position along the view, as a share: dot(xyz, voxel) + w is 0 where the box `lower` ... `upper`

@@ -174,6 +174,25 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }
 
+/// The pixels that a stroke touches, and how much of each.
+template <class Paint>
+void for_each_covered(const Stroke& stroke, const PixelBox& pane, const Paint& paint)
+{
+    const glm::dvec2 from = stroke.from + glm::dvec2(pane.begin), to = stroke.to + glm::dvec2(pane.begin);
+    const double reach = 0.5 * stroke.width + 0.5;
+    const glm::dvec2 lower = glm::max(glm::floor(glm::min(from, to) - reach), glm::dvec2(pane.begin));
+    const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
+    const glm::dvec2 way = to - from;
+    const double square = glm::dot(way, way);
+    for (int y = int(lower.y); y < int(upper.y); ++y)
+        for (int x = int(lower.x); x < int(upper.x); ++x) {
+            const glm::dvec2 at = glm::dvec2(x, y) + 0.5 - from;
+            const double share = square > 0.0 ? std::clamp(glm::dot(at, way) / square, 0.0, 1.0) : 0.0;
+            const double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
+            if (covered > 0.0) paint(size_t(x), size_t(y), covered);
+        }
+}
+
 }  // namespace
 
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
@@ -219,24 +238,24 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
 
 void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane)
 {
-    for (const Stroke& stroke : strokes) {
-        const glm::dvec2 from = stroke.from + glm::dvec2(pane.begin), to = stroke.to + glm::dvec2(pane.begin);
-        const double reach = 0.5 * stroke.width + 0.5;
-        const glm::dvec2 lower = glm::max(glm::floor(glm::min(from, to) - reach), glm::dvec2(pane.begin));
-        const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
-        const glm::dvec2 way = to - from;
-        const double square = glm::dot(way, way);
-        for (int y = int(lower.y); y < int(upper.y); ++y)
-            for (int x = int(lower.x); x < int(upper.x); ++x) {
-                const glm::dvec2 at = glm::dvec2(x, y) + 0.5 - from;
-                const double share = square > 0.0 ? std::clamp(glm::dot(at, way) / square, 0.0, 1.0) : 0.0;
-                const double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
-                if (covered <= 0.0) continue;
-                float* const pixel = &image.rgba[4 * (size_t(x) + size_t(image.width) * size_t(y))];
-                for (int c = 0; c < 4; ++c)
-                    pixel[c] = float(pixel[c] + covered * ((c < 3 ? stroke.color[c] : 1.0) - pixel[c]));
+    for (const Stroke& stroke : strokes)
+        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
+            float* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+            for (int c = 0; c < 4; ++c)
+                pixel[c] = float(pixel[c] + covered * ((c < 3 ? stroke.color[c] : 1.0) - pixel[c]));
+        });
+}
+
+void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane)
+{
+    for (const Stroke& stroke : strokes)
+        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
+            uint8_t* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+            for (int c = 0; c < 3; ++c) {
+                const double light = glm::mix(srgb_decode(pixel[c] / 255.0), stroke.color[c], covered);
+                pixel[c] = uint8_t(std::lround(255.0 * srgb_encode(std::clamp(light, 0.0, 1.0))));
             }
-    }
+        });
 }
 
 }  // namespace shvr

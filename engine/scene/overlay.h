@@ -39,5 +39,7 @@ std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pi
 /// Anti-aliased, over light that is premultiplied with its opacity. `pane`: pixels of the picture that the strokes are
 /// reckoned from, and none are drawn outside.
 void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane);
+/// The same on a screen's pixels, which are opaque.
+void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane);
 
 }  // namespace shvr

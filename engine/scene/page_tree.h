@@ -21,6 +21,8 @@ struct PageView {
     double detail = 1.0;  ///< voxels per pixel at least; 0: the finest level everywhere
     CutBox cut;
     bool shows_all = false;  ///< whatever the transfer function says
+    /// Voxels whose bricks are shown whatever it says.
+    std::optional<VoxelBox> shown{};
     bool operator==(const PageView&) const = default;
 };
 

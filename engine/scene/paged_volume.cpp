@@ -103,9 +103,19 @@ bool PagedVolume::is_painted(const BrickKey& key) const
     return painted_.contains(key);
 }
 
+/// Whatever the transfer function says.
+bool PagedVolume::is_always_shown(const BrickKey& key) const
+{
+    if (!view_) return false;
+    if (view_->shows_all || !view_->shown) return view_->shows_all;
+    const VoxelBox voxels = voxels_of(key, info().size);
+    return glm::all(glm::lessThan(voxels.lower, view_->shown->upper)) &&
+           glm::all(glm::lessThan(view_->shown->lower, voxels.upper));
+}
+
 bool PagedVolume::shows(const BrickKey& key) const
 {
-    if (is_painted(key) || (view_ && view_->shows_all)) return true;
+    if (is_painted(key) || is_always_shown(key)) return true;
     const std::optional<ValueRange> range = source_->brick_range(key.level, Size3(key.brick));
     if (!range) return true;
     return range->lower <= range->upper &&
@@ -145,7 +155,7 @@ PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
 {
     if (resident_.contains(key)) return LeafState::resident;
     const auto range = known_ranges_.find(key);
-    if (range != known_ranges_.end() && !is_painted(key) && !(view_ && view_->shows_all) &&
+    if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
         return LeafState::empty;
     return store_.failure_of(key) ? LeafState::failed : LeafState::missing;

@@ -107,6 +107,7 @@ private:
     };
     enum class LeafState : uint8_t { missing, resident, empty, failed };
 
+    bool is_always_shown(const BrickKey& key) const;
     bool shows(const BrickKey& key) const;
     bool is_painted(const BrickKey& key) const;
     LeafState state_of(const BrickKey& key) const;

@@ -103,6 +103,18 @@ void set_slice(gpu::RaycastParams& params, const Session& session, const DeviceV
     params.blend_size = 0.0f;
 }
 
+void set_shell(RaycastInput& input, const ProbeLook& probe, const DeviceVolume& volume)
+{
+    if (!probe.shell || !(probe.shell->opacity > 0.0)) return;
+    const glm::dvec3& spacing = volume.info().spacing;
+    input.shell = probe.shell->is_box ? gpu::SHELL_BOX : gpu::SHELL_BALL;
+    input.params.shell_center = probe.center / spacing;
+    input.params.shell_reach = probe.radius / spacing;
+    input.params.shell_code = float(volume.window().code_of(probe.shell->threshold));
+    input.params.shell_color = probe.color;
+    input.params.shell_opacity = float(probe.shell->opacity);
+}
+
 /// `step_voxels`: between samples, in reference lengths.
 gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, const DeviceVolume& volume,
                                   const VolumeBinding& binding, const PicturePart& part, double step_voxels)
@@ -142,11 +154,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
         params.blend_size = float(session.blend.size);
         params.blend_rate = float(session.blend.rate);
     }
-    if (part.probe) {
-        params.probe_center = part.probe->center / info.spacing;
-        params.probe_radius = float(part.probe->radius / reference_length(info));
-        params.probe_color = part.probe->color;
-    }
     return params;
 }
 
@@ -156,6 +163,30 @@ int worker_count(int wanted)
 }
 
 }  // namespace
+
+glm::dvec3 probe_color(const Session& session, uint8_t group)
+{
+    return group == 0 ? glm::dvec3(0.5) : group_of(session.groups, group).color;
+}
+
+std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
+                                     const VolumeStatistics& statistics)
+{
+    const ProbeSettings& probe = session.probe;
+    if (!probe.shown && !probe.shell) return std::nullopt;
+    ProbeLook look{.center = probe.voxel.value_or(0.5 * glm::dvec3(volume.size)) * volume.spacing,
+                   .radius = probe.radius_voxels * volume.spacing.x,
+                   .color = probe_color(session, probe.group),
+                   .ball_share = !probe.shown  ? 0.0
+                                 : probe.shell ? BALL_IN_SHELL
+                                               : 1.0};
+    if (probe.shell)
+        look.shell = ShellLook{
+            .threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
+            .opacity = probe.shell_opacity,
+            .is_box = probe.region == RegionShape::box};
+    return look;
+}
 
 bool Renderer::LeapState::operator==(const LeapState& other) const
 {
@@ -174,7 +205,8 @@ Renderer::Renderer(const Options& options)
       executor_(device_, memory_),
       threads_(worker_count(options.threads)),
       mask_(executor_, memory_),
-      occlusion_(memory_)
+      occlusion_(memory_),
+      surfaces_(memory_)
 {}
 
 bool Renderer::filters(Sampling sampling) const
@@ -202,6 +234,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     occlusion_.clear();
     occlusion_.set_drawn(nullptr);
     occlusion_has_no_room_ = false;
+    surfaces_.set({});
     volume_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
@@ -336,7 +369,8 @@ double Renderer::look(const Session& session, const Shot& shot, const glm::uvec2
                   .pixels = pixels,
                   .detail = session.render.detail,
                   .cut = shot.is_slice ? CutBox{} : session.cut,
-                  .shows_all = shot.is_slice},
+                  .shows_all = shot.is_slice,
+                  .shown = always_shown_},
                  visibility_of(session));
     return std::ldexp(session.render.step_voxels, paged_->tree()->finest_level);
 }
@@ -375,6 +409,42 @@ std::vector<std::string> Renderer::take_messages()
     return messages;
 }
 
+void Renderer::show_always(const std::optional<VoxelBox>& voxels)
+{
+    always_shown_.reset();
+    if (!voxels) return;
+    const int64_t side = gpu::BRICK_SIZE;
+    const Size3 lower = glm::max(voxels->lower, Size3(0)) / side, upper = (voxels->upper + side - int64_t{1}) / side;
+    always_shown_ = VoxelBox{lower * side, glm::max(upper, lower) * side};
+}
+
+void Renderer::set_surfaces(const std::vector<SurfaceLook>& surfaces)
+{
+    surfaces_.set(surface_tree(surfaces, volume().info()));
+}
+
+/// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.
+std::optional<Resource> Renderer::draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
+                                                const PicturePart& part)
+{
+    const bool has_ball = part.probe && part.probe->ball_share > 0.0;
+    if (surfaces_.empty() && !has_ball) return std::nullopt;
+    const VolumeInfo& info = volume_->info();
+    SurfacesInput wanted{.params = input.params,
+                         .scene = surfaces_.params(ray_planes(camera, part.pixels, info), part.pixels, info),
+                         .listed = surfaces_.import(graph),
+                         .probe = has_ball,
+                         .group_width = input.group_width,
+                         .tile = input.tile};
+    if (has_ball) {
+        const glm::dvec3 origin = glm::dvec3(wanted.scene.origin) + glm::dvec3(wanted.scene.origin_rest);
+        wanted.scene.probe_center = part.probe->center / reference_length(info) - origin;
+        wanted.scene.probe_radius = float(part.probe->ball_share * part.probe->radius / reference_length(info));
+        wanted.scene.probe_color = part.probe->color;
+    }
+    return surfaces(graph, wanted);
+}
+
 Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, const Shot& shot,
                                      const PicturePart& part, bool feedback)
 {
@@ -397,7 +467,8 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     if (shot.is_slice) set_slice(input.params, session, *volume_, statistics_);
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;
-    input.probe = part.probe.has_value();
+    if (part.probe && !shot.is_slice) set_shell(input, *part.probe, *volume_);
+    if (!shot.is_slice) input.surfaces = draw_surfaces(graph, input, shot.camera, part);
     if (input.mask) {
         input.params.mask_slots = input.mask->slots;
         input.groups = group_looks(session, step_voxels);
@@ -418,6 +489,7 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
         RaycastInput right = prepared.input;
         set_rays(right.params, session, *shot.right_eye, volume_->info(), part.pixels);
+        right.surfaces = draw_surfaces(graph, right, *shot.right_eye, part);
         prepared.input.params.target = right.params.target = glm::uvec2(0);
         const Resource seen_left = raycast(graph, prepared.volume, prepared.input, graph.create("left eye", desc));
         const Resource seen_right = raycast(graph, prepared.volume, right, graph.create("right eye", desc));

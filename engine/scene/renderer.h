@@ -3,11 +3,13 @@
 //
 //   [look changed]            upload transfer function
 //   [look or mask changed]    leap_occupancy -> leap_distance x, y, z      (one thread a cell)
+//   [surfaces or a probe]     surfaces                                     (one thread a pixel)
 //   every part of a picture   raycast                                      (one thread a pixel)
 //
 // `render` makes a whole picture and waits for it; `draw` adds the passes of a part to a graph that somebody else submits
 // (engine/scene/view.h does while a person looks). One thread, the one that owns the device.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -18,17 +20,37 @@
 #include "engine/scene/paged_volume.h"
 #include "engine/scene/resident_volume.h"
 #include "engine/scene/session.h"
+#include "engine/scene/surfaces.h"
 #include "shaders/raycast.h"
 
 namespace shvr {
 
-/// The probe as it is seen: a ball that rays stop at.
-struct ProbeLook {
-    glm::dvec3 center{0.0};  ///< volume space
-    double radius = 1.0;     ///< physical units
-    glm::dvec3 color{1.0};   ///< linear light
-    bool operator==(const ProbeLook&) const = default;
+/// A thin-shell iso-surface in the probe's region (shaders/shell.glsl).
+struct ShellLook {
+    double threshold = 0.0;  ///< intensity
+    double opacity = 0.4;    ///< of one crossing
+    bool is_box = false;     ///< the region; otherwise a ball
+    bool operator==(const ShellLook&) const = default;
 };
+
+/// The probe as it is seen: a ball that rays stop at, and a shell.
+struct ProbeLook {
+    glm::dvec3 center{0.0};   ///< volume space
+    double radius = 1.0;      ///< of its region, physical units
+    glm::dvec3 color{1.0};    ///< linear light
+    double ball_share = 1.0;  ///< of the radius, of the ball; 0: none
+    std::optional<ShellLook> shell;
+    bool operator==(const ProbeLook&) const = default;
+    /// Of a ball that holds all of it.
+    double reach() const { return shell && shell->is_box ? std::sqrt(3.0) * radius : radius; }
+};
+/// The ball beside a shell, which it must not hide.
+inline constexpr double BALL_IN_SHELL = 0.12;
+/// Its group's; grey where it erases.
+glm::dvec3 probe_color(const Session& session, uint8_t group);
+/// What pictures of a session show of its probe.
+std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
+                                     const VolumeStatistics& statistics);
 
 /// A rectangle of a picture, and where it goes.
 struct PicturePart {
@@ -45,6 +67,8 @@ struct RenderOptions {
     bool count_work = false;      ///< keep the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
+    /// Pixels a side of what is drawn at a time: it bounds what a picture of any size takes of the device.
+    uint32_t part_pixels = 1024;
 };
 
 struct Picture {
@@ -91,6 +115,14 @@ public:
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
 
+    /// Where bricks come and go, those of these voxels are among what views need, whatever the transfer function hides: for
+    /// a shell, which may lie where nothing else is seen. A brick is the finest grain of it. Null: none.
+    void show_always(const std::optional<VoxelBox>& voxels);
+
+    /// Opaque balls and rods that rays stop at, instead of those before; `load` forgets them. Fails as `surface_tree` and
+    /// gpu::Memory::create do; then the ones before stay.
+    void set_surfaces(const std::vector<SurfaceLook>& surfaces);
+
     /// The picture of `session` (its light, transfer function, groups, cut, panes) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
 
@@ -127,6 +159,7 @@ public:
                                    const glm::uvec2& pixel);
 
 private:
+    friend class PictureJob;
     /// A transfer function as the device reads it.
     struct Table {
         std::vector<ControlPoint> points;
@@ -147,9 +180,6 @@ private:
     VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
-    Picture render_pane(const Session& session, const Pane& pane, const RenderOptions& options);
-    void render_part(Picture& picture, const Session& session, const Shot& shot, const PicturePart& part,
-                     const RenderOptions& options);
     Resource upload_table(FrameGraph& graph, const Table& table);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
@@ -158,6 +188,8 @@ private:
     };
     Prepared prepare(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                      bool feedback);
+    std::optional<Resource> draw_surfaces(FrameGraph& graph, const RaycastInput& input, const Camera& camera,
+                                          const PicturePart& part);
 
     gpu::Device device_;
     uint64_t host_budget_;
@@ -168,8 +200,10 @@ private:
     std::unique_ptr<DeviceVolume> volume_;
     ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
+    std::optional<VoxelBox> always_shown_;
     DeviceMask mask_;
     Occlusion occlusion_;
+    SurfaceScene surfaces_;
     bool occlusion_has_no_room_ = false;
     std::vector<std::string> messages_;
     uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen

@@ -11,6 +11,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/groups.h"
 #include "engine/scene/panes.h"
+#include "engine/scene/surface_tree.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/open_volume.h"
 #include "engine/volume/source_procedural.h"
@@ -76,7 +77,7 @@ struct CutBox {
     bool operator==(const CutBox&) const = default;
 };
 
-/// Where a person works, and with what. What is not given here is chosen for the volume (`probe_for`).
+/// Where a person works, and with what. What is not given here is chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
     double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
@@ -86,8 +87,15 @@ struct ProbeSettings {
     int connectivity = 6;                    ///< 6 or 26
     std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
     std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    bool shown = false;                      ///< in pictures; the window shows it always
+    /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
+    bool shell = false;
+    double shell_opacity = 0.4;  ///< of one crossing
     bool operator==(const ProbeSettings&) const = default;
 };
+
+/// Of one file.
+inline constexpr size_t MOST_SESSION_SURFACES = 100'000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
@@ -104,7 +112,8 @@ struct Session {
     ViewSettings view;
     CutBox cut;
     ProbeSettings probe;
-    std::filesystem::path mask_path;  ///< absolute; empty: none; the file need not exist yet
+    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
+    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
     /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
     std::filesystem::path trace_path;
 };
@@ -130,6 +139,10 @@ std::unique_ptr<VolumeSource> open_source(const Session& session);
 /// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
 /// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
+
+/// The middle of what a transfer function shows, weighted by its opacity: what painting starts from where nothing else is
+/// said.
+double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);

@@ -56,6 +56,18 @@ size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, doubl
 
 }  // namespace
 
+double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics)
+{
+    double weight = 0.0, sum = 0.0;
+    for (const ControlPoint& point : function.points()) {
+        weight += point.opacity;
+        sum += point.opacity * point.intensity;
+    }
+    const auto [lower, upper] = statistics.range();
+    const double middle = weight > 0.0 ? sum / weight : 0.5 * (lower + upper);
+    return std::clamp(0.5 * (middle + function.lower()), lower, upper);
+}
+
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 {
     const double minimum = statistics.range().lower;

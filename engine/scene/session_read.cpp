@@ -285,8 +285,8 @@ ProbeSettings read_probe(const JsonNode& node)
 {
     ProbeSettings probe;
     if (!node.exists()) return probe;
-    node.expect_object(
-        {"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold", "haptic_threshold"});
+    node.expect_object({"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold",
+                        "haptic_threshold", "shown", "shell", "shell_opacity"});
     if (node["voxel"].exists()) probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-1048576.0, 2097152.0));
     probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
     probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
@@ -298,7 +298,42 @@ ProbeSettings read_probe(const JsonNode& node)
     probe.connectivity = connectivity;
     probe.paint_threshold = read_intensity(node["paint_threshold"]);
     probe.haptic_threshold = read_intensity(node["haptic_threshold"]);
+    probe.shown = node["shown"].flag(probe.shown);
+    probe.shell = node["shell"].flag(probe.shell);
+    probe.shell_opacity = node["shell_opacity"].number(probe.shell_opacity, SHARE);
     return probe;
+}
+
+SurfaceLook read_surface(const JsonNode& node)
+{
+    node.expect_object({"from", "to", "radius", "radii", "color"});
+    const NumberRange radius = above_zero(1e-12, 1e15);
+    SurfaceLook surface;
+    surface.from = node.required("from", "three numbers, [x, y, z]").vector(surface.from, COORDINATE);
+    surface.to = node["to"].vector(surface.from, COORDINATE);
+    if (node["radii"].exists()) {
+        if (node["radius"].exists()) node["radius"].refuse("either radius or radii");
+        const std::vector<JsonNode> radii = node["radii"].elements();
+        if (radii.size() != 2) node["radii"].refuse("two numbers above 0, [from, to]");
+        surface.radius_from = radii[0].number(0.0, radius);
+        surface.radius_to = radii[1].number(0.0, radius);
+    } else {
+        surface.radius_from = surface.radius_to = node.required("radius", "a number above 0").number(0.0, radius);
+    }
+    surface.color = node["color"].color(surface.color);
+    return surface;
+}
+
+std::vector<SurfaceLook> read_surfaces(const JsonNode& node)
+{
+    if (!node.exists()) return {};
+    const std::vector<JsonNode> elements = node.elements();
+    if (elements.size() > MOST_SESSION_SURFACES)
+        node.checked([&] { fail(elements.size(), " surfaces; expected at most ", MOST_SESSION_SURFACES); });
+    std::vector<SurfaceLook> surfaces;
+    surfaces.reserve(elements.size());
+    for (const JsonNode& element : elements) surfaces.push_back(read_surface(element));
+    return surfaces;
 }
 
 void read_annotation(const JsonNode& node, const std::filesystem::path& folder, Session& session)
@@ -383,7 +418,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
 {
     const JsonNode document(json, origin);
     document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "blend", "render", "view", "cut", "probe", "annotation"});
+                            "blend", "render", "view", "cut", "probe", "surfaces", "annotation"});
     document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
     Session session;
     read_volume(document.required("volume", "an object with path or procedural"), folder, session);
@@ -397,6 +432,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.view = read_view(document["view"]);
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);
+    session.surfaces = read_surfaces(document["surfaces"]);
     read_annotation(document["annotation"], folder, session);
     return session;
 }

@@ -218,7 +218,26 @@ json write_probe(const ProbeSettings& probe)
     if (probe.voxel) document["voxel"] = array_of(*probe.voxel);
     if (probe.paint_threshold) document["paint_threshold"] = *probe.paint_threshold;
     if (probe.haptic_threshold) document["haptic_threshold"] = *probe.haptic_threshold;
+    document["shown"] = probe.shown;
+    document["shell"] = probe.shell;
+    document["shell_opacity"] = probe.shell_opacity;
     return document;
+}
+
+json write_surfaces(const std::vector<SurfaceLook>& surfaces)
+{
+    json array = json::array();
+    for (const SurfaceLook& surface : surfaces) {
+        json entry{{"from", array_of(surface.from)}};
+        if (surface.to != surface.from) entry["to"] = array_of(surface.to);
+        if (surface.radius_to == surface.radius_from)
+            entry["radius"] = surface.radius_from;
+        else
+            entry["radii"] = {surface.radius_from, surface.radius_to};
+        entry["color"] = color_text(surface.color);
+        array.push_back(std::move(entry));
+    }
+    return array;
 }
 
 bool is_row(const json& value)
@@ -260,6 +279,7 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["view"] = write_view(session.view);
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
     document["probe"] = write_probe(session.probe);
+    if (!session.surfaces.empty()) document["surfaces"] = write_surfaces(session.surfaces);
     if (!session.mask_path.empty()) document["annotation"]["mask"] = path_text(session.mask_path, folder);
     if (!session.trace_path.empty()) document["annotation"]["trace"] = path_text(session.trace_path, folder);
     try {

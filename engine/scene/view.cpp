@@ -22,6 +22,17 @@ uint32_t scale_for(double ms, double target_ms)
     return std::clamp(uint32_t(std::ceil(std::sqrt(ms / target_ms))), 1u, MOST_SCALE);
 }
 
+PixelBox united(const PixelBox& a, const PixelBox& b)
+{
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    return {glm::min(a.begin, b.begin), glm::max(a.end, b.end)};
+}
+
+double now_s()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
 {
     return (pixels + scale - 1u) / scale;
@@ -29,10 +40,10 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
 
 }  // namespace
 
-void View::look(const Session& session, const Camera& camera, const glm::uvec2& pixels)
+void View::look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
 {
     SHVR_CHECK(pixels.x > 0 && pixels.y > 0);
-    scene_ = std::make_shared<const Scene>(Scene{session, camera, pixels});
+    scene_ = std::make_shared<const Scene>(Scene{session, shot, pixels});
 }
 
 void View::show_probe(const std::optional<ProbeLook>& probe)
@@ -43,16 +54,31 @@ void View::show_probe(const std::optional<ProbeLook>& probe)
 void View::changed(const VoxelBox& voxels)
 {
     patch_is_dirty_ = true;
-    if (base_.job) painted_during_base_.push_back(voxels);
+    if (base_.job) changed_during_base_.push_back(voxels);
     if (shown_scene_) mark_voxels(voxels);
 }
 
-void View::mark_voxels(const VoxelBox& voxels)
+void View::came(const VoxelBox& voxels)
+{
+    patch_is_dirty_ = true;
+    if (base_.job) changed_during_base_.push_back(voxels);
+    if (shown_scene_) mark_voxels(voxels, false);
+}
+
+/// The pixels in which a camera, or either of two, may see them.
+PixelBox View::pixels_of(const Scene& scene, const VoxelBox& voxels) const
 {
     // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
     const glm::dvec3& spacing = renderer_.volume().info().spacing;
-    mark_due(pixels_of_box(shown_scene_->camera, shown_scene_->pixels, glm::dvec3(voxels.lower) * spacing,
-                           glm::dvec3(voxels.upper) * spacing));
+    const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
+    const PixelBox one = pixels_of_box(scene.shot.camera, scene.pixels, lower, upper);
+    if (!scene.shot.right_eye) return one;
+    return united(one, pixels_of_box(*scene.shot.right_eye, scene.pixels, lower, upper));
+}
+
+void View::mark_voxels(const VoxelBox& voxels, bool is_urgent)
+{
+    mark_due(pixels_of(*shown_scene_, voxels), is_urgent);
 }
 
 glm::uvec2 View::tile_counts() const
@@ -60,12 +86,16 @@ glm::uvec2 View::tile_counts() const
     return divided(shown_scene_->pixels, TILE);
 }
 
-void View::mark_due(const PixelBox& pixels)
+void View::mark_due(const PixelBox& pixels, bool is_urgent)
 {
     if (pixels.empty()) return;
     const glm::uvec2 counts = tile_counts(), first = pixels.begin / TILE, last = (pixels.end - 1u) / TILE;
     for (uint32_t y = first.y; y <= last.y; ++y)
-        for (uint32_t x = first.x; x <= last.x; ++x) tiles_[x + counts.x * y].is_due = true;
+        for (uint32_t x = first.x; x <= last.x; ++x) {
+            Tile& tile = tiles_[x + counts.x * y];
+            tile.is_due = true;
+            tile.is_urgent = tile.is_urgent || is_urgent;
+        }
 }
 
 void View::reset_tiles()
@@ -88,8 +118,19 @@ void View::advance()
 {
     reap();
     if (renderer_.paged())
-        for (const VoxelBox& voxels : renderer_.paged()->advance()) changed(voxels);
-    while (in_flight_ms_ < options_.in_flight_ms && submit_next()) {
+        for (const VoxelBox& voxels : renderer_.paged()->advance()) came(voxels);
+    submit_due();
+}
+
+void View::submit_due()
+{
+    while (in_flight_ms_ < options_.in_flight_ms && submit_next(false)) {
+    }
+}
+
+void View::submit_sketches()
+{
+    while (in_flight_ms_ < options_.in_flight_ms && submit_next(true)) {
     }
 }
 
@@ -98,31 +139,32 @@ bool View::patch_is_due() const
     return patch_.shown.scene != shown_scene_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
 }
 
-bool View::submit_next()
+bool View::submit_next(bool sketches_alone)
 {
     if (!scene_) return false;
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
     if (base_.job || patch_.job) return false;  // on their way
     if (scene_ != shown_scene_) {
         pass_times_.clear();
-        painted_during_base_.clear();
+        changed_during_base_.clear();
         start(base_, scene_, std::nullopt, options_.motion_ms);
         if (probe_) start(patch_, scene_, probe_, options_.probe_ms);  // shown together with it
         patch_is_dirty_ = false;
-        return submit_next();
+        return submit_next(sketches_alone);
     }
     if (patch_is_due()) {
         patch_is_dirty_ = false;
         start(patch_, scene_, probe_, options_.probe_ms);
         finish_sketches();  // there may be nothing to draw
-        return submit_next();
+        return submit_next(sketches_alone);
     }
+    if (sketches_alone) return false;
     if (submit_occlusion()) return true;
-    if (patch_is_due()) return submit_next();
+    if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.scale > 1 && !patch_.shown.part.empty()) {
         start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
-        return submit_next();
+        return submit_next(sketches_alone);
     }
     return false;
 }
@@ -139,8 +181,12 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
 {
     const bool is_patch = &sketch == &patch_;
     PixelBox part{glm::uvec2(0), scene->pixels};
-    if (is_patch)
-        part = probe ? pixels_of_ball(scene->camera, scene->pixels, probe->center, probe->radius) : PixelBox{};
+    if (is_patch) part = PixelBox{};
+    if (is_patch && probe) {
+        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach());
+        if (const auto& eye = scene->shot.right_eye)
+            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach()));
+    }
     const uint32_t scale = scale_for(double(part.area()) * average_ms_per_pixel_, target_ms);
     sketch_ms_ = 0.0;
     Sketch::Content content{.scene = scene, .probe = probe, .scale = scale, .pixels = divided(scene->pixels, scale)};
@@ -198,7 +244,7 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running
 {
     const Scene& scene = *running.scene;
     Renderer::Drawn drawn =
-        renderer_.draw(graph, scene.session, scene.camera, part, graph.import("light", work_.import()));
+        renderer_.draw(graph, scene.session, scene.shot, part, graph.import("light", work_.import()));
     running.reached = drawn.reached;
     running.tree = std::move(drawn.tree);
     return drawn.target;
@@ -245,7 +291,8 @@ void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, 
 bool View::occlusion_is_due() const
 {
     const OcclusionSettings& settings = shown_scene_->session.light.occlusion;
-    return (settings.automatic || occlusion_is_asked_for_) && renderer_.occlusion().is_due();
+    return !shown_scene_->shot.is_slice && (settings.automatic || occlusion_is_asked_for_) &&
+           renderer_.occlusion().is_due();
 }
 
 /// A slice of what keeps ambient light off. Its bricks lie behind each other, so sharp tiles wait until all are done.
@@ -253,8 +300,9 @@ bool View::submit_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
     const Scene& scene = *shown_scene_;
+    if (scene.shot.is_slice) return false;
     if (!scene.session.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    std::optional<Renderer::OcclusionSlice> slice = renderer_.next_occlusion(scene.session, scene.camera, MOST);
+    std::optional<Renderer::OcclusionSlice> slice = renderer_.next_occlusion(scene.session, scene.shot.camera, MOST);
     if (!slice) {
         occlusion_is_asked_for_ = false;
         patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
@@ -267,17 +315,25 @@ bool View::submit_occlusion()
     return true;
 }
 
+bool View::may_draw(const Tile& tile) const
+{
+    constexpr double AGAIN_S = 0.25;
+    if (!tile.is_due || !tile.is_shown || tile.is_urgent) return tile.is_due;
+    const bool more_comes = renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
+}
+
 bool View::submit_tiles()
 {
     const glm::uvec2 counts = tile_counts(), pixels = shown_scene_->pixels;
     glm::dvec2 focus = 0.5 * glm::dvec2(pixels);
     if (probe_)
-        if (const auto seen = project(shown_scene_->camera, pixels, probe_->center)) focus = seen->pixel;
+        if (const auto seen = project(shown_scene_->shot.camera, pixels, probe_->center)) focus = seen->pixel;
     std::optional<glm::uvec2> nearest;
     double best = 0.0;
     for (uint32_t y = 0; y < counts.y; ++y)
         for (uint32_t x = 0; x < counts.x; ++x) {
-            if (!tiles_[x + counts.x * y].is_due) continue;
+            if (!may_draw(tiles_[x + counts.x * y])) continue;
             const glm::dvec2 apart = (glm::dvec2(x, y) + 0.5) * double(TILE) - focus;
             const double square = glm::dot(apart, apart);
             if (!nearest || square < best) nearest = glm::uvec2(x, y), best = square;
@@ -286,7 +342,7 @@ bool View::submit_tiles()
     if (submit_preparation(*shown_scene_)) return true;
 
     // As many neighbours in its row as a step affords.
-    const auto is_due = [&](uint32_t x) { return tiles_[x + counts.x * nearest->y].is_due; };
+    const auto is_due = [&](uint32_t x) { return may_draw(tiles_[x + counts.x * nearest->y]); };
     uint32_t begin = nearest->x, end = nearest->x + 1;
     const double tile_ms = cost_ms(uint64_t(TILE) * TILE);
     const auto affords_more = [&] { return (end - begin + 1) * tile_ms <= options_.step_ms; };
@@ -296,7 +352,9 @@ bool View::submit_tiles()
     reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
     Running running{.purpose = Purpose::tiles, .scene = shown_scene_};
     for (uint32_t x = begin; x < end; ++x) {
-        tiles_[x + counts.x * nearest->y].is_due = false;
+        Tile& tile = tiles_[x + counts.x * nearest->y];
+        tile.is_due = tile.is_urgent = false;
+        tile.drawn_s = now_s();
         running.tiles.push_back(x + counts.x * nearest->y);
     }
     PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
@@ -414,13 +472,19 @@ void View::finish_sketches()
     flip(base_);
     shown_scene_ = base_.shown.scene;
     reset_tiles();
-    for (const VoxelBox& voxels : std::exchange(painted_during_base_, {})) changed(voxels);
+    for (const VoxelBox& voxels : std::exchange(changed_during_base_, {})) changed(voxels);
 }
 
 bool View::complete() const
 {
     if (!scene_) return true;
     if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
+    return is_finished();
+}
+
+bool View::is_finished() const
+{
+    if (!scene_) return true;
     if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
     if (occlusion_is_due()) return false;
     return (patch_.shown.scale == 1 || patch_.shown.part.empty()) &&

@@ -36,22 +36,34 @@ public:
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
 
     /// What is to be seen: all of it is drawn anew. Not to be called where nothing changed.
-    void look(const Session& session, const Camera& camera, const glm::uvec2& pixels);
+    void look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
     void show_probe(const std::optional<ProbeLook>& probe);
-    /// These voxels have been painted, or have come to the device.
+    /// These voxels have been painted.
     void changed(const VoxelBox& voxels);
+    /// These have come to the device, finer than before. While more of them come, tiles that were drawn without them are
+    /// drawn again a few times a second.
+    void came(const VoxelBox& voxels);
 
     /// Ambient occlusion is renewed though the session says not to do so by itself.
     void update_occlusion() { occlusion_is_asked_for_ = true; }
 
     /// Takes what the device has finished, and submits what is due next.
     void advance();
+    /// The same where somebody else asks the volume for what has come, and only so far as the whole picture is there.
+    void collect() { reap(); }
+    void submit_due();
+    void submit_sketches();
+    /// All of the picture is there, coarse perhaps.
+    bool is_sketched() const { return scene_ == shown_scene_ && !base_.job && !patch_.job && !patch_is_due(); }
+    /// Nothing is due or on its way, whatever may still come to the device.
+    bool is_finished() const;
+    bool is_idle() const { return running_.empty(); }
     /// Waits for what is on its way; `in_flight_ms` or so.
     void wait();
     /// The picture is as sharp as the budget lets it be, and nothing is due or on its way.
     bool complete() const;
     /// The camera of what layers() show; null before there is anything.
-    const Camera* shown_camera() const { return shown_scene_ ? &shown_scene_->camera : nullptr; }
+    const Camera* shown_camera() const { return shown_scene_ ? &shown_scene_->shot.camera : nullptr; }
     /// Counts what changed in layers(): who shows them compares.
     uint64_t revision() const { return revision_; }
 
@@ -78,7 +90,7 @@ public:
 private:
     struct Scene {
         Session session;
-        Camera camera;
+        Shot shot;
         glm::uvec2 pixels{0};
     };
     using SceneRef = std::shared_ptr<const Scene>;
@@ -108,6 +120,8 @@ private:
     struct Tile {
         bool is_shown = false;
         bool is_due = false;
+        bool is_urgent = false;  ///< painted
+        double drawn_s = 0.0;    ///< host's time of the last submission
     };
     enum class Purpose : uint8_t { preparation, base, patch, tiles };
     struct Running {
@@ -121,7 +135,8 @@ private:
         PagedVolume::TreeRef tree;
     };
 
-    bool submit_next();
+    bool submit_next(bool sketches_alone);
+    bool may_draw(const Tile& tile) const;
     bool submit_preparation(const Scene& scene);
     Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
     void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
@@ -130,7 +145,8 @@ private:
     void submit_encoding(Sketch& sketch, Purpose purpose);
     bool submit_occlusion();
     bool occlusion_is_due() const;
-    void mark_voxels(const VoxelBox& voxels);
+    void mark_voxels(const VoxelBox& voxels, bool is_urgent = true);
+    PixelBox pixels_of(const Scene& scene, const VoxelBox& voxels) const;
     bool submit_tiles();
     void encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end);
     gpu::EncodeParams encoding() const;
@@ -142,7 +158,7 @@ private:
     void finish_sketches();
     void flip(Sketch& sketch);
     void reset_tiles();
-    void mark_due(const PixelBox& pixels);
+    void mark_due(const PixelBox& pixels, bool is_urgent);
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * ms_per_pixel_; }
@@ -160,7 +176,7 @@ private:
     gpu::Storage work_;            ///< linear light of the part that is being drawn
     gpu::Storage sharp_;           ///< all sharp tiles
     std::vector<Tile> tiles_;
-    std::vector<VoxelBox> painted_during_base_;
+    std::vector<VoxelBox> changed_during_base_;
     bool occlusion_is_asked_for_ = false;
     bool occlusion_was_renewed_ = false;  ///< and what covers the probe does not show it yet
     std::deque<Running> running_;

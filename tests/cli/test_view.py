@@ -110,6 +110,36 @@ class View(CliTest):
         self.assertEqual(saved["probe"]["group"], 7)
         self.check_photograph(session, photograph)
 
+    def test_the_window_is_divided_and_its_parts_are_used(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        right, below = x + 140, y + 120   # well inside the quarters beside and below the first
+        for number, key in enumerate(["F9", "F11", "F6"], 1):
+            self.do("mousemove", x - 100, y - 100, "key", key, pause_s=1)
+            if key == "F9":   # a map: drag and wheel move the camera
+                self.do("mousemove", right, y - 100, "mousedown", 1, "mousemove", right + 20, y - 90,
+                        "mousemove", right + 40, y - 80, "mouseup", 1, "click", 4, pause_s=1)
+            if key == "F6":   # the slice across z: the wheel moves it by a voxel
+                self.do("mousemove", right, y - 100, pause_s=0.5)
+                self.do("key", "ctrl+s", pause_s=1)
+                before = json.loads(session.read_text())["probe"]["voxel"]
+                self.do("click", "--repeat", 3, "--delay", 60, 4, pause_s=1)
+            self.do("key", "p")
+            self.wait_for_file(self.folder / f"session-view-{number}.png")
+        self.do("key", "ctrl+s", pause_s=0.5)
+        report = self.finish()
+        for said in ["Overview", "Two eyes: side by side", "Slices through the probe"]:
+            self.assertTrue(any(line.startswith(said) for line in report["messages"]), report["messages"])
+        self.assertEqual(report["messages"].count(""), 0)
+        saved = json.loads(session.read_text())
+        self.assertEqual(saved["view"]["arrangement"], "slices")
+        for axis, way in enumerate([0, 0, -3]):   # away from the viewer, who looks from the top
+            self.assertAlmostEqual(saved["probe"]["voxel"][axis], before[axis] + way, places=3)
+        self.assertNotAlmostEqual(saved["cameras"]["window"]["target"][0], 32.0, places=2)
+        self.check_photograph(session, self.folder / "session-view-3.png")
+
     def check_photograph(self, session, photograph):
         """It is what `shvr render` makes of what was saved, but for the probe's ball."""
         size = read_png_header(photograph)

@@ -99,6 +99,7 @@ struct Studio {
     void set_up(const Golden& golden)
     {
         renderer.load(golden.opened.source, golden.opened.statistics, golden.opened.session.render);
+        renderer.set_surfaces(golden.opened.session.surfaces);
         Annotator annotator(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {
@@ -114,7 +115,8 @@ struct Studio {
 
     Image8 draw(const Session& session, const Camera& camera)
     {
-        const Picture picture = renderer.render(session, camera);
+        const Picture picture = renderer.render(
+            session, camera, {.probe = shown_probe(session, renderer.volume().info(), renderer.statistics())});
         REQUIRE(picture.complete);
         REQUIRE(count_not_finite(picture.image) == 0);
         return to_image8(picture.image);
@@ -236,6 +238,15 @@ const Mutation MUTATIONS[] = {
          for (auto& [group, look] : session.groups) look.visible = true;
      }},
     {"groups forgotten", [](Session& session, Camera&) { session.groups.clear(); }},
+    {"the probe left out", [](Session& session, Camera&) { session.probe.shown = false; }},
+    {"surfaces half a voxel off",
+     [](Session& session, Camera&) {
+         for (SurfaceLook& surface : session.surfaces) surface.from.x += 0.5;
+     }},
+    {"surfaces a quarter of a voxel thicker",
+     [](Session& session, Camera&) {
+         for (SurfaceLook& surface : session.surfaces) surface.radius_to += 0.25;
+     }},
 };
 
 // ---- Blessing -------------------------------------------------------------------------------------------------------
@@ -368,6 +379,7 @@ TEST_CASE("every wrong rendering fails a golden")
             Session session = golden.opened.session;
             Camera camera = Studio::camera_of_golden(golden);
             mutation.apply(session, camera);
+            studio.renderer.set_surfaces(session.surfaces);
             if (why_different(studio.draw(session, camera), expected)) caught_by[mutation.name].push_back(golden.name);
         }
     }

@@ -10,6 +10,7 @@
 #include "shaders/pages.h"
 #include "shaders/paint.h"
 #include "shaders/raycast.h"
+#include "shaders/surfaces.h"
 
 using namespace shvr;
 
@@ -40,12 +41,24 @@ Members raycast_params()
             MEMBER(RaycastParams, background),    MEMBER(RaycastParams, light),
             MEMBER(RaycastParams, ambient),       MEMBER(RaycastParams, diffuse),
             MEMBER(RaycastParams, specular),      MEMBER(RaycastParams, shininess),
-            MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, probe_center),
-            MEMBER(RaycastParams, probe_radius),  MEMBER(RaycastParams, probe_color),
-            MEMBER(RaycastParams, depth_plane),   MEMBER(RaycastParams, blend_color),
-            MEMBER(RaycastParams, blend_size),    MEMBER(RaycastParams, blend_rate),
-            MEMBER(RaycastParams, slice_black),   MEMBER(RaycastParams, slice_scale),
-            MEMBER(RaycastParams, slice_paint)};
+            MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, depth_plane),
+            MEMBER(RaycastParams, blend_color),   MEMBER(RaycastParams, blend_size),
+            MEMBER(RaycastParams, blend_rate),    MEMBER(RaycastParams, slice_black),
+            MEMBER(RaycastParams, slice_scale),   MEMBER(RaycastParams, slice_paint),
+            MEMBER(RaycastParams, shell_center),  MEMBER(RaycastParams, shell_reach),
+            MEMBER(RaycastParams, shell_code),    MEMBER(RaycastParams, shell_color),
+            MEMBER(RaycastParams, shell_opacity)};
+}
+
+Members surface_params()
+{
+    return {
+        MEMBER(SurfaceParams, origin),     MEMBER(SurfaceParams, origin_rest),  MEMBER(SurfaceParams, middle_corner),
+        MEMBER(SurfaceParams, middle_dx),  MEMBER(SurfaceParams, middle_dy),    MEMBER(SurfaceParams, along_corner),
+        MEMBER(SurfaceParams, along_dx),   MEMBER(SurfaceParams, along_dy),     MEMBER(SurfaceParams, begin),
+        MEMBER(SurfaceParams, middle),     MEMBER(SurfaceParams, end),          MEMBER(SurfaceParams, slack),
+        MEMBER(SurfaceParams, node_count), MEMBER(SurfaceParams, probe_center), MEMBER(SurfaceParams, probe_radius),
+        MEMBER(SurfaceParams, probe_color)};
 }
 
 Members occupancy_params()
@@ -125,7 +138,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     for (const char* kernel :
          {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked", "raycast_paged",
           "raycast_paged_masked", "raycast_paged_filtered", "raycast_paged_filtered_masked", "raycast_occluded",
-          "raycast_paged_filtered_masked_occluded"})
+          "raycast_surfaced", "raycast_paged_filtered_masked_occluded",
+          "raycast_paged_filtered_masked_occluded_surfaced"})
         check_members(kernel, "params_block", raycast_params());
     for (const char* kernel : {"raycast_occluded", "raycast_paged_filtered_masked_occluded"})
         check_members(kernel, "occlusion_look", {MEMBER(OcclusionLook, strength), MEMBER(OcclusionLook, curve)});
@@ -140,6 +154,17 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "params_block", occlusion_cells_params());
         check_members(kernel, "jobs", {MEMBER(OcclusionCellsJob, brick), MEMBER(OcclusionCellsJob, slot)});
     }
+    for (const char* kernel : {"surfaces", "surfaces_listed"}) {
+        check_members(kernel, "params_block", raycast_params());
+        check_members(kernel, "surface_params", surface_params());
+    }
+    check_members("surfaces_listed", "surface_nodes",
+                  {MEMBER(SurfaceNode, lower), MEMBER(SurfaceNode, upper), MEMBER(SurfaceNode, skip),
+                   MEMBER(SurfaceNode, begin), MEMBER(SurfaceNode, end)});
+    check_members(
+        "surfaces_listed", "surface_list",
+        {MEMBER(Surface, from), MEMBER(Surface, from_rest), MEMBER(Surface, along), MEMBER(Surface, radius_from),
+         MEMBER(Surface, radius_to), MEMBER(Surface, color), MEMBER(Surface, number)});
     for (const char* kernel : {"raycast_masked", "raycast_filtered_masked"})
         check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
     for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {

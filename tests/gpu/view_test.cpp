@@ -19,7 +19,7 @@ namespace {
 /// Everything slow: coarse sketches, tiles one by one.
 constexpr View::Options CRAWLING{.step_ms = 1e-6, .in_flight_ms = 1e-5, .motion_ms = 1e-5, .probe_ms = 1e-5};
 
-using Screen = std::vector<uint32_t>;  // 4 bytes a pixel
+using ScreenPixels = std::vector<uint32_t>;  // 4 bytes a pixel
 
 class Seen : public OnDevice {
 public:
@@ -36,15 +36,15 @@ public:
             view.advance();
         }
     }
-    static Screen shown(View& view)
+    static ScreenPixels shown(View& view)
     {
         const Image8 image = view.read_back();
-        Screen screen(image.rgba.size() / 4);
+        ScreenPixels screen(image.rgba.size() / 4);
         std::memcpy(screen.data(), image.rgba.data(), image.rgba.size());
         return screen;
     }
     /// The picture of Renderer::render, encoded.
-    Screen direct(const Camera& camera)
+    ScreenPixels direct(const Camera& camera)
     {
         const glm::uvec2 size = pixels();
         FrameGraph graph;
@@ -61,7 +61,7 @@ public:
         graph.read_back(encode(graph, light,
                                graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))), params));
         const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
-        Screen texels(bytes.size() / 4);
+        ScreenPixels texels(bytes.size() / 4);
         std::memcpy(texels.data(), bytes.data(), bytes.size());
         return texels;
     }
@@ -83,6 +83,33 @@ TEST_CASE_FIXTURE(Seen, "a view comes to rest on the direct picture, bit for bit
             settle(view);
             CHECK(shown(view) == direct(camera(direction)));
         }
+    }
+}
+
+TEST_CASE_FIXTURE(Seen, "surfaces are in the sketch, in the tiles and around the probe")
+{
+    probe = ProbeLook{.center = {20, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
+    const std::vector<SurfaceLook> rods{{{5, 5, 5}, {30, 20, 40}, 3.0, 1.0, GREEN},
+                                        {{20, 25, 5}, {20, 10, 60}, 2.0, 2.0}};
+    for (const View::Options& options : {View::Options{}, CRAWLING}) {
+        View view(renderer(), options);
+        view.show_probe(probe);
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        const ScreenPixels without = shown(view);
+        for (int steps = 0; steps < 7; ++steps) view.advance();
+        renderer().set_surfaces(rods);
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        CHECK((shown(view) != without));
+        CHECK(shown(view) == direct(camera({1, 2, 3})));
+        for (int steps = 0; steps < 5; ++steps) view.advance();  // in the middle of a picture
+        view.look(session, camera({2, 2, 3}), pixels());
+        for (int steps = 0; steps < 20; ++steps) view.advance();
+        renderer().set_surfaces({});
+        view.look(session, camera({1, 2, 3}), pixels());
+        settle(view);
+        CHECK((shown(view) == without));
     }
 }
 

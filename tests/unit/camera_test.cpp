@@ -248,6 +248,36 @@ TEST_CASE("nothing is between the planes where near is behind far or the volume 
     }
 }
 
+TEST_CASE("shares tell where the clip range and the target lie, also where the volume is out of reach")
+{
+    const VolumeInfo volume = volume_of({10, 10, 10});
+    for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic})
+        for (const double near : {0.0, 5.0, 28.0, 1000.0}) {
+            CAPTURE(near);
+            Camera camera = camera_looking("top", volume);
+            camera.projection = projection;
+            camera.near_distance = near;
+            camera.far_distance = near + 7.0;
+            const RayPlanes planes = ray_planes(camera, {8, 8}, volume);
+            const auto depth = [&](double share) {
+                const Ray ray = ray_at(planes, 4.0, 4.0);
+                const glm::dvec3 at = glm::mix(ray.near_point, ray.far_point, share);
+                return glm::dot(at - camera.eye, glm::normalize(camera.target - camera.eye));
+            };
+            const double hair = projection == Camera::Projection::perspective ? 1e-3 : 0.0;
+            CHECK(depth(planes.begin) == doctest::Approx(std::max(near, hair)).epsilon(1e-9));
+            CHECK(depth(planes.end) == doctest::Approx(near + 7.0).epsilon(1e-9));
+            CHECK((planes.middle >= 0.0 && planes.middle <= 1.0));
+            camera.far_distance = 0.0;
+            CHECK(ray_planes(camera, {8, 8}, volume).end == INFINITY);
+        }
+    Camera camera = camera_looking("top", volume);
+    camera.target = camera.eye + 0.9 * (camera.target - camera.eye);
+    const RayPlanes planes = ray_planes(camera, {8, 8}, volume);
+    const Ray ray = ray_at(planes, 4.0, 4.0);
+    CHECK(glm::distance(glm::mix(ray.near_point, ray.far_point, planes.middle), camera.target) < 1e-9);
+}
+
 TEST_CASE("orthographic rays are parallel to the last bit")
 {
     const VolumeInfo volume = volume_of({64, 64, 64}, {1.0, 1.1, 1.3});

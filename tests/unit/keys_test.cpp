@@ -19,10 +19,14 @@ struct World {
     Session session;
     VolumeInfo volume;
     VolumeStatistics statistics;
+    std::vector<Screen::Part> panes;
     PaintOp brush;
-    std::vector<View::PassTime> pass_times;
-    Model model{
-        .session = session, .volume = volume, .statistics = statistics, .brush = brush, .pass_times = pass_times};
+    Model model{.session = session,
+                .volume = volume,
+                .statistics = statistics,
+                .panes = panes,
+                .brush = brush,
+                .pass_times = {}};
 };
 
 Actions actions_of(const World& world, int key, int mods, bool repeated = false)

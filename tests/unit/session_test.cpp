@@ -82,7 +82,10 @@ const std::string EVERYTHING = R"({
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
-            "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3},
+            "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25},
+  "surfaces": [{"from": [1, 2, -3.5], "radius": 0.25, "color": "#d03020"},
+               {"from": [0, 0, 0], "to": [10, 20, 30], "radii": [2, 1.5]},
+               {"from": [5, 5, 5], "to": [6, 5, 5], "radius": 3}],
   "annotation": {"mask": "shvr/labels.mask"}
 })";
 
@@ -139,8 +142,11 @@ TEST_CASE("every key of a session is read")
     CHECK(session.view ==
           ViewSettings{Arrangement::slices, {StereoOutput::top_bottom, 0.0625, true}, {-20.0, 300.5, 0.25, 3.0}, 1.5});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
-    CHECK(session.probe ==
-          ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5, -3});
+    CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5,
+                                         -3, true, true, 0.25});
+    CHECK((session.surfaces == std::vector<SurfaceLook>{{{1, 2, -3.5}, {1, 2, -3.5}, 0.25, 0.25, color("#d03020")},
+                                                        {{0, 0, 0}, {10, 20, 30}, 2.0, 1.5, glm::dvec3(1)},
+                                                        {{5, 5, 5}, {6, 5, 5}, 3.0, 3.0, glm::dvec3(1)}}));
     CHECK(session.mask_path == "/data/scans/shvr/labels.mask");
 }
 
@@ -157,6 +163,7 @@ TEST_CASE("a session that says little has the defaults of the structures")
     CHECK(session.view == ViewSettings{});
     CHECK(session.cut == CutBox{});
     CHECK(session.probe == ProbeSettings{});
+    CHECK(session.surfaces.empty());
     CHECK(session.mask_path.empty());
     CHECK_FALSE(session.procedural);
     CHECK_FALSE(session.raw_layout);
@@ -186,6 +193,7 @@ TEST_CASE("what is written reads back the same")
         CHECK(second.render == first.render);
         CHECK(second.cut == first.cut);
         CHECK(second.probe == first.probe);
+        CHECK((second.surfaces == first.surfaces));
         CHECK(second.mask_path == first.mask_path);
         CHECK(second.trace_path == first.trace_path);
         REQUIRE(second.procedural.has_value() == first.procedural.has_value());
@@ -350,6 +358,20 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
              Case{R"("probe": {"connectivity": 18})", "probe.connectivity is 18; expected 6 or 26"},
              Case{R"("probe": {"radius_voxels": 127.5})", "probe.radius_voxels is 127.5; expected"},
              Case{R"("probe": {"brush": "pen"})", "probe.brush is"},
+             Case{R"("probe": {"shown": 1})", "probe.shown is 1; expected true or false"},
+             Case{R"("surfaces": {})", "surfaces is {}; expected an array"},
+             Case{R"("surfaces": [3])", "surfaces.0 is 3; expected an object"},
+             Case{R"("surfaces": [{"radius": 1}])", "surfaces.0.from is missing; expected three numbers, [x, y, z]"},
+             Case{R"("surfaces": [{"from": [1, 2]}])", "surfaces.0.from is [1,2]; expected three numbers"},
+             Case{R"("surfaces": [{"from": [1, 2, 3]}])", "surfaces.0.radius is missing; expected a number above 0"},
+             Case{R"("surfaces": [{"from": [1, 2, 3], "radius": 0}])", "surfaces.0.radius is 0; expected a number"},
+             Case{R"("surfaces": [{"from": [1, 2, 3], "radii": [1]}])",
+                  "surfaces.0.radii is [1]; expected two numbers"},
+             Case{R"("surfaces": [{"from": [1, 2, 3], "radii": [1, -1]}])", "surfaces.0.radii.1 is -1; expected a"},
+             Case{R"("surfaces": [{"from": [1, 2, 3], "radii": [1, 1], "radius": 1}])",
+                  "surfaces.0.radius is 1; expected either radius or radii"},
+             Case{R"("surfaces": [{"from": [0, 0, 0], "radius": 1}, {"from": [0, 0, 1e16], "radius": 1}])",
+                  "surfaces.1.from.2 is 1e+16; expected a number from"},
              Case{R"("cut": {"lower": [-1, 0, 0]})", "cut.lower.0 is -1; expected a number from 0 to"},
              Case{R"("annotation": {"mask": ""})", "annotation.mask is \"\"; expected a text that is not empty"},
              Case{R"("annotation": {"mask": "a\u0000b"})", "annotation.mask is \"a\\u0000b\"; expected a path"},

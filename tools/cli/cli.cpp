@@ -100,6 +100,7 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads});
     opened.renderer->load(opened.source, session.statistics, opened.session.render);
+    opened.renderer->set_surfaces(opened.session.surfaces);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);

@@ -49,9 +49,11 @@ Profile measure_frames(const Options& options, Opened& opened)
     const auto started = std::chrono::steady_clock::now();
     const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
     double measured_from = 0.0;
+    const std::optional<ProbeLook> probe =
+        shown_probe(opened.session, opened.source->info(), opened.renderer->statistics());
     for (int i = 0; i < options.warmup + options.frames; ++i) {
         const double begin = now();
-        Picture picture = renderer.render(opened.session, camera, {.serialize = options.serialize});
+        Picture picture = renderer.render(opened.session, camera, {.probe = probe, .serialize = options.serialize});
         const double end = now();
         if (i == 0) profile.first_frame = picture.passes;
         if (i < options.warmup) continue;
@@ -65,7 +67,7 @@ Profile measure_frames(const Options& options, Opened& opened)
     }
     profile.bytes = bytes_of(renderer);
     // Counting costs time, so it has a frame of its own.
-    profile.counted = renderer.render(opened.session, camera, {.count_work = true}).passes;
+    profile.counted = renderer.render(opened.session, camera, {.probe = probe, .count_work = true}).passes;
     return profile;
 }
 

@@ -24,7 +24,10 @@ void run(Options options)
     Opened opened = open(options.input, options.common);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
-    const Picture picture = opened.renderer->render(opened.session, camera, {.count_work = options.common.json});
+    const std::optional<ProbeLook> probe =
+        shown_probe(opened.session, opened.source->info(), opened.renderer->statistics());
+    const Picture picture = opened.renderer->render(
+        opened.session, camera, {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
     if (std::filesystem::path(options.output).extension() == ".pfm")
         write_pfm(options.output, picture.image);
     else

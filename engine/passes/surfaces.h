@@ -1,0 +1,31 @@
+#pragma once
+// Opaque surfaces along the rays of a picture (shaders/surfaces.comp).
+
+#include <optional>
+
+#include "engine/graph/frame_graph.h"
+#include "shaders/raycast.h"
+#include "shaders/surfaces.h"
+
+namespace shvr {
+
+/// Surfaces on the device, and the hierarchy of boxes around them.
+struct SurfaceList {
+    Resource nodes;  ///< gpu::SurfaceNode, in depth-first order; params.node_count of them
+    Resource list;   ///< gpu::Surface
+};
+
+struct SurfacesInput {
+    gpu::RaycastParams params;  ///< the same as the ray caster's: pixels, light and distance blending are read
+    gpu::SurfaceParams scene;
+    std::optional<SurfaceList> listed;
+    bool probe = false;        ///< scene.probe_* are set
+    uint32_t group_width = 8;  ///< as RaycastInput's
+    glm::uvec2 tile{0};        ///< as RaycastInput's
+};
+
+/// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface ends
+/// it, gpu::NO_SURFACE where none does. Work of that one frame.
+Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
+
+}  // namespace shvr

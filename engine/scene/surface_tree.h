@@ -1,0 +1,38 @@
+#pragma once
+// Opaque surfaces of a scene as a person gives them, and as the device searches them: a hierarchy of boxes in depth-first
+// order with a way past each. Plain data; any thread.
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/volume/volume.h"
+#include "shaders/surfaces.h"
+
+namespace shvr {
+
+/// A ball, where both ends are the same, or a rod: the convex hull of two balls.
+struct SurfaceLook {
+    glm::dvec3 from{0.0}, to{0.0};              ///< volume space, physical units
+    double radius_from = 1.0, radius_to = 1.0;  ///< physical units, above 0
+    glm::dvec3 color{1.0};                      ///< linear light
+    bool operator==(const SurfaceLook&) const = default;
+};
+
+/// 60 bytes each, and at most as many of nodes: below what any device takes for one buffer, 128 MiB.
+inline constexpr size_t MOST_SURFACES = 1'000'000;
+
+/// Surfaces in a leaf at most. Less is more boxes to load, more is more rods to meet.
+inline constexpr size_t SURFACES_IN_LEAF = 4;
+
+struct SurfaceTree {
+    std::vector<gpu::SurfaceNode> nodes;
+    std::vector<gpu::Surface> list;  ///< in the order of the leaves
+};
+
+/// Fails, naming the surface, where there are more than MOST_SURFACES, or one of them is not finite, is no larger than
+/// nothing, or is farther than 2^20 reference lengths from where the volume may be. `most_in_leaf` is for tests.
+SurfaceTree surface_tree(const std::vector<SurfaceLook>& surfaces, const VolumeInfo& volume,
+                         size_t most_in_leaf = SURFACES_IN_LEAF);
+
+}  // namespace shvr

@@ -1,0 +1,189 @@
+// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, found in the cell and
+// not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is split
+// where its derivative is 0, and each stretch holds one crossing at most (Marmitt and others 2004, "Fast and accurate
+// ray-voxel intersection techniques for iso-surface ray tracing").
+//
+// Whether a ray is inside is carried from cell to cell: a crossing that rounding loses at a border is found at the start of
+// the next cell, so there are neither holes nor doubles. Every variable that outlives a turn of a loop is carried from turn to
+// turn, since lanes that leave early keep no other.
+
+const float NO_SHELL = 1e30;
+// Reference lengths. A cell that a ray cuts by less counts to its neighbour, and a shell thinner than this is none.
+const float SHELL_HAIR = 1e-3;
+
+struct Shell {
+    float next;       // length along the ray where the next crossing is
+    float from;       // where the search goes on
+    float end;
+    bool is_inside;   // at `from`
+};
+
+// The cell of the lattice around a position, in the brick that holds it.
+struct Cell {
+    bool is_there;
+    vec3 corner;      // lower, on the lattice of the brick's level
+    ivec3 to_atlas;
+    float scale;      // voxels of level 0 a cell is wide
+    float exit;       // length along the ray
+};
+
+Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
+{
+    const Place place = place_at(params, position);
+#ifdef PAGED
+    if (FEEDBACK != 0u) note_reached(place);
+#endif
+    Cell cell;
+    cell.is_there = place.slot != NO_SLOT;
+#ifdef PAGED
+    const uint level = place.level;
+#else
+    const uint level = 0u;
+#endif
+    cell.scale = float(1u << level);
+    cell.corner = floor(position / cell.scale - 0.5);
+    const uvec3 brick = uvec3(position) >> level + 5u;
+    cell.to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
+    // A brick ends half-way through a cell, and beyond it there may be another level.
+    const float brick_size = cell.scale * float(BRICK_SIZE);
+    const vec3 of_cell = ((cell.corner + 0.5 + ray.ahead) * cell.scale - ray.origin) * ray.inverse;
+    const vec3 of_brick = ((vec3(brick) + ray.ahead) * brick_size - ray.origin) * ray.inverse;
+    const vec3 exits = min(of_cell, of_brick);
+    cell.exit = min(exits.x, min(exits.y, exits.z));
+    return cell;
+}
+
+Density density_in(const Cell cell, vec3 position)
+{
+    const vec3 fraction = clamp(position / cell.scale - 0.5 - cell.corner, 0.0, 1.0);
+    return density_at(ivec3(cell.corner) + cell.to_atlas, fraction);
+}
+
+float above_threshold(const RaycastParams params, const Ray ray, const Cell cell, float s)
+{
+    return value_of(density_in(cell, position_at(params, ray, s))) - params.shell_code;
+}
+
+float cubic(vec4 c, float u)
+{
+    return c.x + u * (c.y + u * (c.z + u * c.w));
+}
+
+// Where the cubic's derivative is 0, ascending, as far as that is between 0 and 1; otherwise 0 or 1.
+vec2 turning_points(vec4 c)
+{
+    const float discriminant = c.z * c.z - 3.0 * c.y * c.w;
+    if (!(discriminant > 0.0)) return vec2(1.0);
+    // The form that does not cancel (Press and others, Numerical Recipes, 5.6).
+    const float q = -(c.z + (c.z < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
+    const float a = c.w != 0.0 ? q / (3.0 * c.w) : 1.0, b = q != 0.0 ? c.y / q : 1.0;
+    return clamp(vec2(min(a, b), max(a, b)), 0.0, 1.0);
+}
+
+// The crossing between two places of different sides.
+float crossing(vec4 c, float low, float high, bool low_is_inside)
+{
+    for (int i = 0; i < 10; ++i) {
+        const float middle = 0.5 * (low + high);
+        const bool is_like_low = (cubic(c, middle) >= 0.0) == low_is_inside;
+        low = is_like_low ? middle : low;
+        high = is_like_low ? high : middle;
+    }
+    const float a = cubic(c, low), b = cubic(c, high);
+    return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
+}
+
+// Goes on to the next crossing. Returns with `next` = NO_SHELL where the region ends first.
+void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
+{
+    shell.next = NO_SHELL;
+    while (shell.next == NO_SHELL && shell.from < shell.end) {
+        const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
+        const float to = min(max(cell.exit, shell.from + 2.0 * SHELL_HAIR), shell.end);
+        const float extent = to - shell.from;
+        bool is_inside = false;
+        float found = NO_SHELL;
+        if (cell.is_there) {
+            const float g0 = above_threshold(params, ray, cell, shell.from);
+            const float g1 = above_threshold(params, ray, cell, shell.from + extent / 3.0);
+            const float g2 = above_threshold(params, ray, cell, shell.from + extent * (2.0 / 3.0));
+            const float g3 = above_threshold(params, ray, cell, to);
+            const vec4 c = vec4(g0, -5.5 * g0 + 9.0 * g1 - 4.5 * g2 + g3, 9.0 * g0 - 22.5 * g1 + 18.0 * g2 - 4.5 * g3,
+                                -4.5 * g0 + 13.5 * g1 - 13.5 * g2 + 4.5 * g3);
+            const vec2 turns = turning_points(c);
+            const bool at_low = cubic(c, turns.x) >= 0.0, at_high = cubic(c, turns.y) >= 0.0;
+            is_inside = g3 >= 0.0;
+            const bool was = shell.is_inside;
+            found = (g0 >= 0.0) != was         ? 0.0
+                    : at_low != was            ? crossing(c, 0.0, turns.x, was)
+                    : at_high != was           ? crossing(c, turns.x, turns.y, was)
+                    : is_inside != was         ? crossing(c, turns.y, 1.0, was)
+                                               : NO_SHELL;
+        } else {
+            found = shell.is_inside ? 0.0 : NO_SHELL;
+        }
+        const bool is_found = found != NO_SHELL;
+        const float at = shell.from + found * extent;
+        shell.next = is_found ? at : NO_SHELL;
+        shell.is_inside = is_found ? !shell.is_inside : shell.is_inside;
+        shell.from = is_found ? at + SHELL_HAIR : to;
+    }
+}
+
+// The stretch of the ray in the region: the probe's ball or box.
+vec2 shell_range(const RaycastParams params, const Ray ray)
+{
+    if (SHELL == SHELL_BOX) {
+        const vec3 a = (params.shell_center - params.shell_reach - ray.origin) * ray.inverse;
+        const vec3 b = (params.shell_center + params.shell_reach - ray.origin) * ray.inverse;
+        const vec3 low = min(a, b), high = max(a, b);
+        return vec2(max(low.x, max(low.y, low.z)), min(high.x, min(high.y, high.z)));
+    }
+    const vec3 direction = ray.direction * params.spacing;  // of length 1
+    const vec3 from_center = (ray.origin - params.shell_center) * params.spacing;
+    const float middle = -dot(from_center, direction);
+    // From the ray's nearest point, not from the origin: b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
+    const vec3 nearest = from_center + middle * direction;
+    const float reach = params.shell_reach.x * params.spacing.x;
+    const float half_chord = sqrt(max(reach * reach - dot(nearest, nearest), 0.0));
+    return middle + vec2(-half_chord, half_chord);
+}
+
+Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end)
+{
+    const vec2 range = shell_range(params, ray);
+    Shell shell;
+    shell.next = NO_SHELL;
+    shell.from = max(begin, range.x);
+    shell.end = min(end, range.y);
+    shell.is_inside = false;
+    if (shell.from < shell.end) {
+        const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
+        shell.is_inside = cell.is_there && above_threshold(params, ray, cell, shell.from) >= 0.0;
+        search_shell(params, ray, shell);
+    }
+    return shell;
+}
+
+// Seen from both sides.
+vec4 shell_look(const RaycastParams params, const Ray ray, float s)
+{
+    const vec3 position = position_at(params, ray, s);
+    const Cell cell = cell_at(params, ray, position);
+    const vec3 slope = gradient_of(density_in(cell, position)) * params.inverse_spacing;
+    const vec3 along = ray.direction * params.spacing;
+    const float square = dot(slope, slope);
+    const vec3 normal = square > 0.0 ? slope * (inversesqrt(square) * (dot(slope, along) > 0.0 ? -1.0 : 1.0)) : -along;
+    vec3 color = lit(params, params.ambient, params.shell_color, normal, 1.0, ray.half_way);
+    if (DISTANCE_BLEND != 0u) color = blended(params, color, position);
+    return vec4(color, params.shell_opacity);
+}
+
+// Adds the crossings before `s`.
+void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
+{
+    while (shell.next < s && sum.a < params.opacity_limit) {
+        accumulate(sum, shell_look(params, ray, shell.next));
+        search_shell(params, ray, shell);
+    }
+}

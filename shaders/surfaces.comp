@@ -1,0 +1,136 @@
+// The nearest opaque surface of each pixel's ray: rgb its lit colour in linear light, a the length along the ray from the near
+// plane, as raycast.comp counts it, in reference lengths; NO_SURFACE where there is none. One thread a pixel.
+//   LISTED   there is a list of surfaces beside the probe
+// variants: LISTED
+//
+// Surfaces are solid: a ray that begins in one (the near plane cuts it, or the eye is in it) sees it at its beginning, facing
+// the eye. The volume's cutting planes do not cut them.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "raycast.h"
+#include "surfaces.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
+layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
+layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
+layout(constant_id = 3) const uint PROBE = 0u;
+
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
+layout(binding = 2, rgba32f) uniform writeonly image3D surfaces;
+#ifdef LISTED
+layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
+layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
+#endif
+
+#include "rays.glsl"
+#include "round_cone.glsl"
+#include "shade.glsl"
+
+struct Hit {
+    float at;       // length along the line
+    bool is_inside; // the line begins in the surface
+    uint number;
+    uint index;     // in the list; PROBE_INDEX
+};
+const uint PROBE_INDEX = 0xffffffffu;
+
+// A surface comes first where its range does. At equal lengths the lower number does, so the order of the search is of no
+// account.
+void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
+{
+    const float at = max(range.x, begin);
+    const bool is_nearer = range.y >= begin && range.x <= range.y && (at < hit.at || (at == hit.at && number < hit.number));
+    hit.at = is_nearer ? at : hit.at;
+    hit.is_inside = is_nearer ? range.x < begin : hit.is_inside;
+    hit.number = is_nearer ? number : hit.number;
+    hit.index = is_nearer ? index : hit.index;
+}
+
+#ifdef LISTED
+// Two differences that must not be mixed: the first is exact for what is close to the origin, and the second small.
+vec3 from_origin(const SurfaceParams scene, const Surface surface)
+{
+    precise vec3 whole = surface.from - scene.origin;
+    precise vec3 rest = surface.from_rest - scene.origin_rest;
+    precise vec3 sum = whole + rest;
+    return sum;
+}
+
+// Every variable that outlives a turn is carried from turn to turn: lanes whose search is over keep theirs on devices that
+// run a loop until the last lane is done.
+void search(const SurfaceParams scene, const Line line, float begin, inout Hit hit)
+{
+    const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
+    const vec3 inverse = 1.0 / safe;
+    const vec3 origin = scene.origin + line.origin;
+    uint node = 0u;
+    while (node < scene.node_count) {
+        const SurfaceNode box = surface_nodes.nodes[node];
+        const vec3 a = (box.lower - scene.slack - origin) * inverse;
+        const vec3 b = (box.upper + scene.slack - origin) * inverse;
+        const vec3 low = min(a, b), high = max(a, b);
+        const float entry = max(max(low.x, low.y), max(low.z, begin)) - scene.slack;
+        const float exit = min(min(high.x, high.y), min(high.z, hit.at)) + scene.slack;
+        const bool is_met = entry <= exit;
+        const uint end = is_met ? box.end : box.begin;
+        for (uint i = box.begin; i < end; ++i) {
+            const Surface surface = surface_list.list[i];
+            const vec3 from = from_origin(scene, surface) - line.origin;
+            consider(surface_range(surface, from, line.direction), begin, surface.number, i, hit);
+        }
+        node = is_met ? node + 1u : box.skip;
+    }
+}
+#endif
+
+void main()
+{
+    const RaycastParams params = params_block.data;
+    const SurfaceParams scene = surface_params.data;
+    const uvec2 in_part = thread_in_part();
+    const uvec2 pixel = params.pixel_begin + in_part;
+    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
+
+    const vec2 centre = vec2(pixel) + 0.5;
+    const vec3 along = on_plane(scene.along_corner, scene.along_dx, scene.along_dy, centre);
+    const float length_to_far = length(along);
+    Line line;
+    line.origin = on_plane(scene.middle_corner, scene.middle_dx, scene.middle_dy, centre);
+    line.direction = along / length_to_far;
+    const float begin = (scene.begin - scene.middle) * length_to_far;
+    const float end = (scene.end - scene.middle) * length_to_far;
+
+    Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // at the far plane itself nothing is nearer
+    if (PROBE != 0u)
+        consider(ball_range(scene.probe_center - line.origin, line.direction, scene.probe_radius), begin, PROBE_INDEX,
+                 PROBE_INDEX, hit);
+#ifdef LISTED
+    search(scene, line, begin, hit);
+#endif
+    if (!(hit.at < end)) {
+        imageStore(surfaces, ivec3(in_part, 0), vec4(0.0, 0.0, 0.0, NO_SURFACE));
+        return;
+    }
+
+    const vec3 at = line.origin + hit.at * line.direction;
+    vec3 normal = at - scene.probe_center;
+    vec3 color = scene.probe_color;
+#ifdef LISTED
+    if (hit.index != PROBE_INDEX) {
+        const Surface surface = surface_list.list[hit.index];
+        // As surface_range does it: from the line's point nearest to the surface.
+        const vec3 from = from_origin(scene, surface) - line.origin;
+        const float shift = dot(from + 0.5 * surface.along, line.direction);
+        const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);
+        normal = surface_normal(surface, point);
+        color = surface.color;
+    }
+#endif
+    normal = hit.is_inside ? -line.direction : normalize(normal);
+    vec3 seen = lit(params, params.ambient, color, normal, 1.0, half_way(params.light, -line.direction));
+    if (DISTANCE_BLEND != 0u) seen = blended(params, seen, (at + scene.origin) * params.inverse_spacing);
+    imageStore(surfaces, ivec3(in_part, 0), vec4(seen, hit.at + scene.middle * length_to_far));
+}

@@ -1,0 +1,513 @@
+// Opaque balls and rods: where rays meet them, held against distances in double, and what is seen of them in a volume.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <map>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/scene/annotator.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// The signed distance of a point from a surface, and its gradient. A rod is all balls between its two: of those, the ball
+/// that is nearest is found with the slope of the tangent cone.
+struct Distance {
+    double value = 1e300;
+    glm::dvec3 normal{0.0};
+};
+Distance distance_from(const SurfaceLook& surface, const glm::dvec3& point)
+{
+    const glm::dvec3 along = surface.to - surface.from;
+    const double length = glm::length(along), difference = surface.radius_from - surface.radius_to;
+    double share = length > std::abs(difference) ? 0.0 : difference < 0.0 ? 1.0 : 0.0;
+    if (length > std::abs(difference)) {
+        const glm::dvec3 axis = along / length;
+        const double x = glm::dot(point - surface.from, axis), sine = difference / length;
+        const double y = glm::length(point - surface.from - x * axis);
+        share = std::clamp((x - y * sine / std::sqrt(1.0 - sine * sine)) / length, 0.0, 1.0);
+    }
+    const glm::dvec3 from_center = point - (surface.from + share * along);
+    const double away = glm::length(from_center);
+    return {away - (surface.radius_from - share * difference), away > 0.0 ? from_center / away : glm::dvec3(0.0)};
+}
+
+struct Ray {
+    glm::dvec3 origin, direction;  // volume space; of unit length
+    double begin, end;             // lengths of the clip range
+    glm::dvec3 at(double s) const { return origin + s * direction; }
+};
+
+/// Where a ray enters a surface whose radii are `grown` larger; infinity where it does not. Distance from a convex body is a
+/// convex function along a line.
+double entry(const SurfaceLook& surface, const Ray& ray, double grown)
+{
+    const auto distance = [&](double s) { return distance_from(surface, ray.at(s)).value - grown; };
+    const double middle = glm::dot(0.5 * (surface.from + surface.to) - ray.origin, ray.direction);
+    const double reach =
+        glm::distance(surface.from, surface.to) + surface.radius_from + surface.radius_to + grown + 1.0;
+    double low = std::max(middle - reach, ray.begin), high = std::min(middle + reach, ray.end);
+    if (!(low < high)) return INFINITY;
+    const double begin = low;
+    for (int i = 0; i < 120 && high - low > 1e-12 * reach; ++i) {
+        const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+        (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+    }
+    double inside = 0.5 * (low + high), outside = begin;
+    if (distance(inside) > 0.0) return INFINITY;
+    if (distance(outside) <= 0.0) return outside;
+    for (int i = 0; i < 80; ++i) {
+        const double s = 0.5 * (inside + outside);
+        (distance(s) <= 0.0 ? inside : outside) = s;
+    }
+    return inside;
+}
+
+struct Sight {
+    std::vector<Ray> rays;
+    std::vector<glm::vec4> seen;  // as the pass stores them
+};
+
+class Surfaces : public OnDevice {
+public:
+    VolumeInfo info;
+    glm::uvec2 pixels{24, 24};
+    glm::vec3 light{0.0f, 0.0f, 1.0f};
+    size_t most_in_leaf = SURFACES_IN_LEAF;
+    double pass_ms = 0.0;
+
+    Surfaces() { info.size = Size3(100); }
+
+    /// The pass alone: white light from `light`, diffuse only.
+    Sight look(const std::vector<SurfaceLook>& surfaces, const Camera& camera)
+    {
+        const RayPlanes planes = ray_planes(camera, pixels, info);
+        SurfaceScene scene(renderer().memory());
+        scene.set(surface_tree(surfaces, info, most_in_leaf));
+        FrameGraph graph;
+        SurfacesInput input{.params = {},
+                            .scene = scene.params(planes, pixels, info),
+                            .listed = scene.import(graph),
+                            .tile = {128, 128}};
+        input.params.pixel_end = pixels;
+        input.params.light = light;
+        input.params.diffuse = 1.0f;
+        input.params.inverse_spacing = glm::vec3(1.0f);
+        const uint32_t index = graph.read_back(shvr::surfaces(graph, input));
+        const auto begun = std::chrono::steady_clock::now();
+        const gpu::FrameResult result = renderer().executor().run(std::move(graph));
+        pass_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
+        Sight sight{{}, std::vector<glm::vec4>(size_t(pixels.x) * pixels.y)};
+        std::memcpy(sight.seen.data(), result.read_backs[index].data(), sight.seen.size() * sizeof(glm::vec4));
+        for (uint32_t y = 0; y < pixels.y; ++y)
+            for (uint32_t x = 0; x < pixels.x; ++x) {
+                const glm::dvec2 at(x + 0.5, y + 0.5);
+                const glm::dvec3 near = planes.near_corner + at.x * planes.near_dx + at.y * planes.near_dy;
+                const glm::dvec3 far = planes.far_corner + at.x * planes.far_dx + at.y * planes.far_dy;
+                const double length = glm::distance(near * info.spacing, far * info.spacing);
+                sight.rays.push_back({near * info.spacing, (far - near) * info.spacing / length, planes.begin * length,
+                                      planes.end * length});
+            }
+        return sight;
+    }
+
+    struct Errors {
+        size_t hits = 0;
+        size_t wrong = 0;            ///< pixels that see what they should not, or do not see what they should
+        double shade = 0.0;          ///< largest error of the diffuse light
+        double least_length = 1e30;  ///< that a ray went
+    };
+    /// A length must lie between those at which the ray enters surfaces `off` larger and `off` smaller.
+    Errors check(const std::vector<SurfaceLook>& surfaces, const Camera& camera, double off, double length_off = 0.0)
+    {
+        const Sight sight = look(surfaces, camera);
+        Errors errors;
+        for (size_t i = 0; i < sight.rays.size(); ++i) {
+            const Ray& ray = sight.rays[i];
+            double earliest = INFINITY, latest = INFINITY;
+            for (const SurfaceLook& surface : surfaces) {
+                earliest = std::min(earliest, entry(surface, ray, off));
+                latest = std::min(latest, entry(surface, ray, -off));
+            }
+            const double length = sight.seen[i].a < gpu::NO_SURFACE ? double(sight.seen[i].a) : INFINITY;
+            errors.wrong += length < earliest - length_off || length > latest + length_off;
+            if (length == INFINITY) continue;
+            ++errors.hits;
+            errors.least_length = std::min(errors.least_length, length);
+            if (length <= ray.begin + off) continue;  // cut by the near plane
+            Distance nearest, second;
+            for (const SurfaceLook& surface : surfaces) {
+                const Distance distance = distance_from(surface, ray.at(length));
+                if (distance.value < nearest.value)
+                    second = nearest, nearest = distance;
+                else if (distance.value < second.value)
+                    second = distance;
+            }
+            if (second.value < 4.0 * off && glm::distance(second.normal, nearest.normal) > 1e-3) continue;  // a seam
+            const double expected = std::max(glm::dot(nearest.normal, glm::dvec3(light)), 0.0);
+            errors.shade = std::max(errors.shade, std::abs(expected - double(sight.seen[i].r)));
+        }
+        return errors;
+    }
+};
+
+struct Dice {
+    std::mt19937 random;
+    double operator()(double low, double high) { return low + (high - low) * double(random()) / 4294967296.0; }
+    glm::dvec3 point(double low, double high) { return {(*this)(low, high), (*this)(low, high), (*this)(low, high)}; }
+};
+
+std::vector<SurfaceLook> random_rods(size_t count, uint32_t seed, double longest, double thickest)
+{
+    Dice dice{std::mt19937(seed)};
+    std::vector<SurfaceLook> rods(count);
+    for (SurfaceLook& rod : rods) {
+        rod.from = dice.point(10.0, 90.0);
+        rod.to = rod.from + dice.point(-longest, longest);
+        rod.radius_from = dice(0.02 * thickest, thickest);
+        rod.radius_to = dice(0.02 * thickest, thickest);
+        if (dice(0.0, 1.0) < 0.2) rod.to = rod.from, rod.radius_to = rod.radius_from;
+    }
+    return rods;
+}
+
+Camera orthographic(const glm::dvec3& target, const glm::dvec3& direction, double height)
+{
+    Camera camera = perspective(target - 200.0 * glm::normalize(direction), target, 30.0);
+    camera.projection = Camera::Projection::orthographic;
+    camera.height = height;
+    return camera;
+}
+
+SurfaceLook ball(const glm::dvec3& center, double radius, const glm::dvec3& color = WHITE)
+{
+    return {center, center, radius, radius, color};
+}
+
+const glm::dvec3 MIDDLE(50.0);
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Surfaces, "rods and balls are met where their distance is 0, and lit along its gradient")
+{
+    light = glm::normalize(glm::vec3(-0.3f, 0.5f, -0.8f));
+    size_t hits = 0;
+    for (const auto& [longest, thickest] : {std::pair(20.0, 5.0), {60.0, 1.0}, {3.0, 12.0}}) {
+        CAPTURE(longest);
+        const std::vector<SurfaceLook> rods = random_rods(40, 91, longest, thickest);  // seed 91
+        for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 0, 0), glm::dvec3(0.1, -0.2, 1)}) {
+            for (const Camera& camera :
+                 {orthographic(MIDDLE, direction, 120.0), perspective(MIDDLE - 90.0 * direction, MIDDLE, 40.0)}) {
+                const Errors errors = check(rods, camera, 1e-4);
+                CHECK(errors.wrong == 0);
+                check_below("shade", errors.shade, 2e-3);
+                hits += errors.hits;
+            }
+        }
+    }
+    CHECK(hits > 2000);
+}
+
+TEST_CASE_FIXTURE(Surfaces,
+                  "a ray that passes a surface by a hair misses it, and one that touches it by a hair does not")
+{
+    pixels = {1, 1};
+    const SurfaceLook shapes[] = {ball({50, 50, 50}, 3.0),
+                                  {{50, 20, 50}, {50, 80, 50}, 3.0, 3.0},
+                                  {{50, 50, 50}, {50, 90, 50}, 3.0, 0.5},
+                                  {{50, 50, 50}, {90, 50, 50}, 3.0, 1.0}};
+    for (const SurfaceLook& shape : shapes) {
+        // The silhouette against x, seen along x: found by bisection on the reference alone.
+        double inside = 50.0, outside = 60.0;
+        const auto ray_at = [](double z) { return Ray{{-100.0, 50.0, z}, {1.0, 0.0, 0.0}, 0.0, 1000.0}; };
+        for (int i = 0; i < 60; ++i) {
+            const double z = 0.5 * (inside + outside);
+            (entry(shape, ray_at(z), 0.0) < INFINITY ? inside : outside) = z;
+        }
+        for (const double away : {-1e-2, -1e-3, -1e-4, -2e-5, 2e-5, 1e-4, 1e-3, 1e-2}) {
+            CAPTURE(away);
+            const Camera camera = orthographic({50.0, 50.0, inside + away}, {1, 0, 0}, 1.0);
+            CHECK((look({shape}, camera).seen[0].a < gpu::NO_SURFACE) == (away < 0.0));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Surfaces, "rays along a rod, and along the slope of one, end at it")
+{
+    pixels = {9, 9};
+    const std::vector<SurfaceLook> rods{{{50, 50, 20}, {50, 50, 80}, 4.0, 4.0}};
+    CHECK(check(rods, orthographic(MIDDLE, {0, 0, 1}, 9.0), 1e-4).wrong == 0);
+    CHECK(check(rods, orthographic(MIDDLE, {0, 1e-6, -1}, 9.0), 1e-4).wrong == 0);
+    const std::vector<SurfaceLook> cones{{{50, 50, 20}, {50, 50, 80}, 31.0, 1.0}};  // a slope of 30 degrees
+    const double cosine = std::sqrt(0.75);
+    CHECK(check(cones, orthographic(MIDDLE, {0.0, 0.5, -cosine}, 40.0), 1e-4).wrong == 0);
+    CHECK(check(cones, orthographic(MIDDLE, {0.0, 0.5, cosine}, 40.0), 1e-4).wrong == 0);
+}
+
+TEST_CASE_FIXTURE(Surfaces, "one ball in the other is the larger one")
+{
+    const std::vector<SurfaceLook> one{{{50, 50, 50}, {52, 51, 50}, 9.0, 3.0}},
+        other{{{52, 51, 50}, {50, 50, 50}, 3.0, 9.0}};
+    const Camera camera = orthographic(MIDDLE, {1, 2, 3}, 30.0);
+    const Sight ball_alone = look({ball({50, 50, 50}, 9.0)}, camera);
+    CHECK((look(one, camera).seen == ball_alone.seen));
+    CHECK((look(other, camera).seen == ball_alone.seen));
+}
+
+TEST_CASE_FIXTURE(Surfaces, "an eye in a surface sees it at once, facing the eye")
+{
+    light = {1.0f, 0.0f, 0.0f};
+    for (const SurfaceLook& shape : {ball(MIDDLE, 8.0), SurfaceLook{{40, 50, 50}, {60, 52, 50}, 7.0, 4.0}}) {
+        const Camera camera = perspective(MIDDLE, {40.0, 50.0, 50.0}, 60.0);  // towards -x, so that facing it is +x
+        const Sight sight = look({shape}, camera);
+        size_t wrong = 0;
+        for (size_t i = 0; i < sight.seen.size(); ++i) {
+            wrong += std::abs(double(sight.seen[i].a) - sight.rays[i].begin) > 1e-5;
+            wrong += std::abs(double(sight.seen[i].r) + sight.rays[i].direction.x) > 1e-5;
+        }
+        CHECK(wrong == 0);
+        CHECK(check({shape}, perspective({50.0, 50.0, 61.0}, MIDDLE, 60.0), 1e-4).wrong == 0);  // from just outside
+    }
+}
+
+TEST_CASE_FIXTURE(Surfaces, "clip planes cut surfaces, and show them filled")
+{
+    const std::vector<SurfaceLook> shapes{ball({50, 50, 50}, 20.0), ball({50, 50, -400.0}, 30.0)};
+    Camera camera = orthographic(MIDDLE, {0, 0, 1}, 80.0);  // the eye is at z = -150
+    light = {0.0f, 0.0f, -1.0f};
+    const Errors whole = check(shapes, camera, 1e-4);
+    CHECK(whole.wrong == 0);  // what lies behind the eye is not seen
+    camera.near_distance = 195.0;
+    const Sight cut = look(shapes, camera);
+    CHECK(double(cut.seen[12 + 24 * 12].a) == doctest::Approx(cut.rays[0].begin).epsilon(1e-6));
+    CHECK(cut.seen[12 + 24 * 12].r == doctest::Approx(1.0));
+    CHECK(check(shapes, camera, 1e-4).hits == whole.hits);
+    camera.far_distance = 190.0;
+    camera.near_distance = 0.0;
+    const Errors shortened = check(shapes, camera, 1e-4);
+    CHECK(shortened.wrong == 0);
+    CHECK((shortened.hits > 0 && shortened.hits < whole.hits));
+    // The clip range may leave all of the volume out: from z = 180 on, before it and behind it.
+    const std::vector<SurfaceLook> outside{ball({50, 50, 400}, 20.0)};
+    camera.near_distance = 400.0;
+    camera.far_distance = 0.0;
+    CHECK(ray_planes(camera, pixels, info).empty);
+    const Errors behind = check(outside, camera, 1e-4);
+    CHECK(behind.wrong == 0);
+    CHECK(behind.hits > 20);
+    camera.far_distance = 500.0;
+    CHECK(check(outside, camera, 1e-4).hits == 0);
+}
+
+TEST_CASE_FIXTURE(Surfaces, "a far eye loses nothing")
+{
+    const std::vector<SurfaceLook> rods = random_rods(30, 92, 20.0, 4.0);  // seed 92
+    for (const double distance : {1e3, 1e5, 1e7, 1e9}) {
+        CAPTURE(distance);
+        Camera camera = perspective(MIDDLE - distance * glm::normalize(glm::dvec3(1, 2, 3)), MIDDLE,
+                                    glm::degrees(2.0 * std::atan(60.0 / distance)));
+        CHECK(check(rods, camera, 1e-4).wrong == 0);
+        camera.projection = Camera::Projection::orthographic;
+        camera.height = 120.0;
+        const Errors errors = check(rods, camera, 1e-4);
+        CHECK(errors.wrong == 0);
+        CHECK(errors.hits > 50);
+    }
+}
+
+TEST_CASE_FIXTURE(Surfaces, "65536 voxels from the origin a surface is a thousandth of a voxel off at most")
+{
+    // Lengths along a ray are floats, of which 2^-7 is the last digit out there; what is across the ray is not.
+    info.size = Size3(65536);
+    const glm::dvec3 corner(65480.3, 65391.7, 65102.9);
+    std::vector<SurfaceLook> rods = random_rods(30, 93, 20.0, 4.0);  // seed 93
+    for (SurfaceLook& rod : rods) rod.from += corner - MIDDLE, rod.to += corner - MIDDLE;
+    for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(0, 0, -1), glm::dvec3(-3, 0.2, 1)}) {
+        const Errors parallel = check(rods, orthographic(corner, direction, 60.0), 1e-3, 0.01);
+        CHECK(parallel.wrong == 0);
+        CHECK(parallel.hits > 100);
+        check_below("shade", parallel.shade, 0.02);
+        CHECK(check(rods, perspective(corner - 90.0 * glm::normalize(direction), corner, 40.0), 1e-3, 1e-3).wrong == 0);
+        CHECK(check(rods, perspective(corner - 3e4 * glm::normalize(direction), corner, 0.1), 1e-3, 0.01).wrong == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds, bit for bit")
+{
+    std::vector<SurfaceLook> rods = random_rods(1500, 94, 15.0, 3.0);  // seed 94
+    Dice dice{std::mt19937(95)};
+    for (SurfaceLook& rod : rods) rod.color = dice.point(0.1, 1.0);
+    for (size_t i = 0; i < 300; ++i) {  // the same place twice, in another colour: the first one is seen
+        rods.push_back(rods[i]);
+        rods.back().color = dice.point(0.1, 1.0);
+    }
+    pixels = {67, 53};
+    size_t hits = 0;
+    for (const Camera& camera :
+         {orthographic(MIDDLE, {1, 2, 3}, 120.0), orthographic(MIDDLE, {0, 1, 0}, 120.0),
+          perspective(MIDDLE, {10.0, 50.0, 70.0}, 90.0), perspective({-1e6, 50, 50}, MIDDLE, 0.01)}) {
+        most_in_leaf = SURFACES_IN_LEAF;
+        const Sight found = look(rods, camera);
+        most_in_leaf = rods.size();
+        const Sight asked = look(rods, camera);
+        CHECK((found.seen == asked.seen));
+        for (const glm::vec4& pixel : asked.seen) hits += pixel.a < gpu::NO_SURFACE;
+        std::vector<SurfaceLook> first(rods.begin(), rods.begin() + 1500);
+        CHECK((look(first, camera).seen == asked.seen));
+    }
+    CHECK(hits > 5000);
+}
+
+// Skipped unless asked for: it measures, and asking every rod takes a minute.
+TEST_CASE_FIXTURE(Surfaces, "measuring 10000 rods" * doctest::skip())
+{
+    const std::vector<SurfaceLook> rods = random_rods(10000, 96, 6.0, 0.6);  // seed 96
+    pixels = {512, 512};
+    const Camera camera = perspective({-150, -60, 90}, MIDDLE, 30.0);
+    const auto measure = [&](const std::vector<SurfaceLook>& surfaces, size_t leaf) {
+        most_in_leaf = leaf;
+        look(surfaces, camera);  // makes the pipeline, and the memory that is used again
+        const std::clock_t begun = std::clock();
+        look(surfaces, camera);
+        const double cpu_ms = 1e3 * double(std::clock() - begun) / CLOCKS_PER_SEC;
+        MESSAGE(surfaces.size() << " rods, " << leaf << " in a leaf: " << pass_ms << " ms, " << cpu_ms
+                                << " ms of all cores");
+    };
+    measure({rods[0]}, SURFACES_IN_LEAF);
+    for (const size_t leaf : {1, 2, 4, 8}) measure(rods, leaf);
+    measure(rods, rods.size());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a surface in fog is seen through what lies before it")
+{
+    load(constant_volume({32, 32, 64}, 30000.0));
+    const glm::dvec3 fog(0.9, 0.5, 0.2), white(0.4, 0.7, 1.0);
+    const double opacity = 0.05, sigma = depth_of_opacity(opacity);
+    Session session = plain_session(uniform_points(fog, opacity), {1, 1});
+    session.light = {.shaded = false, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
+    const Camera camera = camera_along(volume(), {0, 0, 1}, 1.0);
+    for (const double depth : {-20.0, -1.0, 0.0, 0.3, 7.77, 20.0, 63.9, 64.0, 80.0}) {
+        CAPTURE(depth);
+        renderer().set_surfaces({ball({16.0, 16.0, depth + 5.0}, 5.0, white)});
+        const double through = std::exp(-sigma * std::clamp(depth, 0.0, 64.0));
+        const glm::dvec4 pixel = pixels_of(draw(session, camera))[0];
+        check_below("colour", glm::distance(glm::dvec3(pixel), fog * (1.0 - through) + through * white), 1e-5);
+        const std::optional<glm::dvec3> picked = renderer().pick(session, camera, {1, 1}, {0, 0});
+        REQUIRE(picked.has_value());
+        const double half = std::log(2.0) / sigma;  // where the fog itself is half opaque
+        CHECK(std::abs(picked->z - std::min(depth, half)) < (depth < half ? 1e-4 : 0.6));
+    }
+    renderer().set_surfaces({});
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a session without surfaces is drawn as if there never had been any")
+{
+    load(noise_volume({40, 33, 50}, 97));
+    const Session session = plain_session(busy_points(), {61, 47});
+    const Camera camera = camera_along(volume(), {3, 2, 1}, 60.0);
+    const auto bytes = [&] {  // of what outlives a frame
+        const std::map<std::string, uint64_t> names = renderer().memory().bytes_by_name();
+        return (names.contains("surface nodes") ? names.at("surface nodes") : 0) +
+               (names.contains("surface list") ? names.at("surface list") : 0);
+    };
+    const auto passes = [&](const Picture& picture) {
+        return std::ranges::count_if(picture.passes,
+                                     [](const auto& pass) { return pass.name.find("surface") != std::string::npos; });
+    };
+    const Picture before = renderer().render(session, camera);
+    CHECK(bytes() == 0);
+    CHECK(passes(before) == 0);
+    renderer().set_surfaces({ball({20, 16, 25}, 6.0)});
+    const Picture with = renderer().render(session, camera);
+    CHECK(different_bits(with.image, before.image) > 100);
+    CHECK(bytes() > 0);
+    CHECK(passes(with) > 0);
+    CHECK(different_bits(renderer().render(session, camera).image, with.image) == 0);  // uploaded once
+    renderer().set_surfaces({ball({20, 16, 1e5}, 6.0)});                               // out of sight
+    CHECK(different_bits(renderer().render(session, camera).image, before.image) == 0);
+    renderer().set_surfaces({});
+    CHECK(bytes() == 0);
+    const Picture after = renderer().render(session, camera);
+    CHECK(different_bits(after.image, before.image) == 0);
+    CHECK(passes(after) == 0);
+    renderer().set_surfaces({ball({20, 16, 25}, 6.0)});
+    load(noise_volume({40, 33, 50}, 97));
+    CHECK(bytes() == 0);  // they belong to a volume
+}
+
+TEST_CASE_FIXTURE(OnDevice, "cutting planes cut the volume and no surface, and the distance blends both")
+{
+    load(constant_volume({40, 40, 40}, 30000.0));
+    Session session = plain_session(uniform_points(RED, 0.1), {1, 1});
+    session.light = {.shaded = false, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
+    session.cut = {{0, 0, 30}, {40, 40, 40}};
+    renderer().set_surfaces({ball({20, 20, 15}, 5.0, GREEN)});
+    const Camera camera = camera_along(volume(), {0, 0, 1}, 1.0);
+    check_below("uncut", glm::distance(glm::dvec3(pixels_of(draw(session, camera))[0]), GREEN), 1e-6);
+    session.cut = {{0, 0, 0}, {40, 40, 40}};
+    session.blend = {.size = 0.8, .rate = 1.0, .color = BLUE};
+    session.transfer_function = TransferFunction(uniform_points(RED, 0.0));
+    const double share = 0.8 * 10.0 / 40.0;
+    check_below("blended", glm::distance(glm::dvec3(pixels_of(draw(session, camera))[0]), glm::mix(GREEN, BLUE, share)),
+                1e-6);
+    renderer().set_surfaces({});
+}
+
+TEST_CASE_FIXTURE(OnDevice, "every variant of the ray caster stops at surfaces")
+{
+    load(noise_volume({40, 40, 40}, 98));
+    Session session = plain_session(busy_points(), {41, 41});
+    session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0, .shininess = 1.0};
+    const ProbeLook probe{.center = {10, 30, -8}, .radius = 6.0, .color = {0.2, 0.4, 0.6}};
+    const Camera camera = camera_along(volume(), {0, 0, 1}, 41.0);
+    const VolumeStatistics statistics = renderer().statistics();
+    const std::shared_ptr<const VolumeSource> source = source_of(volume());
+    std::vector<Sampling> samplings{Sampling::exact};
+    if (renderer().device().traits().linear_r16) samplings.push_back(Sampling::hardware);
+    for (const Sampling sampling : samplings)
+        for (const Paging paging : {Paging::never, Paging::always})
+            for (const bool painted : {false, true})
+                for (const bool occluded : {false, true}) {
+                    CAPTURE(int(sampling));
+                    CAPTURE(int(paging));
+                    CAPTURE(painted);
+                    CAPTURE(occluded);
+                    session.render.sampling = sampling;
+                    session.render.paging = paging;
+                    session.light.occlusion.strength = occluded ? 1.0 : 0.0;
+                    renderer().load(source, statistics, session.render);
+                    Annotator annotator(renderer());
+                    if (painted) CHECK(annotator.paint({.radius_voxels = 5.0, .path = {{20, 20, 20}}}) > 0);
+                    const Pixels bare = pixels_of(renderer().render(session, camera).image);
+                    // Before the volume, half in it, behind it; and the probe.
+                    renderer().set_surfaces(
+                        {ball({10, 10, -8}, 6.0, GREEN), ball({30, 10, 0}, 6.0, BLUE), ball({30, 30, 50}, 6.0, RED)});
+                    const Picture picture = renderer().render(session, camera, {.probe = probe});
+                    const std::string kernel =
+                        sentence("raycast", paging == Paging::always ? "_paged" : "",
+                                 sampling == Sampling::hardware ? "_filtered" : "", painted ? "_masked" : "",
+                                 occluded ? "_occluded" : "", "_surfaced");
+                    CHECK(std::ranges::count(picture.graph.passes(), kernel, &PassData::kernel) == 1);
+                    const Pixels pixels = pixels_of(picture.image);
+                    const auto seen = [&](const glm::dvec3& color) {
+                        return std::ranges::count_if(pixels, [&](const glm::dvec4& pixel) {
+                            return glm::distance(glm::dvec3(pixel), color) < 1e-6;
+                        });
+                    };
+                    // Circles of 113 pixels, of which some centres lie near the edge.
+                    CHECK(std::abs(seen(GREEN) - 113) < 8);
+                    CHECK(std::abs(seen(BLUE) - 113) < 8);
+                    CHECK(std::abs(seen(probe.color) - 113) < 8);
+                    size_t changed = 0;
+                    for (size_t i = 0; i < pixels.size(); ++i) changed += pixels[i] != bare[i];
+                    CHECK(std::abs(int(changed) - 4 * 113) < 32);
+                }
+}
