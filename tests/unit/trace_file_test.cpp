@@ -303,6 +303,10 @@ TEST_CASE("hostile GraphML is refused in one sentence")
     CHECK(contains(refusal("a.graphml", graph("<data key=\"size\">1 2 1048577</data>")), "graph: size is"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"internode_radii\">1=2 1=3</data>")), "group 1 twice"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"internode_radii\">1</data>")), "expected group=radius"));
+    // One id that is no number, and none is taken as one.
+    const TemporaryFolder folder;
+    const auto mixed = folder.write("b.graphml", graph(node("n5") + node("b")));
+    CHECK(load_trace(mixed, {}).trace.nodes().begin()->first == 0);
     // The largest number there is leaves none for others.
     CHECK(refusal("a.graphml", graph(node("n4294967295"))).empty());
 }
