@@ -117,14 +117,13 @@ private:
     std::string where_;
 };
 
-PaintOp read_paint(const Fields& fields)
+/// The keys that say which voxels are meant.
+PaintOp read_brush(const Fields& fields)
 {
-    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path"});
     PaintOp op;
     op.brush = Brush(fields.choice("brush", fields.need("brush"), {"fill", "flood", "speckle"}));
     if (const Json* region = fields.find("region"))
         op.region = RegionShape(fields.choice("region", *region, {"ball", "box"}));
-    op.group = uint8_t(fields.whole("group", fields.need("group"), 0, 255));
     op.threshold = fields.number("threshold", fields.need("threshold"));
     op.radius_voxels = fields.number("radius", fields.need("radius"));
     if (op.radius_voxels <= 0.0 || op.radius_voxels >= 128.0)
@@ -137,6 +136,32 @@ PaintOp read_paint(const Fields& fields)
     op.path = fields.path("path", fields.need("path"));
     if (const double count = stroke_position_count(op.path); !(count <= double(MOST_STROKE_POSITIONS)))
         fields.refuse("key path makes ", count, " positions a voxel apart; expected at most ", MOST_STROKE_POSITIONS);
+    return op;
+}
+
+PaintOp read_paint(const Fields& fields)
+{
+    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path"});
+    PaintOp op = read_brush(fields);
+    op.group = uint8_t(fields.whole("group", fields.need("group"), 0, 255));
+    return op;
+}
+
+PaintOp read_density(const Fields& fields)
+{
+    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path", "offset", "falloff"});
+    PaintOp op = read_brush(fields);
+    const Json* group = fields.find("group");
+    op.paints_group = group != nullptr;
+    if (group) op.group = uint8_t(fields.whole("group", *group, 0, 255));
+    op.density.emplace();
+    if (const Json* falloff = fields.find("falloff"))
+        op.density->falloff = Falloff(fields.choice("falloff", *falloff, {"flat", "distance"}));
+    if (const Json* offset = fields.find("offset"); offset && *offset != "automatic") {
+        if (!offset->is_number())
+            fields.refuse("key offset is ", shown(*offset), "; expected a number or \"automatic\"");
+        op.density->offset = fields.number("offset", *offset);
+    }
     return op;
 }
 
@@ -160,7 +185,7 @@ std::optional<uint8_t> group_of(const std::string& key)
 ExpectOp read_expect(const Fields& fields)
 {
     constexpr int64_t MOST = int64_t{1} << 62;
-    fields.allow({"voxels_in_group", "nodes", "internodes"});
+    fields.allow({"voxels_in_group", "voxels_with_offset", "nodes", "internodes"});
     ExpectOp op;
     if (const Json* groups = fields.find("voxels_in_group")) {
         if (!groups->is_object())
@@ -171,6 +196,8 @@ ExpectOp read_expect(const Fields& fields)
             op.voxels_in_group[*group] = fields.whole("voxels_in_group." + key, voxels, 0, MOST);
         }
     }
+    if (const Json* voxels = fields.find("voxels_with_offset"))
+        op.voxels_with_offset = fields.whole("voxels_with_offset", *voxels, 0, MOST);
     if (const Json* nodes = fields.find("nodes")) op.nodes = fields.whole("nodes", *nodes, 0, MOST);
     if (const Json* links = fields.find("internodes")) op.internodes = fields.whole("internodes", *links, 0, MOST);
     return op;
@@ -180,6 +207,7 @@ ScriptOp read_op(const Fields& fields)
 {
     const Json& name = fields.need("op");
     if (name == "paint") return read_paint(fields);
+    if (name == "density") return read_density(fields);
     if (name == "undo") return UndoOp{read_count(fields)};
     if (name == "redo") return RedoOp{read_count(fields)};
     if (name == "expect") return read_expect(fields);
@@ -187,11 +215,10 @@ ScriptOp read_op(const Fields& fields)
         fields.allow({});
         return SaveOp{};
     }
-    const char* const later[] = {"density", "node",   "select", "deselect",      "link",
-                                 "move",    "delete", "group",  "select_segment"};
+    const char* const later[] = {"node", "select", "deselect", "link", "move", "delete", "group", "select_segment"};
     const bool is_later = std::any_of(std::begin(later), std::end(later), [&](const char* op) { return name == op; });
     fields.refuse("op ", shown(name), is_later ? " is not supported by this version" : " is unknown",
-                  "; known: paint, undo, redo, save, expect");
+                  "; known: paint, density, undo, redo, save, expect");
 }
 
 /// Refuses what the parser itself lets pass: a key given twice, of which it would silently keep the last.

@@ -112,8 +112,9 @@ struct Session {
     ViewSettings view;
     CutBox cut;
     ProbeSettings probe;
-    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
-    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
+    std::vector<SurfaceLook> surfaces;   ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
+    std::filesystem::path mask_path;     ///< absolute; empty: none; the file need not exist yet
+    std::filesystem::path density_path;  ///< the same, of density offsets
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -335,11 +335,12 @@ std::vector<SurfaceLook> read_surfaces(const JsonNode& node)
     return surfaces;
 }
 
-std::filesystem::path read_mask_path(const JsonNode& node, const std::filesystem::path& folder)
+void read_annotation(const JsonNode& node, const std::filesystem::path& folder, Session& session)
 {
-    if (!node.exists()) return {};
-    node.expect_object({"mask"});
-    return read_path(node["mask"], folder);
+    if (!node.exists()) return;
+    node.expect_object({"mask", "density"});
+    if (const JsonNode mask = node["mask"]; mask.exists()) session.mask_path = read_path(mask, folder);
+    if (const JsonNode density = node["density"]; density.exists()) session.density_path = read_path(density, folder);
 }
 
 std::map<std::string, CameraSpec> read_cameras(const JsonNode& node)
@@ -425,7 +426,7 @@ Session read_session(const nlohmann::json& json, const std::filesystem::path& fo
     session.cut = read_cut(document["cut"]);
     session.probe = read_probe(document["probe"]);
     session.surfaces = read_surfaces(document["surfaces"]);
-    session.mask_path = read_mask_path(document["annotation"], folder);
+    read_annotation(document["annotation"], folder, session);
     return session;
 }
 

@@ -280,7 +280,8 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
     document["probe"] = write_probe(session.probe);
     if (!session.surfaces.empty()) document["surfaces"] = write_surfaces(session.surfaces);
-    if (!session.mask_path.empty()) document["annotation"] = {{"mask", path_text(session.mask_path, folder)}};
+    if (!session.mask_path.empty()) document["annotation"]["mask"] = path_text(session.mask_path, folder);
+    if (!session.density_path.empty()) document["annotation"]["density"] = path_text(session.density_path, folder);
     try {
         return laid_out(document, "", false) + "\n";
     } catch (const json::type_error&) {

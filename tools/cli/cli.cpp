@@ -104,6 +104,8 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_mask && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
         opened.annotator->load(opened.session.mask_path);
+    if (with_mask && !opened.session.density_path.empty() && std::filesystem::exists(opened.session.density_path))
+        opened.annotator->load_offsets(opened.session.density_path);
     return opened;
 }
 

@@ -20,9 +20,15 @@ struct Replay {
 
     void operator()(const PaintOp& op)
     {
-        const int64_t voxels = opened.annotator->paint(op);
+        const PaintOp chosen = with_offset(op, opened.session.transfer_function);
+        const int64_t voxels = opened.annotator->paint(chosen);
         voxels_changed += voxels;
-        say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+        if (!chosen.density)
+            say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+        else
+            say(options.common,
+                sentence(at, ": ", voxels, " changes of offsets", chosen.paints_group ? " and groups" : "",
+                         ", by at most ", *chosen.density->offset));
     }
     void operator()(const UndoOp& op)
     {
@@ -36,10 +42,15 @@ struct Replay {
     }
     void operator()(const SaveOp&)
     {
-        const std::filesystem::path& path = opened.session.mask_path;
-        if (path.empty()) fail(at, ": the session names no mask to save to; expected the key annotation.mask");
-        opened.annotator->save(path);
-        say(options.common, sentence(at, ": saved ", path.string()));
+        const std::filesystem::path &mask = opened.session.mask_path, &density = opened.session.density_path;
+        if (mask.empty()) fail(at, ": the session names no mask to save to; expected the key annotation.mask");
+        if (density.empty() && opened.annotator->document().density.voxels() > 0)
+            fail(at, ": the session names no file for density offsets; expected the key annotation.density");
+        opened.annotator->save(mask);
+        say(options.common, sentence(at, ": saved ", mask.string()));
+        if (density.empty()) return;
+        opened.annotator->save_offsets(density);
+        say(options.common, sentence(at, ": saved ", density.string()));
     }
     void operator()(const ExpectOp& op)
     {
@@ -48,6 +59,9 @@ struct Replay {
             if (counts[group] != voxels)
                 throw GateError(
                     sentence(at, ": group ", int(group), " has ", counts[group], " voxels; expected ", voxels));
+        const int64_t raised = opened.annotator->document().density.voxels();
+        if (op.voxels_with_offset.value_or(raised) != raised)
+            throw GateError(sentence(at, ": ", raised, " voxels have an offset; expected ", *op.voxels_with_offset));
         const std::pair<const char*, std::optional<int64_t>> traced[] = {{"nodes", op.nodes},
                                                                          {"internodes", op.internodes}};
         for (const auto& [what, expected] : traced)
@@ -88,13 +102,15 @@ void add_annotate(CLI::App& program)
     CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
-    command->add_flag("--fresh", options->fresh, "Start from an unpainted mask instead of the saved one");
+    command->add_flag("--fresh", options->fresh, "Start without paint and offsets instead of the saved ones");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
         "Example:\n  shvr annotate scan/ --script strokes.jsonl\nwith lines such as\n"
         "  {\"op\":\"paint\",\"brush\":\"flood\",\"region\":\"ball\",\"group\":1,\"threshold\":1200,\"radius\":8,"
-        "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
+        "\"path\":[[40,52,18],[41,53,30]]}\n  "
+        "{\"op\":\"density\",\"brush\":\"flood\",\"threshold\":900,\"offset\":\"automatic\",\"falloff\":"
+        "\"distance\",\"radius\":8,\"path\":[[40,52,18]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
     command->callback([options] { run(*options); });
 }
 
