@@ -50,6 +50,8 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         annotator.load_trace(session.trace_path);
     surfaces = std::exchange(session.surfaces, {});
     show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
+    if (!session.density_path.empty() && std::filesystem::exists(session.density_path))
+        annotator.load_offsets(session.density_path);
     const ProbeSettings& probe = session.probe;
     const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
     brush = {.brush = probe.brush,
@@ -107,6 +109,9 @@ void Document::save()
 {
     const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
     annotator.save(session.mask_path);
+    if (session.density_path.empty() && annotator.document().density.voxels() > 0)
+        session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+    if (!session.density_path.empty()) annotator.save_offsets(session.density_path);
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
     is_saved = paint_is_saved = true;

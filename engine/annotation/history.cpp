@@ -11,6 +11,8 @@ void apply(Document& document, const Change& change, Direction direction)
 {
     if (const auto* mask = std::get_if<MaskBrickChange>(&change))
         document.mask.apply(*mask, direction);
+    else if (const auto* density = std::get_if<DensityBrickChange>(&change))
+        document.density.apply(*density, direction);
     else
         document.trace.apply(std::get<TraceChange>(change), direction);
 }

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/annotation/density.h"
 #include "engine/annotation/mask.h"
 #include "engine/annotation/tracing.h"
 
@@ -18,9 +19,10 @@ namespace shvr {
 struct Document {
     Mask mask;
     TraceGraph trace;
+    DensityField density{};
 };
 
-using Change = std::variant<MaskBrickChange, TraceChange>;
+using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange>;
 
 struct Command {
     std::string label;  ///< what the status bar says: "flood fill, group 3"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/annotation/brick_run.h"
 #include "engine/base/error.h"
 
 namespace shvr {
@@ -9,18 +10,6 @@ namespace shvr {
 namespace {
 
 constexpr int64_t SIDE = gpu::BRICK_SIZE;
-
-/// Whether all voxels of a run lie in the volume, of which the brick holds `extent` voxels along each axis.
-bool is_inside(const MaskRun& run, const Size3& extent)
-{
-    const Size3 first(run.first % SIDE, run.first / SIDE % SIDE, run.first / (SIDE * SIDE));
-    const Size3 last(run.last % SIDE, run.last / SIDE % SIDE, run.last / (SIDE * SIDE));
-    // A run that goes on in the next row, or slice, passes through all that lies between the two.
-    const bool rows_are_full = extent.x == SIDE || run.first / SIDE == run.last / SIDE;
-    const bool slices_are_full = extent.y == SIDE || first.z == last.z;
-    return rows_are_full && slices_are_full && glm::all(glm::lessThan(first, extent)) &&
-           glm::all(glm::lessThan(last, extent));
-}
 
 }  // namespace
 
@@ -75,9 +64,9 @@ void Mask::apply(const MaskBrickChange& change, Direction direction)
     int64_t free_from = 0;  // where the next run may begin
     for (const MaskRun& run : change.runs) {
         const uint8_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
-        SHVR_CHECK(
-            free_from <= run.first && run.first <= run.last && run.last < MASK_BRICK_VOXELS && is_inside(run, extent),
-            "brick ", change.brick, " run ", run.first, " ... ", run.last);
+        SHVR_CHECK(free_from <= run.first && run.first <= run.last && run.last < MASK_BRICK_VOXELS &&
+                       run_is_inside(run.first, run.last, extent),
+                   "brick ", change.brick, " run ", run.first, " ... ", run.last);
         const auto begin = brick->begin() + run.first, end = brick->begin() + run.last + 1;
         SHVR_CHECK(std::all_of(begin, end, [&](uint8_t group) { return group == from; }), "brick ", change.brick,
                    " does not hold group ", int(from), " at ", run.first, " ... ", run.last);

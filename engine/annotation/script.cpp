@@ -157,14 +157,13 @@ private:
     std::string where_;
 };
 
-PaintOp read_paint(const Fields& fields)
+/// The keys that say which voxels are meant.
+PaintOp read_brush(const Fields& fields)
 {
-    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path"});
     PaintOp op;
     op.brush = Brush(fields.choice("brush", fields.need("brush"), {"fill", "flood", "speckle"}));
     if (const Json* region = fields.find("region"))
         op.region = RegionShape(fields.choice("region", *region, {"ball", "box"}));
-    op.group = uint8_t(fields.whole("group", fields.need("group"), 0, 255));
     op.threshold = fields.number("threshold", fields.need("threshold"));
     op.radius_voxels = fields.number("radius", fields.need("radius"));
     if (op.radius_voxels <= 0.0 || op.radius_voxels >= 128.0)
@@ -233,6 +232,32 @@ RadiusOp read_radius(const Fields& fields)
     return op;
 }
 
+PaintOp read_paint(const Fields& fields)
+{
+    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path"});
+    PaintOp op = read_brush(fields);
+    op.group = uint8_t(fields.whole("group", fields.need("group"), 0, 255));
+    return op;
+}
+
+PaintOp read_density(const Fields& fields)
+{
+    fields.allow({"brush", "region", "group", "threshold", "radius", "connectivity", "path", "offset", "falloff"});
+    PaintOp op = read_brush(fields);
+    const Json* group = fields.find("group");
+    op.paints_group = group != nullptr;
+    if (group) op.group = uint8_t(fields.whole("group", *group, 0, 255));
+    op.density.emplace();
+    if (const Json* falloff = fields.find("falloff"))
+        op.density->falloff = Falloff(fields.choice("falloff", *falloff, {"flat", "distance"}));
+    if (const Json* offset = fields.find("offset"); offset && *offset != "automatic") {
+        if (!offset->is_number())
+            fields.refuse("key offset is ", shown(*offset), "; expected a number or \"automatic\"");
+        op.density->offset = fields.number("offset", *offset);
+    }
+    return op;
+}
+
 int read_count(const Fields& fields)
 {
     fields.allow({"count"});
@@ -253,7 +278,7 @@ std::optional<uint8_t> group_of(const std::string& key)
 ExpectOp read_expect(const Fields& fields)
 {
     constexpr int64_t MOST = int64_t{1} << 62;
-    fields.allow({"voxels_in_group", "nodes", "internodes"});
+    fields.allow({"voxels_in_group", "voxels_with_offset", "nodes", "internodes"});
     ExpectOp op;
     if (const Json* groups = fields.find("voxels_in_group")) {
         if (!groups->is_object())
@@ -264,6 +289,8 @@ ExpectOp read_expect(const Fields& fields)
             op.voxels_in_group[*group] = fields.whole("voxels_in_group." + key, voxels, 0, MOST);
         }
     }
+    if (const Json* voxels = fields.find("voxels_with_offset"))
+        op.voxels_with_offset = fields.whole("voxels_with_offset", *voxels, 0, MOST);
     if (const Json* nodes = fields.find("nodes")) op.nodes = fields.whole("nodes", *nodes, 0, MOST);
     if (const Json* links = fields.find("internodes")) op.internodes = fields.whole("internodes", *links, 0, MOST);
     return op;
@@ -292,6 +319,7 @@ ScriptOp read_op(const Fields& fields)
         if (name == "deselect") return DeselectOp{};
         return DeleteOp{};
     }
+    if (name == "density") return read_density(fields);
     if (name == "undo") return UndoOp{read_count(fields)};
     if (name == "redo") return RedoOp{read_count(fields)};
     if (name == "expect") return read_expect(fields);
@@ -299,10 +327,10 @@ ScriptOp read_op(const Fields& fields)
         fields.allow({});
         return SaveOp{};
     }
-    fields.refuse(
-        "op ", shown(name), name == "density" ? " is not supported by this version" : " is unknown",
-        "; known: paint, node, select, select_segment, deselect, link, move, delete, group, radius, undo, redo, "
-        "save, expect");
+    fields.refuse("op ", shown(name), " is unknown",
+                  "; known: paint, density, node, select, select_segment, deselect, link, move, delete, group, radius, "
+                  "undo, redo, "
+                  "save, expect");
 }
 
 /// Refuses what the parser itself lets pass: a key given twice, of which it would silently keep the last.

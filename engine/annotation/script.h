@@ -7,7 +7,7 @@
 #include <optional>
 #include <variant>
 
-#include "engine/annotation/region.h"
+#include "engine/annotation/density_brush.h"
 
 namespace shvr {
 
@@ -21,6 +21,9 @@ struct PaintOp {
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
+    /// Offsets for the selected voxels; group 0 takes theirs away.
+    std::optional<DensityBrush> density{};
+    bool paints_group = true;  ///< false: offsets alone
 };
 /// Tracing, as the window will send it, too. Positions in voxel coordinates, radii in voxels along x.
 struct NodeOp {
@@ -62,6 +65,7 @@ struct RedoOp {
 struct SaveOp {};
 struct ExpectOp {
     std::map<uint8_t, int64_t> voxels_in_group;
+    std::optional<int64_t> voxels_with_offset{};
     std::optional<int64_t> nodes;
     std::optional<int64_t> internodes;
 };

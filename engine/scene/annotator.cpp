@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/annotation/mask_file.h"
+#include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_file.h"
 #include "engine/passes/paint.h"
 
@@ -20,6 +21,9 @@ constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MOST_REGIONS = 64;
 /// Bricks of a frame's regions together, unless one region needs more.
 constexpr uint32_t MOST_BRICKS = 48;
+
+/// Voxels around a raised one that may look different: its samples, and theirs for gradients.
+constexpr int64_t RAISED_REACH = 2;
 
 Size3 voxel_at(const glm::dvec3& position)
 {
@@ -56,6 +60,12 @@ Resource add_brush(FrameGraph& graph, const VolumeBinding& volume, Brush brush, 
     SHVR_CHECK(false, "brush ", int(brush));
 }
 
+/// Group 0 takes offsets away, whatever is painted otherwise.
+bool resets(const PaintOp& op)
+{
+    return op.paints_group && op.group == 0;
+}
+
 const char* name_of(Brush brush)
 {
     return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
@@ -63,38 +73,37 @@ const char* name_of(Brush brush)
 
 std::string label_of(const PaintOp& op)
 {
-    return sentence(name_of(op.brush), ", group ", int(op.group));
-}
-
-std::vector<int64_t> bricks_of(std::span<const Change> changes)
-{
-    std::vector<int64_t> bricks;
-    for (const Change& change : changes)
-        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) bricks.push_back(mask->brick);
-    return bricks;
+    const std::string brush = name_of(op.brush);
+    if (!op.density) return sentence(brush, ", group ", int(op.group));
+    const double offset = resets(op) ? 0.0 : *op.density->offset;
+    const std::string density = offset == 0.0 ? "density reset" : sentence("density ", offset > 0.0 ? "+" : "", offset);
+    return op.paints_group ? sentence(brush, ", group ", int(op.group), ", ", density) : sentence(brush, ", ", density);
 }
 
 int64_t voxels_of(std::span<const Change> changes)
 {
     int64_t voxels = 0;
-    for (const Change& change : changes) voxels += std::get<MaskBrickChange>(change).voxels();
-    return voxels;
-}
-
-void add_answers(VoxelSelection& selection, std::span<const BrushRegion> regions, std::span<const uint32_t> read_backs,
-                 const gpu::FrameResult& result)
-{
-    for (size_t i = 0; i < regions.size(); ++i) {
-        const std::vector<std::byte>& bytes = result.read_backs[read_backs[i]];
-        std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-        std::memcpy(words.data(), bytes.data(), bytes.size());
-        selection.add(regions[i], words);
+    for (const Change& change : changes) {
+        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) voxels += mask->voxels();
+        if (const auto* density = std::get_if<DensityBrickChange>(&change)) voxels += density->voxels();
     }
+    return voxels;
 }
 
 }  // namespace
 
-Annotator::Annotator(Renderer& renderer) : renderer_(renderer), document_{Mask(renderer.volume().info().size)} {}
+PaintOp with_offset(PaintOp op, const TransferFunction& function)
+{
+    if (op.density && !op.density->offset) op.density->offset = automatic_offset(function.lower(), op.threshold);
+    return op;
+}
+
+Annotator::Annotator(Renderer& renderer)
+    : renderer_(renderer),
+      document_{.mask = Mask(renderer.volume().info().size),
+                .trace = {},
+                .density = DensityField(renderer.volume().info().size, renderer.volume().info().type)}
+{}
 
 std::optional<Annotator::Batch> Annotator::make_batch(const PaintOp& op, std::span<const glm::dvec3> positions,
                                                       size_t& next, bool wait)
@@ -119,41 +128,80 @@ std::optional<Annotator::Batch> Annotator::make_batch(const PaintOp& op, std::sp
         around = both;
         labels += uint64_t(region.words_per_row()) * 32 * region.rows.size() * sizeof(uint32_t);
         params.push_back(region_params(region, op, threshold_code, voxel_at(positions[end])));
-        batch.regions.push_back(std::move(region));
+        batch.regions.push_back({.region = std::move(region), .centre_voxel = positions[end]});
     }
     if (!batch.regions.empty()) {
         const std::optional<RegionBricks> bricks = volume.region(around, wait);
         if (!bricks) return std::nullopt;
         const VolumeBinding atlas = volume.atlas(batch.graph);
         for (size_t i = 0; i < batch.regions.size(); ++i)
-            batch.read_backs.push_back(batch.graph.read_back(
-                add_brush(batch.graph, atlas, op.brush, {params[i], *bricks, batch.regions[i].rows})));
+            batch.regions[i].read_back = batch.graph.read_back(
+                add_brush(batch.graph, atlas, op.brush, {params[i], *bricks, batch.regions[i].region.rows}));
     }
     next = end;
     return batch;
 }
 
-VoxelSelection Annotator::select(const PaintOp& op)
+Annotator::Answered Annotator::nothing_yet(const PaintOp& op) const
+{
+    const VolumeInfo& info = renderer_.volume().info();
+    Answered answered{.selection = VoxelSelection(info.size), .density = std::nullopt};
+    if (!op.density) return answered;
+    SHVR_CHECK(op.density->offset || resets(op), "an offset that nobody has chosen");
+    if (resets(op))
+        answered.density.emplace(info.size, info.spacing, info.type, 0.0, Falloff::flat);
+    else
+        answered.density.emplace(info.size, info.spacing, info.type, *op.density->offset, op.density->falloff);
+    return answered;
+}
+
+void Annotator::add(Answered& answered, const PaintOp& op, std::span<const Asked> asked, const gpu::FrameResult& result)
+{
+    for (const Asked& one : asked) {
+        const std::vector<std::byte>& bytes = result.read_backs[one.read_back];
+        std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
+        std::memcpy(words.data(), bytes.data(), bytes.size());
+        answered.selection.add(one.region, words);
+        if (answered.density) answered.density->add(one.region, words, one.centre_voxel, op.radius_voxels);
+    }
+}
+
+Annotator::Answered Annotator::ask(const PaintOp& op)
 {
     const std::vector<glm::dvec3> positions = stroke_positions(op.path);
-    VoxelSelection selection(renderer_.volume().info().size);
+    Answered answered = nothing_yet(op);
     for (size_t next = 0; next < positions.size();) {
         Batch batch = make_batch(op, positions, next, true).value();
         if (batch.regions.empty()) break;
-        add_answers(selection, batch.regions, batch.read_backs,
-                    renderer_.executor().run(std::move(batch.graph), {.timestamps = false}));
+        add(answered, op, batch.regions, renderer_.executor().run(std::move(batch.graph), {.timestamps = false}));
     }
-    return selection;
+    return answered;
+}
+
+std::vector<Change> Annotator::changes_of(const PaintOp& op, const Answered& answered) const
+{
+    std::vector<Change> changes;
+    if (op.paints_group) changes = paint_changes(document_.mask, answered.selection, op.group);
+    if (answered.density)
+        for (Change& change : answered.density->changes(document_.density)) changes.push_back(std::move(change));
+    return changes;
+}
+
+VoxelSelection Annotator::select(const PaintOp& op)
+{
+    PaintOp groups_alone = op;
+    groups_alone.density.reset();
+    return ask(groups_alone).selection;
 }
 
 int64_t Annotator::paint(const PaintOp& op)
 {
     SHVR_CHECK(!stroke_);
-    Command command{label_of(op), paint_changes(document_.mask, select(op), op.group)};
+    Command command{label_of(op), changes_of(op, ask(op))};
     const int64_t voxels = voxels_of(command.changes);
-    const std::vector<int64_t> bricks = bricks_of(command.changes);
+    const Touched touched = touched_by(command.changes);
     history_.perform(document_, std::move(command));
-    renderer_.update_mask(document_.mask, bricks);
+    bring_to_device(touched);
     return voxels;
 }
 
@@ -194,7 +242,6 @@ std::optional<VoxelBox> Annotator::advance()
         std::optional<Batch> batch = make_batch(stroke.brush, stroke.waiting, stroke.next, false);
         if (!batch) return changed;  // its bricks are on their way
         stroke.asked = std::move(batch->regions);
-        stroke.read_backs = std::move(batch->read_backs);
         if (!stroke.asked.empty())
             stroke.answer = renderer_.executor().submit(std::move(batch->graph), {.timestamps = false});
     } else if (stroke.has_ended) {
@@ -207,26 +254,40 @@ std::optional<VoxelBox> Annotator::advance()
 std::optional<VoxelBox> Annotator::paint_answer()
 {
     Stroke& stroke = *stroke_;
-    VoxelSelection selection(document_.mask.size());
-    add_answers(selection, stroke.asked, stroke.read_backs, stroke.answer.finish());
-    std::vector<Change> changes = paint_changes(document_.mask, selection, stroke.brush.group);
+    Answered answered = nothing_yet(stroke.brush);
+    add(answered, stroke.brush, stroke.asked, stroke.answer.finish());
+    std::vector<Change> changes = changes_of(stroke.brush, answered);
     if (changes.empty()) return std::nullopt;
     stroke.voxels += voxels_of(changes);
-    const std::vector<int64_t> bricks = bricks_of(changes);
+    const Touched touched = touched_by(changes);
     if (std::exchange(stroke.is_recorded, true))
         history_.extend(document_, std::move(changes));
     else
         history_.perform(document_, {label_of(stroke.brush), std::move(changes)});
-    renderer_.update_mask(document_.mask, bricks);
-    VoxelBox box = stroke.asked.front().box;
-    for (const BrushRegion& region : stroke.asked)
-        box = {glm::min(box.lower, region.box.lower), glm::max(box.upper, region.box.upper)};
-    return box;
+    bring_to_device(touched);
+    VoxelBox box = stroke.asked.front().region.box;
+    for (const Asked& asked : stroke.asked)
+        box = {glm::min(box.lower, asked.region.box.lower), glm::max(box.upper, asked.region.box.upper)};
+    if (touched.raised.empty()) return box;
+    return VoxelBox{glm::max(box.lower - RAISED_REACH, Size3(0)),
+                    glm::min(box.upper + RAISED_REACH, document_.mask.size())};
 }
 
-void Annotator::bring_to_device(const Command& command)
+Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
 {
-    renderer_.update_mask(document_.mask, bricks_of(command.changes));
+    Touched touched;
+    for (const Change& change : changes) {
+        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) touched.painted_bricks.push_back(mask->brick);
+        if (const auto* density = std::get_if<DensityBrickChange>(&change))
+            touched.raised.push_back(document_.density.reach_of(*density));
+    }
+    return touched;
+}
+
+void Annotator::bring_to_device(const Touched& touched)
+{
+    if (!touched.painted_bricks.empty()) renderer_.update_mask(document_.mask, touched.painted_bricks);
+    if (!touched.raised.empty()) renderer_.update_density(document_.density, touched.raised);
 }
 
 void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
@@ -240,27 +301,32 @@ void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
 const Command* Annotator::undo()
 {
     const Command* command = stroke_ ? nullptr : history_.undo(document_);
-    if (command) bring_to_device(*command);
+    if (command) bring_to_device(touched_by(command->changes));
     return command;
 }
 
 const Command* Annotator::redo()
 {
     const Command* command = stroke_ ? nullptr : history_.redo(document_);
-    if (command) bring_to_device(*command);
+    if (command) bring_to_device(touched_by(command->changes));
     return command;
 }
 
 VoxelBox Annotator::reach_of(const Command& command) const
 {
     const Size3 counts = document_.mask.brick_counts(), size = document_.mask.size();
-    const std::vector<int64_t> bricks = bricks_of(command.changes);
-    if (bricks.empty()) return {};
+    const Touched touched = touched_by(command.changes);
+    if (touched.painted_bricks.empty() && touched.raised.empty()) return {};
     VoxelBox box{size, Size3(0)};
-    for (const int64_t brick : bricks) {
+    const auto include = [&](const VoxelBox& more) {
+        box = {glm::min(box.lower, more.lower), glm::max(box.upper, more.upper)};
+    };
+    for (const VoxelBox& raised : touched.raised)
+        include({glm::max(raised.lower - RAISED_REACH, Size3(0)), glm::min(raised.upper + RAISED_REACH, size)});
+    for (const int64_t brick : touched.painted_bricks) {
         const Size3 first = int64_t(gpu::BRICK_SIZE) *
                             Size3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
-        box = {glm::min(box.lower, first), glm::max(box.upper, glm::min(first + int64_t(gpu::BRICK_SIZE), size))};
+        include({first, glm::min(first + int64_t(gpu::BRICK_SIZE), size)});
     }
     return box;
 }
@@ -288,6 +354,22 @@ void Annotator::load_trace(const std::filesystem::path& trace_file)
 void Annotator::save_trace(const std::filesystem::path& trace_file) const
 {
     shvr::save_trace(trace_file, document_.trace, space_of(renderer_.volume().info()));
+}
+
+void Annotator::load_offsets(const std::filesystem::path& offset_file)
+{
+    SHVR_CHECK(document_.density.voxels() == 0 && history_.undoable() == 0, "there are offsets");
+    document_.density = shvr::load_offsets(offset_file, document_.density.size(), document_.density.type());
+    std::vector<VoxelBox> boxes;
+    for (const int64_t brick : document_.density.painted_bricks())
+        boxes.push_back(voxels_of({0, document_.density.position_of(brick)}, document_.density.size()));
+    if (!boxes.empty()) renderer_.update_density(document_.density, boxes);
+}
+
+void Annotator::save_offsets(const std::filesystem::path& offset_file) const
+{
+    if (document_.density.voxels() > 0 || std::filesystem::exists(offset_file))
+        shvr::save_offsets(offset_file, document_.density);
 }
 
 }  // namespace shvr

@@ -16,6 +16,9 @@
 
 namespace shvr {
 
+/// The same, with a number where the offset is automatic.
+PaintOp with_offset(PaintOp op, const TransferFunction& function);
+
 class Annotator {
 public:
     /// The volume must be loaded; the mask starts unpainted.
@@ -23,14 +26,16 @@ public:
 
     const Document& document() const { return document_; }
     const History& history() const { return history_; }
-    /// How many voxels the last stroke that ended has changed.
+    /// How many voxels the last stroke that ended has changed, of groups and offsets.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
 
     /// What `op` would paint: the exact preview, and what paint() uses.
     VoxelSelection select(const PaintOp& op);
-    /// Paints, as one command. Returns the number of voxels whose group changed.
+    /// Paints, as one command. Returns the number of voxels whose group changed and of those whose offset changed,
+    /// together. All regions of a stroke see the volume as it was before it.
     int64_t paint(const PaintOp& op);
-    /// A stroke by hand: `brush.path` is not read. Nothing waits; `advance` paints.
+    /// A stroke by hand: `brush.path` is not read. Nothing waits; `advance` paints. Later regions may see the offsets
+    /// that earlier ones have painted.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
     void end_stroke();
@@ -59,21 +64,38 @@ public:
     /// The same of the trace. Fails where the file is of a volume of another size, spacing or unit.
     void load_trace(const std::filesystem::path& trace_file);
     void save_trace(const std::filesystem::path& trace_file) const;
+    /// The same of density offsets; there must be none. Saving none writes no new file.
+    void load_offsets(const std::filesystem::path& offset_file);
+    void save_offsets(const std::filesystem::path& offset_file) const;
 
 private:
+    /// A region that the device is asked about.
+    struct Asked {
+        BrushRegion region;
+        glm::dvec3 centre_voxel{0.0};
+        uint32_t read_back = 0;
+    };
     /// Questions to the device about some positions of a stroke.
     struct Batch {
-        std::vector<BrushRegion> regions;
-        std::vector<uint32_t> read_backs;  ///< of each region
+        std::vector<Asked> regions;
         FrameGraph graph;
+    };
+    /// What changes are about.
+    struct Touched {
+        std::vector<int64_t> painted_bricks;
+        std::vector<VoxelBox> raised;  ///< voxels whose offsets changed
+    };
+    /// What answers add up to.
+    struct Answered {
+        VoxelSelection selection;
+        std::optional<DensityStroke> density;  ///< where the brush paints offsets
     };
     struct Stroke {
         PaintOp brush;
         std::vector<glm::dvec3> waiting;  ///< positions that have not been asked about, from `next` on
         size_t next = 0;
         std::optional<glm::dvec3> last;  ///< where the hand was
-        std::vector<BrushRegion> asked;
-        std::vector<uint32_t> read_backs;
+        std::vector<Asked> asked;
         gpu::Submission answer;
         bool has_ended = false;
         bool is_recorded = false;  ///< a command of the history is this stroke's
@@ -81,8 +103,14 @@ private:
     };
     /// From position `next` on, which it moves. Null where bricks are on their way to the device and `wait` is not set.
     std::optional<Batch> make_batch(const PaintOp& op, std::span<const glm::dvec3> positions, size_t& next, bool wait);
+    Answered nothing_yet(const PaintOp& op) const;
+    static void add(Answered& answered, const PaintOp& op, std::span<const Asked> asked,
+                    const gpu::FrameResult& result);
+    Answered ask(const PaintOp& op);
+    std::vector<Change> changes_of(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
-    void bring_to_device(const Command& command);
+    Touched touched_by(std::span<const Change> changes) const;
+    void bring_to_device(const Touched& touched);
     Renderer& renderer_;
     std::optional<Stroke> stroke_;
     int64_t last_stroke_voxels_ = 0;

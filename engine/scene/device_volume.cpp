@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "engine/base/error.h"
 
@@ -12,6 +13,25 @@ RegionBricks bricks_around(const VoxelBox& voxels)
     constexpr int64_t SIZE = gpu::BRICK_SIZE;
     const Size3 first = voxels.lower / SIZE, end = (voxels.upper - int64_t{1}) / SIZE + int64_t{1};
     return {.begin = glm::uvec3(first), .counts = glm::uvec3(end - first), .slots = {}};
+}
+
+std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level)
+{
+    const Size3 most = size_of_level(size, level) - int64_t{1};
+    std::vector<BrickKey> keys;
+    std::unordered_set<BrickKey, BrickKeyHash> known;
+    for (const VoxelBox& box : boxes) {
+        if (glm::any(glm::greaterThanEqual(box.lower, box.upper))) continue;
+        const int64_t side = int64_t{1} << level;
+        const Size3 first = glm::max(box.lower / side - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::BRICK_SIZE};
+        const Size3 last =
+            glm::min((box.upper - int64_t{1}) / side + int64_t{gpu::BRICK_APRON}, most) / int64_t{gpu::BRICK_SIZE};
+        for (int64_t z = first.z; z <= last.z; ++z)
+            for (int64_t y = first.y; y <= last.y; ++y)
+                for (int64_t x = first.x; x <= last.x; ++x)
+                    if (const BrickKey key{level, {x, y, z}}; known.insert(key).second) keys.push_back(key);
+    }
+    return keys;
 }
 
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots)

@@ -4,6 +4,7 @@
 // One thread, the one that owns the executor.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
@@ -17,6 +18,9 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
 
 /// The packed address of the slot of that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
+
+/// The bricks of a level whose texels, aprons included, depend on voxels of level 0 in one of the boxes; each once.
+std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level);
 
 /// The bricks of level 0 that hold a box of voxels, without their slots.
 RegionBricks bricks_around(const VoxelBox& voxels);

@@ -114,12 +114,13 @@ void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
     }
 }
 
-void Occlusion::changed(const VoxelBox& voxels)
+void Occlusion::changed(const VoxelBox& changed, int64_t apron)
 {
     if (!look_) return;
     for (auto& [key, entry] : entries_) {
         // A coarse voxel has the paint of its middle, which may be that of a neighbour below.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
+        const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
@@ -136,7 +137,7 @@ void Occlusion::sync()
     for (const DeviceVolume::Place& place : volume_->places()) {
         const auto known = entries_.find(place.key);
         if (known != entries_.end() && known->second.slot == place.slot) {
-            entries.insert(*known);
+            entries.insert(*known).first->second.range = place.range;
             continue;
         }
         entries[place.key] = {.slot = place.slot, .range = place.range};

@@ -43,8 +43,8 @@ public:
     void clear();
     /// From now on this is wanted. Fails where the budget does not hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
-    /// These voxels have been painted.
-    void changed(const VoxelBox& voxels);
+    /// These voxels have been painted; or, with an apron (voxels of each brick's own level), hold other densities.
+    void changed(const VoxelBox& voxels, int64_t apron = 0);
     /// Which bricks are worth the work; empty: all.
     void set_drawn(std::function<bool(const BrickKey&)> is_drawn) { is_drawn_ = std::move(is_drawn); }
 

@@ -21,6 +21,8 @@ constexpr size_t CODE_BYTES = TEXELS * sizeof(uint16_t), RANGE_BYTES = CELLS * s
 constexpr uint64_t FEWEST_SLOTS = 64;
 /// Levels of no more bricks than this are always there.
 constexpr int64_t COARSE_BRICKS = 64;
+/// Bricks that a change of the voxels may read anew while somebody waits.
+constexpr size_t MOST_RENEWED_NOW = 256;
 
 int64_t brick_total(const Size3& size, int level)
 {
@@ -345,11 +347,7 @@ std::optional<uint32_t> PagedVolume::free_slot(bool for_region)
         if (evictable_.empty()) return std::nullopt;
         const uint32_t slot = evictable_.back();
         evictable_.pop_back();
-        resident_.erase(*slots_[slot].key);
-        ++places_revision_;
-        slots_[slot] = {};
-        ++evictions_;
-        directory_is_stale_ = true;
+        give_up(slot);
         return slot;
     }
     const uint32_t slot = unused_.back();
@@ -369,17 +367,67 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
     if (!slot) return false;
     slots_[*slot] = {.key = key, .used = stamp_, .pinned = std::ranges::find(coarse_, key) != coarse_.end()};
     resident_[key] = *slot;
+    stage(key, *slot, texels);
+    return true;
+}
+
+/// Sends a brick to its slot with the next upload.
+void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels)
+{
     ++places_revision_;
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
     std::memcpy(bytes + uploads_.size() * CODE_BYTES, texels.codes.data(), CODE_BYTES);
     std::memcpy(bytes + BATCH * CODE_BYTES + uploads_.size() * RANGE_BYTES, texels.cell_ranges.data(), RANGE_BYTES);
-    uploads_.push_back(*slot);
+    uploads_.push_back(slot);
     leap_jobs_.push_back(key);
     directory_is_stale_ = true;
     if (uploads_.size() == BATCH) flush_uploads();
-    return true;
+}
+
+void PagedVolume::give_up(uint32_t slot)
+{
+    resident_.erase(*slots_[slot].key);
+    slots_[slot] = {};
+    ++places_revision_;
+    ++evictions_;
+    directory_is_stale_ = true;
+}
+
+void PagedVolume::renew(std::span<const VoxelBox> changed)
+{
+    std::vector<BrickKey> keys;
+    for (int level = 0; level < levels_; ++level)
+        for (const BrickKey& key : bricks_that_see(changed, info().size, level)) keys.push_back(key);
+    store_.renew(keys);
+    const auto there =
+        size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return resident_.contains(key); }));
+    for (const BrickKey& key : keys) {
+        known_ranges_.erase(key);
+        const auto found = resident_.find(key);
+        if (found == resident_.end()) continue;
+        const uint32_t slot = found->second;
+        const bool now = there <= MOST_RENEWED_NOW || slots_[slot].pinned;
+        if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
+            known_ranges_[key] = texels->range;
+            stage(key, slot, *texels);
+        } else {
+            give_up(slot);
+            unused_.push_back(slot);
+        }
+    }
+    flush_uploads();
+    wants_are_stale_ = evictable_is_stale_ = directory_is_stale_ = true;
+    rebuild_tree();
+}
+
+/// What the source tells of bricks, or what is painted, has changed; what was reached stays so.
+void PagedVolume::rebuild_tree()
+{
+    if (!view_) return;
+    const PageView view = *std::exchange(view_, std::nullopt);
+    look(view, visibility_);
 }
 
 void PagedVolume::flush_uploads()
@@ -547,9 +595,7 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
             if (resident_.contains(key)) leap_jobs_.push_back(key);
         }
     }
-    if (!tree_is_stale || !view_) return;
-    const PageView view = *std::exchange(view_, std::nullopt);  // what is painted is shown, whatever its density
-    look(view, visibility_);
+    if (tree_is_stale) rebuild_tree();  // what is painted is shown, whatever its density
 }
 
 PagedVolume::Counts PagedVolume::counts() const

@@ -84,6 +84,10 @@ public:
     /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that takes
     /// more than a quarter of the room. Until the next call, or that of region().
     void prefer(const VoxelBox& voxels);
+    /// The source hands out other voxels of level 0 in these boxes. Bricks that see them, of all levels, are read anew:
+    /// at once where they are on the device (but where those are very many, only the coarse ones that are always there;
+    /// the others come again like any that are missing), later where they are not.
+    void renew(std::span<const VoxelBox> changed);
     /// These bricks of level 0 have been painted, or are no longer.
     void note_painted(const Mask& mask, std::span<const int64_t> bricks);
 
@@ -117,6 +121,9 @@ private:
     void list_evictable(bool for_region);
     std::optional<uint32_t> free_slot(bool for_region);
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
+    void stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels);
+    void give_up(uint32_t slot);
+    void rebuild_tree();
     void flush_uploads();
     void update_wants();
     std::vector<BrickKey> set_region(const RegionBricks& region);

@@ -237,6 +237,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     occlusion_has_no_room_ = false;
     surfaces_.set({});
     volume_.reset();
+    offsets_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
     leap_state_.reset();
@@ -245,7 +246,8 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     const bool comes_and_goes = pages(*source, settings.paging, with_occlusion);
     mask_.clear(comes_and_goes);  // paint belongs to the volume it was painted on
     if (!comes_and_goes) {
-        auto volume = std::make_unique<ResidentVolume>(executor_, memory_, *source, window, filtered, threads_);
+        offsets_ = std::make_shared<OffsetSource>(std::move(source));
+        auto volume = std::make_unique<ResidentVolume>(executor_, memory_, *offsets_, window, filtered, threads_);
         resident_ = volume.get();
         volume_ = std::move(volume);
         return;
@@ -255,8 +257,8 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
         .threads = threads_,
         .host_bytes = host_budget_ / 4,
         .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * (with_occlusion ? 2 : 3))};
-    auto volume = std::make_unique<PagedVolume>(executor_, memory_, with_levels(std::move(source), options.host_bytes),
-                                                window, options);
+    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes));
+    auto volume = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, options);
     paged_ = volume.get();
     volume_ = std::move(volume);
     occlusion_.set_drawn([this](const BrickKey& key) { return paged_->is_drawn(key); });
@@ -278,13 +280,18 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
     };
     if (volume_)
         for (int64_t brick : bricks) occlusion_.changed(voxels_of({0, position_of(brick)}, volume_->info().size));
-    if (bricks.empty() || !leap_state_) return;
-    CellBox changed = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
     for (int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick));
-        changed = {glm::min(changed.begin, first), glm::max(changed.end, first + gpu::BRICK_CELLS)};
+        cells_changed({first, first + gpu::BRICK_CELLS});
     }
-    leap_changed_ = changed;
+}
+
+/// The leap grid there is renewed before anything is drawn.
+void Renderer::cells_changed(const CellBox& cells)
+{
+    if (!leap_state_) return;
+    const CellBox before = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
+    leap_changed_ = {glm::min(before.begin, cells.begin), glm::max(before.end, cells.end)};
     leap_stage_ = 0;
 }
 

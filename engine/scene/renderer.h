@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "engine/annotation/density.h"
 #include "engine/base/image.h"
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
@@ -21,6 +22,7 @@
 #include "engine/scene/resident_volume.h"
 #include "engine/scene/session.h"
 #include "engine/scene/surfaces.h"
+#include "engine/volume/offset_source.h"
 #include "shaders/raycast.h"
 
 namespace shvr {
@@ -120,6 +122,11 @@ public:
     /// a shell, which may lie where nothing else is seen. A brick is the finest grain of it. Null: none.
     void show_always(const std::optional<VoxelBox>& voxels);
 
+    /// Voxels in these boxes have other offsets than before: from now on the volume is that of its source plus `field`.
+    /// What depends on them is renewed; frames submitted later see it. Offsets raise intensities no higher than the
+    /// volume's window, which stays. Fails where voxels cannot be read.
+    void update_density(const DensityField& field, std::span<const VoxelBox> changed);
+
     /// Opaque balls and rods that rays stop at, instead of those before; `load` forgets them. Fails as `surface_tree` and
     /// gpu::Memory::create do; then the ones before stay.
     void set_surfaces(const std::vector<SurfaceLook>& surfaces);
@@ -182,6 +189,7 @@ private:
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
     Resource upload_table(FrameGraph& graph, const Table& table);
+    void cells_changed(const CellBox& cells);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
         VolumeBinding volume;
@@ -199,6 +207,7 @@ private:
     gpu::Executor executor_;
     int threads_;
     VolumeStatistics statistics_;
+    std::shared_ptr<OffsetSource> offsets_;  ///< what volume_ is made of
     std::unique_ptr<DeviceVolume> volume_;
     ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
     PagedVolume* paged_ = nullptr;        ///< volume_, if it is one

@@ -14,7 +14,8 @@ constexpr uint64_t CELLS = uint64_t(gpu::BRICK_CELLS) * gpu::BRICK_CELLS * gpu::
 constexpr uint64_t TEXEL_BYTES = TEXELS * sizeof(uint16_t);
 constexpr uint64_t CELL_BYTES = CELLS * sizeof(BrickTexels::Range);
 constexpr glm::uvec3 BRICK_EXTENT(gpu::BRICK_TEXELS);
-constexpr uint32_t BATCH = 64;  // bricks per upload: 5 MiB of staging
+constexpr uint32_t BATCH = 64;       // bricks per upload: 5 MiB of staging
+constexpr size_t MOST_RENEWALS = 2;  // uploads in flight
 
 /// Collects bricks in a staging buffer and copies a batch of them at a time.
 class Uploader {
@@ -42,15 +43,20 @@ public:
 
     void flush(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
     {
-        if (atlas_regions_.empty()) return;
+        if (!atlas_regions_.empty()) executor_.run(copies(atlas, cell_ranges), {.timestamps = false});
+    }
+    /// Copies all that was added. The staging buffer must outlive them.
+    FrameGraph copies(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
+    {
         FrameGraph graph;
         const Resource staging = graph.import("staging", staging_.import());
         static_cast<void>(graph.copy_to_image(staging, graph.import("atlas", atlas.import()),
                                               std::exchange(atlas_regions_, {}), "upload bricks"));
         static_cast<void>(graph.copy_to_image(staging, graph.import("cell ranges", cell_ranges.import()),
                                               std::exchange(cell_regions_, {}), "upload cell ranges"));
-        executor_.run(graph, {.timestamps = false});
+        return graph;
     }
+    gpu::Storage take_staging() { return std::move(staging_); }
 
 private:
     gpu::Executor& executor_;
@@ -64,7 +70,11 @@ private:
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
                                const IntensityWindow& window, bool filtered, int threads)
-    : DeviceVolume(source.info(), window), filtered_(filtered), brick_counts_(brick_counts(source.info().size))
+    : DeviceVolume(source.info(), window),
+      executor_(executor),
+      memory_(memory),
+      filtered_(filtered),
+      brick_counts_(brick_counts(source.info().size))
 {
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
     const gpu::DeviceTraits& traits = memory.device().traits();
@@ -127,6 +137,32 @@ std::vector<DeviceVolume::Place> ResidentVolume::places() const
         places.push_back({{0, glm::ivec3(brick)}, slot_at(index + 1, atlas_slots_), ranges_[index]});
     }
     return places;
+}
+
+void ResidentVolume::renew(const VolumeSource& source, std::span<const VoxelBox> changed)
+{
+    const std::vector<BrickKey> keys = bricks_that_see(changed, info().size, 0);
+    BrickMaker maker(source, window());
+    const auto texels = std::make_unique<BrickTexels>();
+    for (size_t begin = 0; begin < keys.size(); begin += BATCH) {
+        std::erase_if(renewals_, [](const Renewal& renewal) { return renewal.copy.done(); });
+        if (renewals_.size() >= MOST_RENEWALS) {
+            static_cast<void>(renewals_.front().copy.finish());
+            renewals_.erase(renewals_.begin());
+        }
+        const size_t end = std::min(begin + BATCH, keys.size());
+        Uploader uploader(executor_, memory_, end - begin, filtered_ ? 1 : 2);
+        for (size_t i = begin; i < end; ++i) {
+            const glm::uvec3 brick(keys[i].brick);
+            const uint32_t index = gpu::grid_index(brick, brick_counts_);
+            maker.make(keys[i], *texels);
+            uploader.add(brick, slot_at(index + 1, atlas_slots_), *texels);
+            ranges_[index] = texels->range;
+        }
+        gpu::Submission copy = executor_.submit(uploader.copies(atlas_, cell_ranges_), {.timestamps = false});
+        renewals_.push_back({uploader.take_staging(), std::move(copy)});
+    }
+    places_revision_ += !keys.empty();
 }
 
 uint64_t ResidentVolume::brick_count() const

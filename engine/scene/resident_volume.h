@@ -27,14 +27,25 @@ public:
     int levels() const override { return 1; }
     glm::uvec3 atlas_slots() const override { return atlas_slots_; }
     std::vector<Place> places() const override;
-    uint64_t places_revision() const override { return 1; }
+    uint64_t places_revision() const override { return places_revision_; }
+    /// `source` hands out other voxels in these boxes: bricks that see them are cut anew and sent in place of the old
+    /// ones. Waits for reads, and for the device where there are many; frames submitted later see them.
+    void renew(const VolumeSource& source, std::span<const VoxelBox> changed);
 
 private:
+    struct Renewal {
+        gpu::Storage staging;
+        gpu::Submission copy;
+    };
+    gpu::Executor& executor_;
+    gpu::Memory& memory_;
     bool filtered_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
     gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
     std::array<gpu::Storage, 2> leap_scratch_;
     std::vector<BrickTexels::Range> ranges_;  ///< by brick
+    uint64_t places_revision_ = 1;
+    std::vector<Renewal> renewals_;  ///< that the device may still copy from
 };
 
 }  // namespace shvr

@@ -126,6 +126,7 @@ struct Session {
     std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
     /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
     std::filesystem::path trace_path;
+    std::filesystem::path density_path;  ///< the same, of density offsets
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -354,7 +354,7 @@ std::vector<SurfaceLook> read_surfaces(const JsonNode& node)
 void read_annotation(const JsonNode& node, const std::filesystem::path& folder, Session& session)
 {
     if (!node.exists()) return;
-    node.expect_object({"mask", "trace"});
+    node.expect_object({"mask", "trace", "density"});
     session.mask_path = read_path(node["mask"], folder);
     session.trace_path = read_path(node["trace"], folder);
     if (session.trace_path.empty() && !session.mask_path.empty()) {
@@ -363,6 +363,7 @@ void read_annotation(const JsonNode& node, const std::filesystem::path& folder, 
     }
     if (!session.trace_path.empty() && !is_trace_file(session.trace_path))
         node["trace"].refuse("a path that ends in .graphml, .txt or .swc");
+    session.density_path = read_path(node["density"], folder);
 }
 
 std::map<std::string, CameraSpec> read_cameras(const JsonNode& node)

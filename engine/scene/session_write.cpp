@@ -288,6 +288,7 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     if (!session.surfaces.empty()) document["surfaces"] = write_surfaces(session.surfaces);
     if (!session.mask_path.empty()) document["annotation"]["mask"] = path_text(session.mask_path, folder);
     if (!session.trace_path.empty()) document["annotation"]["trace"] = path_text(session.trace_path, folder);
+    if (!session.density_path.empty()) document["annotation"]["density"] = path_text(session.density_path, folder);
     try {
         return laid_out(document, "", false) + "\n";
     } catch (const json::type_error&) {

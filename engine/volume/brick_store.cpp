@@ -99,6 +99,24 @@ BrickStore::Texels BrickStore::get(const BrickKey& key)
     return texels;
 }
 
+void BrickStore::renew(std::span<const BrickKey> keys)
+{
+    const std::scoped_lock lock(mutex_);
+    bool is_wanted = false;
+    for (const BrickKey& key : keys) {
+        if (loading_.contains(key)) outdated_.insert(key);
+        const auto kept = kept_.find(key);
+        if (kept == kept_.end()) continue;
+        by_age_.erase(kept->second.place);
+        kept_.erase(kept);
+        if (!untaken_.contains(key)) continue;
+        std::erase(ready_, key);
+        is_wanted = true;
+    }
+    if (is_wanted) next_wanted_ = 0;
+    work_.notify_all();
+}
+
 std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
 {
     const std::scoped_lock lock(mutex_);
@@ -179,9 +197,12 @@ void BrickStore::load(std::stop_token stop)
         }
         loading_.insert(*key);
         peak_bricks_ = std::max<uint64_t>(peak_bricks_, kept_.size() + loading_.size());
-        lock.unlock();
-        Texels texels = make(maker, *key);
-        lock.lock();
+        Texels texels;
+        do {
+            lock.unlock();
+            texels = make(maker, *key);
+            lock.lock();
+        } while (outdated_.erase(*key) > 0);
         loading_.erase(*key);
         if (texels) keep(*key, std::move(texels));
         if (untaken_.contains(*key)) ready_.push_back(*key);

@@ -46,6 +46,9 @@ public:
     bool wait();
     /// One brick, now: read on this thread unless it is kept. Null where it cannot be read.
     Texels get(const BrickKey& key);
+    /// The source hands out other voxels of these bricks from now on: what is kept of them is dropped, and what loaders
+    /// hold that they read before is read again. Call it after the source has changed.
+    void renew(std::span<const BrickKey> keys);
     /// Why a brick cannot be read; nothing where it can be, or nobody has tried.
     std::optional<std::string> failure_of(const BrickKey& key) const;
 
@@ -81,6 +84,7 @@ private:
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
     std::list<BrickKey> by_age_;  ///< of `kept_`, oldest use first
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
+    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< of `loading_`, those to be read once more
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;

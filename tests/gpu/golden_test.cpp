@@ -103,7 +103,8 @@ struct Studio {
         Annotator annotator(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {
-                if (annotator.paint(*paint) == 0) fail(golden.name, ": script line ", line.number, " paints nothing");
+                if (annotator.paint(with_offset(*paint, golden.opened.session.transfer_function)) == 0)
+                    fail(golden.name, ": script line ", line.number, " paints nothing");
             } else if (const auto* undo = std::get_if<UndoOp>(&line.op)) {
                 for (int i = 0; i < undo->count; ++i)
                     if (!annotator.undo()) fail(golden.name, ": script line ", line.number, ": nothing to undo");

@@ -130,6 +130,37 @@ TEST_CASE("what is no longer wanted is not begun")
     CHECK(store.counts().dropped >= 2);
 }
 
+TEST_CASE("bricks of a source that has changed are read again, kept ones and those in the loaders' hands")
+{
+    Row row(8);
+    BrickStore store(row, WINDOW, 8 * BRICK_BYTES, 1);
+    store.want(keys_of({1, 2}));
+    CHECK((take_all(store) == std::vector{1, 2}));
+    store.renew(keys_of({2, 5}));
+    CHECK(store.bytes() == BRICK_BYTES);
+    store.want(keys_of({1, 2}));
+    CHECK((take_all(store) == std::vector{1, 2}));
+    CHECK((row.order() == std::vector{1, 2, 2}));
+
+    // A brick that is being read, and that read what was there before.
+    row.waits = true;
+    store.want(keys_of({4}));
+    while (store.bytes() < 3 * BRICK_BYTES) std::this_thread::yield();
+    store.renew(keys_of({4}));
+    row.gate.release(2);
+    CHECK((take_all(store) == std::vector{4}));
+    CHECK((row.order() == std::vector{1, 2, 2, 4, 4}));
+    row.waits = false;
+
+    // A brick that is ready and was not taken comes once, as it is now.
+    store.want(keys_of({6}));
+    REQUIRE(store.wait());
+    store.renew(keys_of({6}));
+    CHECK((take_all(store) == std::vector{6}));
+    CHECK((row.order() == std::vector{1, 2, 2, 4, 4, 6, 6}));
+    CHECK_FALSE(store.wait());
+}
+
 TEST_CASE("bricks on the host keep within the budget; those used longest ago go first")
 {
     const Row row(16);

@@ -247,11 +247,33 @@ TEST_CASE("lines of tracing are read with every key")
     CHECK(!internodes.radius_voxels);
 }
 
-TEST_CASE("operations of later versions are named as such")
+TEST_CASE("a line of density is read with every key, and says little where defaults do")
 {
-    const std::string message = refusal(R"({"op":"density","at":[1,2,3]})");
-    CHECK(contains(message, "a.jsonl:1: "));
-    CHECK(contains(message, "op \"density\" is not supported by this version"));
+    const auto op =
+        op_of<PaintOp>(R"({"op":"density","brush":"speckle","region":"box","group":7,"threshold":90,"offset":-40.5,)"
+                       R"("falloff":"distance","radius":6.5,"connectivity":26,"path":[[1,2,3],[4,5,6]]})");
+    CHECK(op.brush == Brush::speckle);
+    CHECK(op.region == RegionShape::box);
+    CHECK(op.paints_group);
+    CHECK(op.group == 7);
+    CHECK((op.density == DensityBrush{-40.5, Falloff::distance}));
+    CHECK(op.path.size() == 2);
+    const auto little =
+        op_of<PaintOp>(R"({"op":"density","brush":"flood","threshold":90,"radius":6,"path":[[1,2,3]]})");
+    CHECK_FALSE(little.paints_group);
+    CHECK((little.density == DensityBrush{std::nullopt, Falloff::flat}));
+    const auto automatic = op_of<PaintOp>(
+        R"({"op":"density","brush":"fill","threshold":90,"offset":"automatic","radius":6,"path":[[1,2,3]]})");
+    CHECK((automatic.density == DensityBrush{std::nullopt, Falloff::flat}));
+    CHECK_FALSE(op_of<PaintOp>(paint({})).density.has_value());
+    const std::string line = R"({"op":"density","brush":"fill","threshold":90,"radius":6,"path":[[1,2,3]])";
+    CHECK(contains(refusal(line + R"(,"offset":"much"})"),
+                   "a.jsonl:1: key offset is \"much\"; expected a number or \"automatic\""));
+    CHECK(contains(refusal(line + R"(,"falloff":"steep"})"),
+                   "key falloff is \"steep\"; expected one of: flat, distance"));
+    CHECK(contains(refusal(line + R"(,"group":256})"), "key group is 256"));
+    CHECK(contains(refusal(line + R"(,"amount":3})"), "unknown key amount"));
+    CHECK(contains(refusal(paint({{"offset", "3"}})), "unknown key offset"));
 }
 
 TEST_CASE("a long value is shown in part, on one line")

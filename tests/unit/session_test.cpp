@@ -249,7 +249,7 @@ TEST_CASE("all colours of 8 bits survive")
 TEST_CASE("relative paths are relative to the file, and paths inside its folder are written so")
 {
     const Session session = parse(R"({"shvr_session": 1, "volume": {"path": "../other/./v.nhdr"},
-                                      "annotation": {"mask": "labels.mask"}})");
+                                      "annotation": {"mask": "labels.mask", "density": "raised.offset"}})");
     CHECK(session.volume_path == "/data/other/v.nhdr");
     CHECK(session.mask_path == "/data/scans/labels.mask");
     CHECK(session.trace_path == "/data/scans/labels.graphml");
@@ -258,6 +258,7 @@ TEST_CASE("relative paths are relative to the file, and paths inside its folder 
     CHECK(traced.mask_path.empty());
     CHECK(traced.trace_path == "/data/scans/t.swc");
     CHECK(to_text(traced, "/data/scans").find("\"trace\": \"t.swc\"") != std::string::npos);
+    CHECK(session.density_path == "/data/scans/raised.offset");
     CHECK(parse(R"({"shvr_session": 1, "volume": {"path": "/abs/v.nhdr"}})").volume_path == "/abs/v.nhdr");
     const std::string text = to_text(session, "/data/scans/");
     CHECK(text.find("\"/data/other/v.nhdr\"") != std::string::npos);
@@ -266,6 +267,7 @@ TEST_CASE("relative paths are relative to the file, and paths inside its folder 
     const Session moved = parse_session(to_text(session, "/data"), "/data", "written");
     CHECK(moved.volume_path == session.volume_path);
     CHECK(moved.mask_path == session.mask_path);
+    CHECK(moved.density_path == session.density_path);
     CHECK(parse_session(with(""), "", "s.json").volume_path == fs::current_path() / "a.nhdr");
 }
 
@@ -377,6 +379,7 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
                   "surfaces.1.from.2 is 1e+16; expected a number from"},
              Case{R"("cut": {"lower": [-1, 0, 0]})", "cut.lower.0 is -1; expected a number from 0 to"},
              Case{R"("annotation": {"mask": ""})", "annotation.mask is \"\"; expected a text that is not empty"},
+             Case{R"("annotation": {"density": 3})", "annotation.density is 3; expected"},
              Case{R"("annotation": {"mask": "a\u0000b"})", "annotation.mask is \"a\\u0000b\"; expected a path"},
              Case{R"("annotation": {"trace": "a.obj"})", "annotation.trace is \"a.obj\"; expected a path that ends in"},
              Case{R"("transfer_function": {})", "transfer_function.points is missing; expected an array"},

@@ -108,6 +108,8 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
     if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
         opened.annotator->load_trace(opened.session.trace_path);
     show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
+    if (with_annotation && !opened.session.density_path.empty() && std::filesystem::exists(opened.session.density_path))
+        opened.annotator->load_offsets(opened.session.density_path);
     return opened;
 }
 

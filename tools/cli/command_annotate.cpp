@@ -46,9 +46,15 @@ private:
 public:
     void operator()(const PaintOp& op)
     {
-        const int64_t voxels = opened.annotator->paint(op);
+        const PaintOp chosen = with_offset(op, opened.session.transfer_function);
+        const int64_t voxels = opened.annotator->paint(chosen);
         voxels_changed += voxels;
-        say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+        if (!chosen.density)
+            say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+        else
+            say(options.common,
+                sentence(at, ": ", voxels, " changes of offsets", chosen.paints_group ? " and groups" : "",
+                         ", by at most ", *chosen.density->offset));
     }
     void operator()(const NodeOp& op)
     {
@@ -144,6 +150,13 @@ public:
         if (has_trace) opened.annotator->save_trace(trace_file);
         for (const auto& [path, is_saved] : {std::pair(&mask, !mask.empty()), {&trace_file, has_trace}})
             if (is_saved) say(options.common, sentence(at, ": saved ", path->string()));
+        const std::filesystem::path& density = opened.session.density_path;
+        const bool has_offsets = opened.annotator->document().density.voxels() > 0;
+        if (density.empty() && has_offsets)
+            fail(at, ": the session names no file for density offsets; expected the key annotation.density");
+        if (density.empty()) return;
+        opened.annotator->save_offsets(density);
+        say(options.common, sentence(at, ": saved ", density.string()));
     }
     void operator()(const ExpectOp& op)
     {
@@ -157,6 +170,9 @@ public:
         for (const auto& [what, expected, found] : traced)
             if (expected && *expected != int64_t(found))
                 throw GateError(sentence(at, ": ", found, " ", what, "; expected ", *expected));
+        const int64_t raised = opened.annotator->document().density.voxels();
+        if (op.voxels_with_offset.value_or(raised) != raised)
+            throw GateError(sentence(at, ": ", raised, " voxels have an offset; expected ", *op.voxels_with_offset));
     }
 };
 
@@ -193,14 +209,15 @@ void add_annotate(CLI::App& program)
     CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
-    command->add_flag("--fresh", options->fresh, "Start without the saved mask and trace");
+    command->add_flag("--fresh", options->fresh, "Start without the saved mask, trace and offsets");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
         "Example:\n  shvr annotate scan/ --script strokes.jsonl\nwith lines such as\n"
         "  {\"op\":\"paint\",\"brush\":\"flood\",\"region\":\"ball\",\"group\":1,\"threshold\":1200,\"radius\":8,"
         "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"node\",\"at\":[40,52,18],\"radius\":3,\"group\":2}\n"
-        "  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
+        "  {\"op\":\"density\",\"brush\":\"flood\",\"threshold\":900,\"offset\":\"automatic\",\"falloff\":"
+        "\"distance\",\"radius\":8,\"path\":[[40,52,18]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
     command->callback([options] { run(*options); });
 }
 

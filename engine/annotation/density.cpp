@@ -1,0 +1,120 @@
+#include "engine/annotation/density.h"
+
+#include <algorithm>
+
+#include "engine/annotation/brick_run.h"
+#include "engine/base/error.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr int64_t SIDE = gpu::BRICK_SIZE;
+
+}  // namespace
+
+int64_t DensityBrickChange::voxels() const
+{
+    int64_t sum = 0;
+    for (const DensityRun& run : runs) sum += run.last - run.first + 1;
+    return sum;
+}
+
+DensityField::DensityField(Size3 size, VoxelType type)
+    : size_(size), type_(type), counts_((size + Size3(SIDE - 1)) / Size3(SIDE))
+{}
+
+glm::ivec3 DensityField::position_of(int64_t brick) const
+{
+    return {int(brick % counts_.x), int(brick / counts_.x % counts_.y), int(brick / (counts_.x * counts_.y))};
+}
+
+Size3 DensityField::extent_of(int64_t brick) const
+{
+    SHVR_CHECK(brick >= 0 && brick < counts_.x * counts_.y * counts_.z, "brick ", brick);
+    return glm::min(Size3(SIDE), size_ - SIDE * Size3(position_of(brick)));
+}
+
+double DensityField::at(const Size3& voxel) const
+{
+    SHVR_CHECK(glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size_)), "voxel ",
+               voxel.x, ", ", voxel.y, ", ", voxel.z);
+    const Size3 where = voxel / SIDE, in = voxel % SIDE;
+    const auto found = bricks_.find(where.x + counts_.x * (where.y + counts_.y * where.z));
+    return found == bricks_.end() ? 0.0
+                                  : offset_of(type_, (*found->second)[size_t(in.x + SIDE * (in.y + SIDE * in.z))]);
+}
+
+std::shared_ptr<const OffsetBrick> DensityField::brick(int64_t index) const
+{
+    const auto found = bricks_.find(index);
+    return found == bricks_.end() ? nullptr : found->second;
+}
+
+std::vector<int64_t> DensityField::painted_bricks() const
+{
+    std::vector<int64_t> indices;
+    for (const auto& [index, brick] : bricks_) indices.push_back(index);
+    return indices;
+}
+
+void DensityField::apply(const DensityBrickChange& change, Direction direction)
+{
+    const Size3 extent = extent_of(change.brick);
+    const auto found = bricks_.find(change.brick);
+    // A copy: loaders may hold the brick as it was.
+    auto brick = found == bricks_.end() ? std::make_shared<OffsetBrick>(OffsetBrick{})
+                                        : std::make_shared<OffsetBrick>(*found->second);
+    const bool forwards = direction == Direction::forwards;
+    int64_t free_from = 0;  // where the next run may begin
+    for (const DensityRun& run : change.runs) {
+        const uint32_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
+        SHVR_CHECK(free_from <= run.first && run.first <= run.last && run.last < brick->size() &&
+                       run_is_inside(run.first, run.last, extent),
+                   "brick ", change.brick, " run ", run.first, " ... ", run.last);
+        const auto begin = brick->begin() + run.first, end = brick->begin() + run.last + 1;
+        SHVR_CHECK(std::all_of(begin, end, [&](uint32_t bits) { return bits == from; }), "brick ", change.brick,
+                   " does not hold offset ", offset_of(type_, from), " at ", run.first, " ... ", run.last);
+        std::fill(begin, end, to);
+        voxels_ += (end - begin) * (int(to != 0) - int(from != 0));
+        free_from = run.last + 1;
+    }
+    if (std::all_of(brick->begin(), brick->end(), [](uint32_t bits) { return bits == 0; }))
+        bricks_.erase(change.brick);
+    else
+        bricks_[change.brick] = std::move(brick);
+}
+
+void DensityField::put(int64_t index, OffsetBrick offsets)
+{
+    SHVR_CHECK(!bricks_.contains(index), "brick ", index, " has offsets");
+    const Size3 extent = extent_of(index);
+    int64_t voxels = 0;
+    for (int64_t i = 0; i < int64_t(offsets.size()); ++i) {
+        const Size3 in(i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE));
+        uint32_t& bits = offsets[size_t(i)];
+        if (!glm::all(glm::lessThan(in, extent))) bits = 0;
+        voxels += bits != 0;
+    }
+    if (voxels == 0) return;
+    voxels_ += voxels;
+    bricks_[index] = std::make_shared<OffsetBrick>(offsets);
+}
+
+VoxelBox DensityField::reach_of(const DensityBrickChange& change) const
+{
+    Size3 lower(SIDE), upper(0);
+    for (const DensityRun& run : change.runs) {
+        Size3 first(run.first % SIDE, run.first / SIDE % SIDE, run.first / (SIDE * SIDE));
+        Size3 last(run.last % SIDE, run.last / SIDE % SIDE, run.last / (SIDE * SIDE));
+        // A run that goes on in the next row, or slice, may hold all columns, or rows.
+        if (first.z != last.z) first.y = 0, last.y = SIDE - 1;
+        if (run.first / SIDE != run.last / SIDE) first.x = 0, last.x = SIDE - 1;
+        lower = glm::min(lower, first);
+        upper = glm::max(upper, last + int64_t{1});
+    }
+    const Size3 corner = SIDE * Size3(position_of(change.brick));
+    return {corner + lower, glm::min(corner + upper, size_)};
+}
+
+}  // namespace shvr

@@ -1,0 +1,33 @@
+#pragma once
+// Density offsets: what a person adds to single voxels so that they are seen. Kept beside the volume, in bricks of 32^3,
+// and added when voxels are read (offset_source.h); the volume's own file is never written.
+//
+// An offset is 32 bits: an int32 for volumes of integers, which is exact, and a float for volumes of floats. All bits 0
+// is "none" for both, and the only 0 there is. Any thread may call these.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/volume/volume.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+
+using OffsetBrick = std::array<uint32_t, size_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZE * gpu::BRICK_SIZE>;  ///< x fastest
+
+/// The largest magnitude of an offset: it takes any voxel of the type to any other (types of 32 bits: half of the way;
+/// float64: what a float holds).
+double offset_limit(VoxelType type);
+
+inline double offset_of(VoxelType type, uint32_t bits)
+{
+    return is_float(type) ? static_cast<double>(std::bit_cast<float>(bits))
+                          : static_cast<double>(std::bit_cast<int32_t>(bits));
+}
+
+/// Rounded to nearest (integers: halves away from 0), and to the limit where it is beyond. `offset` is a number.
+uint32_t offset_bits(VoxelType type, double offset);
+
+}  // namespace shvr
