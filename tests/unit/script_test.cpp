@@ -186,7 +186,7 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {R"({"op":"expect","nodes":1.5})", {"key nodes is 1.5"}},
         {R"({"op":"expect","internodes":[]})", {"key internodes is []"}},
         {R"({"op":"expect","voxels":1})", {"unknown key voxels"}},
-        {R"({"op":"erase"})", {"op \"erase\" is unknown", "paint, node, select"}},
+        {R"({"op":"erase"})", {"op \"erase\" is unknown", "paint, density, node, select"}},
         {R"({"op":5})", {"op 5 is unknown"}},
         {R"({"brush":"flood"})", {"key op is missing"}},
         {R"({"op":"undo","count":1,"count":2})", {"key count appears twice"}},
