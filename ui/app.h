@@ -6,7 +6,7 @@
 //
 // Threads: this one (main), the servo's while assistance is on, and one that writes a screenshot. The device's queue is
 // shared by turns of a few milliseconds: brush, relevance, probe, sketch, tiles, user interface. The interface is drawn
-// when something changed, at most 60 times a second; with nothing to do the loop sleeps.
+// when something changed, at most so many times a second as the session says; with nothing to do the loop sleeps.
 
 #include <future>
 #include <memory>

@@ -48,17 +48,18 @@ public:
     /// Ambient occlusion is renewed though the session says not to do so by itself.
     void update_occlusion() { occlusion_is_asked_for_ = true; }
 
-    /// Takes what the device has finished, and submits what is due next.
+    /// Takes what the device has finished and what has come to it, and submits what is due next.
     void advance();
-    /// The same where somebody else asks the volume for what has come, and only so far as the whole picture is there.
+    // The parts of advance(), for who has several views: what has come is told with came().
     void collect() { reap(); }
+    void submit_sketches();  ///< only what is_sketched() waits for
     void submit_due();
-    void submit_sketches();
     /// All of the picture is there, coarse perhaps.
     bool is_sketched() const { return scene_ == shown_scene_ && !base_.job && !patch_.job && !patch_is_due(); }
     /// Nothing is due or on its way, whatever may still come to the device.
     bool is_finished() const;
     bool is_idle() const { return running_.empty(); }
+
     /// Waits for what is on its way; `in_flight_ms` or so.
     void wait();
     /// The picture is as sharp as the budget lets it be, and nothing is due or on its way.
