@@ -56,7 +56,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         session.mask_path = session_path;
         session.mask_path.replace_extension(".mask");
     }
-    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
+    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path, session.volume_hash);
     const ProbeSettings& probe = session.probe;
     const double threshold = probe.paint_threshold.value_or(middle_of(session.transfer_function, statistics));
     brush = {.brush = probe.brush,
@@ -104,7 +104,7 @@ Session Document::saved_session() const
 void Document::save()
 {
     const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
-    annotator.save(session.mask_path);
+    annotator.save(session.mask_path, session.volume_hash);
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
     is_saved = paint_is_saved = true;

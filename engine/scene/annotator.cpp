@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/annotation/mask_file.h"
+#include "engine/annotation/mask_image.h"
 #include "engine/passes/paint.h"
 
 namespace shvr {
@@ -254,8 +255,9 @@ VoxelBox Annotator::reach_of(const Command& command) const
     return box;
 }
 
-void Annotator::load(const std::filesystem::path& mask_file)
+void Annotator::load(const std::filesystem::path& mask_file, const std::string& volume_hash)
 {
+    check_mask_image(mask_file, volume_hash);
     std::vector<int64_t> bricks;
     for (const MaskBrickChange& change : load_mask(mask_file, document_.mask.size())) {
         document_.mask.apply(change, Direction::forwards);
@@ -264,9 +266,10 @@ void Annotator::load(const std::filesystem::path& mask_file)
     renderer_.update_mask(document_.mask, bricks);
 }
 
-void Annotator::save(const std::filesystem::path& mask_file) const
+void Annotator::save(const std::filesystem::path& mask_file, const std::string& volume_hash) const
 {
     save_mask(mask_file, document_.mask);
+    save_mask_image(mask_file, volume_hash);
 }
 
 }  // namespace shvr

@@ -102,7 +102,7 @@ Opened open(const std::string& path, const Common& common, bool with_mask)
     opened.renderer->load(opened.source, session.statistics, opened.session.render);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_mask && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
-        opened.annotator->load(opened.session.mask_path);
+        opened.annotator->load(opened.session.mask_path, opened.session.volume_hash);
     return opened;
 }
 

@@ -38,7 +38,7 @@ struct Replay {
     {
         const std::filesystem::path& path = opened.session.mask_path;
         if (path.empty()) fail(at, ": the session names no mask to save to; expected the key annotation.mask");
-        opened.annotator->save(path);
+        opened.annotator->save(path, opened.session.volume_hash);
         say(options.common, sentence(at, ": saved ", path.string()));
     }
     void operator()(const ExpectOp& op)
