@@ -45,7 +45,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         session.mask_path = session_path;
         session.mask_path.replace_extension(".mask");
     }
-    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path);
+    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path, session.volume_hash);
     if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
         annotator.load_trace(session.trace_path);
     surfaces = std::exchange(session.surfaces, {});
@@ -108,7 +108,7 @@ Session Document::saved_session() const
 void Document::save()
 {
     const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
-    annotator.save(session.mask_path);
+    annotator.save(session.mask_path, session.volume_hash);
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     if (!session.density_path.empty()) annotator.save_offsets(session.density_path);

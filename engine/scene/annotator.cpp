@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/annotation/mask_file.h"
+#include "engine/annotation/mask_image.h"
 #include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_file.h"
 #include "engine/passes/paint.h"
@@ -331,8 +332,9 @@ VoxelBox Annotator::reach_of(const Command& command) const
     return box;
 }
 
-void Annotator::load(const std::filesystem::path& mask_file)
+void Annotator::load(const std::filesystem::path& mask_file, const std::string& volume_hash)
 {
+    check_mask_image(mask_file, volume_hash);
     std::vector<int64_t> bricks;
     for (const MaskBrickChange& change : load_mask(mask_file, document_.mask.size())) {
         document_.mask.apply(change, Direction::forwards);
@@ -341,9 +343,10 @@ void Annotator::load(const std::filesystem::path& mask_file)
     renderer_.update_mask(document_.mask, bricks);
 }
 
-void Annotator::save(const std::filesystem::path& mask_file) const
+void Annotator::save(const std::filesystem::path& mask_file, const std::string& volume_hash) const
 {
     save_mask(mask_file, document_.mask);
+    save_mask_image(mask_file, volume_hash);
 }
 
 void Annotator::load_trace(const std::filesystem::path& trace_file)

@@ -58,9 +58,10 @@ public:
     /// The bricks that a command changed lie in this box; empty where it changed none.
     VoxelBox reach_of(const Command& command) const;
 
-    /// Replaces the (unpainted) mask by a file's; not a step of the history.
-    void load(const std::filesystem::path& mask_file);
-    void save(const std::filesystem::path& mask_file) const;
+    /// Replaces the (unpainted) mask by a file's; not a step of the history. Fails where it was painted on another image
+    /// (engine/annotation/mask_image.h), which saving notes. `volume_hash`: Session::volume_hash.
+    void load(const std::filesystem::path& mask_file, const std::string& volume_hash = {});
+    void save(const std::filesystem::path& mask_file, const std::string& volume_hash = {}) const;
     /// The same of the trace. Fails where the file is of a volume of another size, spacing or unit.
     void load_trace(const std::filesystem::path& trace_file);
     void save_trace(const std::filesystem::path& trace_file) const;

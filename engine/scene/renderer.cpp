@@ -257,7 +257,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
         .threads = threads_,
         .host_bytes = host_budget_ / 4,
         .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * (with_occlusion ? 2 : 3))};
-    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes));
+    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), host_budget_));
     auto volume = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, options);
     paged_ = volume.get();
     volume_ = std::move(volume);

@@ -10,6 +10,8 @@
 #include "engine/scene/session_color.h"
 #include "engine/scene/session_json.h"
 #include "engine/scene/transfer_presets.h"
+#include "engine/volume/content_hash.h"
+#include "engine/volume/project.h"
 
 namespace shvr {
 namespace {
@@ -29,8 +31,10 @@ bool is_session_file(const fs::path& path)
 fs::path session_file_of(const fs::path& path)
 {
     std::error_code ignored;  // what cannot be looked at is treated as absent
-    if (!fs::exists(path, ignored))
+    if (!fs::exists(path, ignored)) {
+        if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
+    }
     if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
     const fs::path file = path / "shvr" / "session.json";
     return fs::is_regular_file(file, ignored) ? file : fs::path();  // some volumes are folders
@@ -61,7 +65,14 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     OpenedSession opened;
     opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
     opened.source = open_source(opened.session);
-    opened.statistics = measure(*opened.source);
+    const HashedSource hashed(*opened.source);
+    opened.statistics = measure(hashed);
+    opened.session.volume_hash = hashed.hash();
+    // A project whose record is sound knows both.
+    std::error_code ignored;
+    const fs::path record = opened.session.volume_path / PROJECT_RECORD;
+    if (!opened.session.procedural && opened.source->statistics() && fs::exists(record, ignored))
+        opened.session.volume_hash = read_project_record(record).content_hash;
     opened.warnings = warnings_of(opened.statistics);
     if (std::string& preset = opened.session.transfer_preset; !preset.empty())
         opened.session.transfer_function =

@@ -108,8 +108,11 @@ inline constexpr size_t MOST_SESSION_SURFACES = 100'000;
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
-    std::optional<RawLayout> raw_layout;        ///< for bare voxels
-    OpenOptions open_options;                   ///< what to take from files that hold more than one volume
+    std::optional<RawLayout> raw_layout;  ///< for bare voxels
+    OpenOptions open_options;             ///< what to take from files that hold more than one volume
+    /// Of the volume's voxels (content_hash.h), as `open_session` finds it; empty where not all were gone through, and in a
+    /// session that was only read. Not written.
+    std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
     TransferFunction transfer_function;

@@ -38,6 +38,7 @@ std::filesystem::path read_path(const JsonNode& node, const std::filesystem::pat
     if (!node.exists()) return {};
     const std::string text = node.text("");
     if (has_controls(text)) node.refuse("a path");
+    if (is_address(text)) node.refuse(NO_ADDRESS);
     return std::filesystem::absolute(folder / text).lexically_normal();
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/volume/source.h"
 
@@ -34,5 +35,27 @@ std::string content_hash(std::span<const SliceHash> slices);
 
 /// Reads the whole of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
+
+/// Hands out another source, which must outlive it, and hashes what `read` hands out of level 0: whole rows, each once and
+/// in order, of one or more slices at a time, as `measure` and `content_hash` read. One thread at a time.
+class HashedSource final : public VolumeSource {
+public:
+    explicit HashedSource(const VolumeSource& source);
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
+    Size3 block() const override { return source_.block(); }
+    int levels() const override { return source_.levels(); }
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        source_.read_level(level, box, voxels);
+    }
+    std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
+    /// Empty until all slices went by. What is read after that does not count.
+    std::string hash() const;
+
+private:
+    const VolumeSource& source_;
+    mutable std::vector<SliceHasher> hashers_;  ///< of the slices that are going by
+    mutable std::vector<SliceHash> slices_;     ///< that went by
+};
 
 }  // namespace shvr

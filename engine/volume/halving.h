@@ -1,5 +1,5 @@
 #pragma once
-// How a coarser level is made of a finer one; the only way, in projects and in memory.
+// How a coarser level is made of a finer one; the only ways, in projects and in memory.
 //
 // A voxel is the mean of the 2^3 voxels it stands for: of those that there are at the volume's end, and of the finite
 // ones; NaN where none is. Sums are exact for integers and taken in double for floats, along y and z before x. Integers are
@@ -13,6 +13,11 @@
 #include <type_traits>
 
 namespace shvr {
+
+enum class Halving {
+    mean,   ///< of intensities
+    label,  ///< of labels: there is none between two labels
+};
 
 /// Sums of eight voxels, without overflow.
 template <class T>
@@ -101,10 +106,35 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
+/// The label that most of the voxels have. Of several, one that is not 0, which is what nothing was marked in, and of those
+/// the smallest.
+template <class T>
+void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
+{
+    for (int64_t x = 0; x < length; x += 2) {
+        std::array<T, 8> voxels{};
+        size_t count = 0;
+        for (size_t row = 0; row < static_cast<size_t>(rows.count); ++row)
+            for (int64_t i = x; i < std::min(x + 2, length); ++i) voxels[count++] = rows.first[row][i];
+        T best{};
+        size_t most = 0;
+        for (size_t i = 0; i < count; ++i) {
+            size_t equal = 0;
+            for (size_t k = 0; k < count; ++k) equal += voxels[k] == voxels[i];
+            const bool wins_tie = equal == most && voxels[i] != T{} && (best == T{} || voxels[i] < best);
+            if (equal < most || (equal == most && !wins_tie)) continue;
+            most = equal;
+            best = voxels[i];
+        }
+        halved[x / 2] = best;
+    }
+}
+
 /// Makes (length + 1) / 2 voxels of rows that are `length` voxels long.
 template <class T>
-void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved)
+void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved, Halving how = Halving::mean)
 {
+    if (how == Halving::label) return halve_labels(rows, length, halved);
     if (rows.count == 4) return halving::halve<4>(rows, length, halved);
     if (rows.count == 2) return halving::halve<2>(rows, length, halved);
     halving::halve<1>(rows, length, halved);

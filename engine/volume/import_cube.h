@@ -74,7 +74,7 @@ void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lowe
 
 /// The next level, with its ranges.
 template <class T>
-void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse)
+void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how)
 {
     coarse.extent = size_of_level(fine.extent, 1);
     coarse.has_ranges = true;
@@ -90,7 +90,7 @@ void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse)
             }
             const size_t to = coarse.row(y, z);
             halve_ranges(fine, rows, coarse.lower.data() + to, coarse.upper.data() + to);
-            halve_rows(rows, fine.extent.x, coarse.values.data() + to);
+            halve_rows(rows, fine.extent.x, coarse.values.data() + to, how);
         }
     }
 }

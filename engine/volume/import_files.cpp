@@ -73,7 +73,7 @@ std::string import_group()
     return Json({{"zarr_format", 2}}).dump(4) + "\n";
 }
 
-std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels)
+std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how)
 {
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
@@ -92,11 +92,13 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
         {"name", name},
         {"axes", axes},
         {"datasets", datasets},
-        {"type", "mean"},
+        {"type", how == Halving::label ? "mode" : "mean"},
         {"metadata",
-         {{"description", "each voxel is the mean of the 2 x 2 x 2 voxels of the level before that there are"}}}};
-    return Json({{"multiscales", Json::array({multiscale})}}).dump(2, ' ', false, Json::error_handler_t::replace) +
-           "\n";
+         {{"description", sentence("each voxel is the ", how == Halving::label ? "most frequent" : "mean",
+                                   " of the 2 x 2 x 2 voxels of the level before that there are")}}}};
+    Json attributes = {{"multiscales", Json::array({multiscale})}};
+    if (how == Halving::label) attributes["image-label"] = {{"version", "0.4"}};
+    return attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string import_session()
@@ -123,6 +125,7 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
         {"frame", info.frame},
         {"warnings", info.warnings},
         {"preparation", to_text(options.preparation)},
+        {"halving", static_cast<int>(options.halving)},
         {"sigma", list(options.preparation.blur_sigma_voxels)},
         {"compressor",
          {static_cast<int>(options.compressor.kind), options.compressor.codec, options.compressor.level,

@@ -14,7 +14,7 @@ ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& 
 
 /// PROJECT/.zgroup, PROJECT/.zattrs and PROJECT/shvr/session.json.
 std::string import_group();
-std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels);
+std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how);
 std::string import_session();
 
 /// Equal for imports that give equal projects: what the source is (the names, sizes and times of its files as well) and

@@ -45,7 +45,7 @@ struct Window {
 template <class T>
 class Pyramid final : public ImportPyramid {
 public:
-    Pyramid(const Size3& size, int workers) : ImportPyramid(size)
+    Pyramid(const Size3& size, int workers, Halving how) : ImportPyramid(size), how_(how)
     {
         for (int level = 0; level < levels(); ++level) {
             tables_.push_back(std::make_unique<ImportRanges<T>>(size_of_level(size, level)));
@@ -164,7 +164,7 @@ private:
         Size3 at = origin;
         for (int above = 1; above <= REACH && base + above < levels(); ++above) {
             ImportCube<T>& cube = cubes[static_cast<size_t>(above)];
-            halve_cube(cubes[static_cast<size_t>(above - 1)], cube);
+            halve_cube(cubes[static_cast<size_t>(above - 1)], cube, how_);
             at = at / int64_t{2};
             tables_[static_cast<size_t>(base + above)]->add(cube, at);
             store(cube, at, windows_[static_cast<size_t>(base + above - 1)]);
@@ -205,6 +205,7 @@ private:
         cube.has_ranges = false;
     }
 
+    Halving how_;
     std::vector<std::unique_ptr<ImportRanges<T>>> tables_;  ///< by level
     std::vector<Window<T>> windows_;                        ///< by level, from 1
     std::vector<Scratch> scratch_;                          ///< by worker
@@ -225,10 +226,10 @@ bool ImportPyramid::completes_layer(int level, int64_t slices) const
     return slices >= size_.z || slices % (SIDE << level) == 0;
 }
 
-std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers)
+std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers, Halving how)
 {
     return with_voxel_type(type, [&]<class T>(T) -> std::unique_ptr<ImportPyramid> {
-        return std::make_unique<Pyramid<T>>(size, workers);
+        return std::make_unique<Pyramid<T>>(size, workers, how);
     });
 }
 

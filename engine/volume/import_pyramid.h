@@ -2,7 +2,8 @@
 // The levels of a volume, made while its level 0 goes by in chunks of 64^3 voxels.
 //
 // A voxel of level l + 1 is the mean of the 2^3 voxels of level l it stands for, of those that there are at the volume's
-// end, and of the finite ones; integers are rounded to nearest, ties to even. Since 64 is 2^6, a chunk alone decides its
+// end, and of the finite ones; integers are rounded to nearest, ties to even; of labels it is the most frequent one
+// (halving.h). Since 64 is 2^6, a chunk alone decides its
 // voxels of the six levels above it. Those of levels 1 to 5 are gathered until 64 slices of a level are complete; higher
 // levels are small and kept whole. So memory depends on the size of a slice, not on the number of slices: some 43 bytes
 // for every voxel of a slice of 16 bits.
@@ -14,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/volume/halving.h"
 #include "engine/volume/import_state.h"
 #include "engine/volume/volume.h"
 
@@ -72,6 +74,7 @@ private:
     int levels_;
 };
 
-std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers);
+std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers,
+                                                   Halving how = Halving::mean);
 
 }  // namespace shvr

@@ -37,6 +37,18 @@ int thread_count(int wanted)
     return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+/// What would make new numbers of labels is refused.
+void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
+{
+    if (info.type == VoxelType::float32 || info.type == VoxelType::float64)
+        fail(info.name, ": its voxels are ", name_of(info.type), "; expected whole numbers, for they are to be labels");
+    PreparationOptions harmless;
+    harmless.crop = preparation.crop;
+    if (preparation != harmless)
+        fail(info.name, ": its labels are to be ", to_text(preparation),
+             "; expected them to be cropped at most, for there is no label between two labels");
+}
+
 class Import {
 public:
     Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options)
@@ -165,7 +177,7 @@ private:
 
     void begin_anew()
     {
-        pyramid_ = make_import_pyramid(info_.size, info_.type, threads_);
+        pyramid_ = make_import_pyramid(info_.size, info_.type, threads_, options_.halving);
         chunks_ =
             std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), options_.compressor, threads_);
         tally_ = std::make_unique<ImportTally>(info_, SIDE, threads_);
@@ -240,7 +252,7 @@ private:
     void write_knowledge()
     {
         write_text(".zgroup", import_group());
-        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels()));
+        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels(), options_.halving));
         for (int level = 0; level < pyramid_->levels(); ++level) {
             write(ranges_path({}, level), to_bytes({.kind = "ranges",
                                                     .level = level,
@@ -334,6 +346,7 @@ private:
 ImportReport import_volume(const VolumeSource& source, const fs::path& origin, const fs::path& project,
                            const ImportOptions& options)
 {
+    if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
     Import job(source, origin, project, options);
     constexpr const char* KEPT = "; what is done is kept, and the same command goes on from there";
     try {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/volume/halving.h"
 #include "engine/volume/import_prepare.h"
 #include "engine/volume/source.h"
 #include "engine/volume/zarr_metadata.h"
@@ -32,6 +33,7 @@ struct ImportProgress {
 
 struct ImportOptions {
     PreparationOptions preparation{};
+    Halving halving = Halving::mean;  ///< how coarser levels are made; labels are whole numbers and as they are
     std::string choice{};  ///< how the file was read: channel, frame, layout; only compared with that of an earlier run
     bool overwrites = false;
     int threads = 0;  ///< 0: one a core

@@ -1,5 +1,7 @@
 #include "engine/volume/open_volume.h"
 
+#include <algorithm>
+
 #include "engine/base/error.h"
 #include "engine/volume/header_text.h"
 #include "engine/volume/readers.h"
@@ -93,9 +95,23 @@ RawLayout parse_raw_layout(const std::string& text)
     return layout;
 }
 
+bool is_address(std::string_view path)
+{
+    // RFC 3986: a scheme is a letter, and then letters, digits, "+", "-" and ".".
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto belongs = [&](char c) {
+        return is_letter(c) || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
+    };
+    const size_t end = path.find("://");
+    return end != std::string_view::npos && end > 0 && is_letter(path.front()) &&
+           std::ranges::all_of(path.substr(0, end), belongs);
+}
+
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)
 {
     std::error_code ignored;
+    if (is_address(path.string()) && !std::filesystem::exists(path, ignored))
+        fail(path.string(), ": is an address; expected ", NO_ADDRESS);
     const bool is_folder = std::filesystem::is_directory(path, ignored);
     std::string tried;
     for (const Reader& reader : READERS) {

@@ -1,6 +1,8 @@
 #pragma once
 // Opens a volume file by asking each reader in turn.
 
+#include <string_view>
+
 #include "engine/volume/source.h"
 
 namespace shvr {
@@ -16,6 +18,12 @@ struct RawLayout {
 };
 /// Fails with a `UsageError` that shows the expected form.
 RawLayout parse_raw_layout(const std::string& text);
+
+/// Whether it is no path but an address, as in https://host/scan.zarr or s3://bucket/scan.zarr. Nothing is read over a
+/// network.
+bool is_address(std::string_view path);
+inline constexpr const char* NO_ADDRESS =
+    "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
 
 /// Fails where no reader knows the file (naming the formats tried), or where the reader that knows it finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});

@@ -26,7 +26,7 @@ Level halved(const VolumeSource& source, int level)
     Level result{half, {}};
     result.voxels.resize(static_cast<size_t>(half.x * half.y * half.z) * sizeof(T));
     auto* to = reinterpret_cast<T*>(result.voxels.data());
-    std::vector<T> slices(static_cast<size_t>(size.x * size.y * 2));
+    std::vector<T> slices(static_cast<size_t>(size.x * size.y * std::min<int64_t>(size.z, 2)));
     for (int64_t z = 0; z < size.z; z += 2) {
         const VoxelBox box{{0, 0, z}, {size.x, size.y, std::min(z + 2, size.z)}};
         const Size3 extent = box.size();
@@ -85,19 +85,24 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t most_bytes)
+std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes)
 {
+    constexpr int MEBIBYTE = 20;  // as a shift
     const VolumeInfo& info = source->info();
+    const auto bytes_in = [&](const Size3& size) { return uint64_t(size.x * size.y * size.z) * bytes_of(info.type); };
     int levels = 1;
-    uint64_t bytes = 0;
+    uint64_t bytes = bytes_in({info.size.x, info.size.y, std::min<int64_t>(info.size.z, 2)});
     for (Size3 size = info.size; std::max({size.x, size.y, size.z}) > int64_t{gpu::BRICK_SIZE}; ++levels) {
         size = size_of_level(size, 1);
-        bytes += uint64_t(size.x) * uint64_t(size.y) * uint64_t(size.z) * bytes_of(info.type);
+        bytes += bytes_in(size);
     }
     if (source->levels() > 1 || levels == 1) return source;
-    if (bytes > most_bytes)
-        fail(info.name, ": its coarser levels take ", (bytes >> 20) + 1, " MiB of host memory, which holds ",
-             most_bytes >> 20, " MiB of bricks; expected a larger --budget-host, or a project made by `shvr import`");
+    if (bytes > host_budget_bytes / LEVELS_SHARE_OF_HOST) {
+        fail(info.name, ": is drawn in pieces, and making its coarser levels takes ", (bytes >> MEBIBYTE) + 1,
+             " MiB; expected at most ", (host_budget_bytes / LEVELS_SHARE_OF_HOST) >> MEBIBYTE,
+             " MiB, a quarter of --budget-host: use --budget-host ", (LEVELS_SHARE_OF_HOST * bytes >> MEBIBYTE) + 1,
+             ", or make a project with `shvr import FILE PROJECT` and open that");
+    }
     auto pyramid = std::make_shared<PyramidSource>(std::move(source));
     with_voxel_type(pyramid->info().type, [&]<class T>(T) { pyramid->build<T>(levels); });
     return pyramid;

@@ -259,6 +259,8 @@ std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& att
     info.origin = image.levels[0].translation.value_or(glm::dvec3(0.0));
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
+    if (attributes.contains("image-label"))
+        info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
 

@@ -1,4 +1,5 @@
 """shvr annotate: scripts, against brushes in plain Python, voxel for voxel."""
+import json
 import random
 import signal
 import subprocess
@@ -183,6 +184,37 @@ class Annotate(CliTest):
         self.assertIn("63", stderr)
         self.assertIn("64", stderr)
         self.assertEqual(self.mask.read_bytes(), bytes(63))
+
+    def test_a_mask_of_another_image_of_the_same_size_is_refused(self):
+        strokes = [paint("fill", "ball", 7, 0, 2, [[4, 4, 4]]), {"op": "save"}]
+        self.prepare(Volume.noise((9, 8, 7), seed=1))
+        self.annotate(strokes)
+        painted, record = self.mask.read_bytes(), self.folder / "paint.mask.json"
+        image = json.loads(record.read_text())["image"]
+        self.assertRegex(image, "^xxh3-128:[0-9a-f]{32}$")
+        self.annotate(strokes)  # the same image
+        # The same voxels in another file.
+        self.check("import", self.folder / "volume.nhdr", self.folder / "project", "--quiet")
+        same = self.write_session(volume={"path": str(self.folder / "project")})
+        self.check("annotate", same, "--script", self.write_script("script.jsonl", strokes), "--quiet")
+        self.assertEqual(json.loads(record.read_text())["image"], image)
+        # One voxel differs.
+        other = Volume.noise((9, 8, 7), seed=1)
+        other.values[100] ^= 1
+        self.prepare(other)
+        stderr = self.annotate([{"op": "save"}], status=1).stderr
+        self.assertIn(f'paint.mask.json: image is "{image}"; expected "xxh3-128:', stderr)
+        self.assertIn("the mask was painted on other voxels", stderr)
+        self.assertEqual(stderr.count("shvr: "), 1, stderr)
+        self.assertEqual(self.mask.read_bytes(), painted)
+        # Whoever wants it nevertheless removes the record, and so are masks of older programs.
+        record.unlink()
+        self.annotate([{"op": "save"}])
+        self.assertNotEqual(json.loads(record.read_text())["image"], image)
+        for wrong, says in (("[" * 100_000, "nested more than"), ('{"shvr_mask": 2}', "shvr_mask is 2; expected 1"),
+                            ('{"shvr_mask": 1}', "image is missing"), ("\0", "is not valid JSON")):
+            record.write_text(wrong)
+            self.assertIn(f"paint.mask.json: {says}", self.annotate([{"op": "save"}], status=1).stderr)
 
 
 class Killed(CliTest):

@@ -53,6 +53,19 @@ class World(CliTest):
         self.check_refused("annotate", missing, "--script", self.write_script("s.jsonl", []), says=["missing.nhdr"])
         self.check_refused("info", self.folder, says=["shvr/session.json"])
 
+    def test_remote_stores_are_refused_in_words(self):
+        for address in ("https://example.org/scan.zarr", "http://localhost:9000/a.tif", "s3://bucket/scan.zarr",
+                        "gs://bucket/scan.zarr", "file:///scan.zarr"):
+            with self.subTest(address=address):
+                says = [address, "nothing is read over a network"]
+                for command in (["info", address], ["render", address, *self.outputs()], ["profile", address],
+                                ["import", address, self.folder / "p.zarr"]):
+                    said = self.check_refused(*command, says=says)
+                    self.assertTrue(said.startswith(f"shvr: {address}: is an address; expected the path"), said)
+                session = self.write_session(volume={"path": address})
+                self.check_refused("info", session, says=[*says, "volume.path"])
+        self.assertFalse((self.folder / "p.zarr").exists())
+
     def test_a_volume_that_is_cut_short(self):
         header = Volume.noise((8, 8, 8), seed=1).write(self.folder)
         (self.folder / "volume.raw").write_bytes(bytes(100))

@@ -1,4 +1,5 @@
 """shvr import: projects, as python3-zarr and the other commands see them; what happens when an import ends early."""
+import itertools
 import json
 import math
 import os
@@ -149,6 +150,42 @@ class Import(CliTest):
         self.assertEqual(record["preparation"],
                          "cropped to voxels 2,4,6 to 12,14,16, intensities reversed, made 2 times smaller")
         self.assertEqual(record["source"], str(header))
+
+    def test_labels_are_halved_by_the_most_frequent_and_never_averaged(self):
+        size = (70, 40, 37)
+        numbers = random.Random(9)
+        values = [numbers.choice((0, 0, 3, 200)) for _ in range(math.prod(size))]
+        header = Volume(size, values).write(self.folder)
+        self.check("import", header, self.project(), "--labels", "--quiet")
+        fine, sides = values, size
+        for level in (1, 2):
+            expected, half = [], [(side + 1) // 2 for side in sides]
+            for z, y, x in itertools.product(*(range(side) for side in reversed(half))):
+                block = [fine[i + sides[0] * (j + sides[1] * k)]
+                         for k in range(2 * z, min(2 * z + 2, sides[2])) for j in range(2 * y, min(2 * y + 2, sides[1]))
+                         for i in range(2 * x, min(2 * x + 2, sides[0]))]
+                # Of equally frequent ones not 0, then the smallest.
+                expected.append(min(set(block), key=lambda label: (-block.count(label), label == 0, label)))
+            self.check("import", self.project() / str(level), self.folder / f"level{level}", "--quiet")
+            info = self.check_json("info", self.folder / f"level{level}")
+            self.assertEqual((info["size"], info["mean"]), (half, sum(expected) / len(expected)))
+            self.assertEqual([info["histogram"][label * 256 // 200 if label < 200 else 255] for label in (0, 3, 200)],
+                             [expected.count(label) for label in (0, 3, 200)])
+            fine, sides = expected, half
+        attributes = json.loads((self.project() / ".zattrs").read_text())
+        self.assertEqual(attributes["multiscales"][0]["type"], "mode")
+        self.assertIn("image-label", attributes)
+        # Who imports labels as intensities is told.
+        warnings = self.check_json("import", self.project(), self.folder / "again")["warnings"]
+        self.assertIn("--labels", " ".join(warnings))
+
+    def test_what_would_make_new_numbers_of_labels_is_refused(self):
+        header = Volume.noise((9, 8, 7), seed=1).write(self.folder)
+        for option in (["--blur", "1"], ["--reverse"], ["--downscale", "2"]):
+            self.check_refused("import", header, self.project(), "--labels", *option, says=["no label between two"])
+        floats = Volume.noise((9, 8, 7), seed=1, voxel_type="float").write(self.folder, "floats")
+        self.check_refused("import", floats, self.project(), "--labels", says=["float32", "whole numbers"])
+        self.check("import", header, self.project(), "--labels", "--crop", "0,0,0,4,4,4", "--quiet")
 
     def test_a_blur_keeps_what_is_constant_and_can_be_of_one_axis(self):
         flat = Volume((20, 10, 10), [77] * 2000).write(self.folder, "flat")

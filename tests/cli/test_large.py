@@ -1,11 +1,12 @@
 """Volumes larger than every budget: a sparse OME-Zarr of 4096^3 voxels, and a procedural volume of 65536^3."""
 import json
 import os
+import re
 import subprocess
 import unittest
 import zlib
 
-from harness import ENVIRONMENT, SHVR, TIMEOUT_S, CliTest
+from harness import ENVIRONMENT, SHVR, TIMEOUT_S, CliTest, Volume
 
 SIDE = 4096
 CHUNK = 64
@@ -154,6 +155,29 @@ class Large(CliTest):
         for y, color in ((SIZE // 4, WHITE), (3 * SIZE // 4, RED)):
             self.assert_color(pixels[y][SIZE // 2], color, y)
         self.check_bytes(result, resident)
+
+
+class Plain(CliTest):
+    """A file without levels that is larger than the device's budget."""
+
+    def write_plain(self):
+        """64 MiB of zeros, which the disk need not hold."""
+        header = Volume((8, 8, 8), bytes(512)).write(self.folder, "plain")
+        header.write_text(header.read_text().replace("sizes: 8 8 8", "sizes: 512 512 256"))
+        os.truncate(self.folder / "plain.raw", 512 * 512 * 256)
+        return header
+
+    def test_levels_that_do_not_fit_are_refused_and_both_remedies_work(self):
+        plain, project, picture = self.write_plain(), self.folder / "p.zarr", self.folder / "a.png"
+        draw = ["-o", picture, "--size", "32x32", "--budget-device", "64", "--budget-host"]
+        # (1/8 + 1/64 + ...) of 64 MiB, and two slices of 512 x 512.
+        said = self.check_refused("render", plain, *draw, "32",
+                                  says=["plain", "takes 10 MiB; expected at most 8 MiB, a quarter of --budget-host"])
+        enough = re.search(r"use --budget-host (\d+), or make a project with `shvr import FILE PROJECT`", said)[1]
+        self.check("render", plain, *draw, enough)
+        self.check_refused("render", plain, *draw, str(int(enough) - 1), says=["takes 10 MiB"])
+        self.check("import", plain, project, "--quiet")
+        self.check("render", project, *draw, "32")
 
 
 if __name__ == "__main__":

@@ -176,6 +176,17 @@ class Diff(CliTest):
         self.check_refused("profile", "diff", good, self.folder / "none.json", says=["none.json"])
         self.check_refused("profile", "diff", good, status=2)
 
+    def test_deep_nesting_is_refused_in_one_sentence(self):
+        good = self.write_profile("good.json", [("a", 1.0, 0.1)])
+        deep = self.folder / "deep.json"
+        for text in ("[" * 10_000_000, "[" * 50_000 + "]" * 50_000, '{"a":' * 50_000 + "1" + "}" * 50_000,
+                     '{"counters":' + "[" * 17 + "]" * 17 + "}"):
+            deep.write_text(text)
+            self.check_refused("profile", "diff", deep, good, says=["deep.json: JSON nests deeper than 16 levels;"])
+        # As deep as it may be, it is refused for what it lacks.
+        deep.write_text('{"counters":' + "[" * 16 + "]" * 16 + "}")
+        self.check_refused("profile", "diff", good, deep, says=["deep.json: has no list 'passes'"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -238,7 +238,7 @@ TEST_CASE("what is painted is the same on bricks that come and go, and is seen t
 
 TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, and stop nothing")
 {
-    const Source source = std::make_shared<Broken>(with_levels(tubes({150, 131, 170}), uint64_t{1} << 30));
+    const Source source = std::make_shared<Broken>(with_levels(tubes({150, 131, 170}), uint64_t{4} << 30));
     const Session session = session_of(0.1, true);
     Budgeted device;
     const Picture seen = device.picture(source, session, Paging::always, camera_looking("front", source->info()));

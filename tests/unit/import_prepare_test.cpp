@@ -352,7 +352,7 @@ TEST_CASE("a box is cut out, and where it lies is kept")
     info.directions = glm::dmat3(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));
     const MemorySource source(info, {bytes.begin(), bytes.end()});
     const PreparationOptions options{.crop = VoxelBox{{2, 3, 1}, {8, 7, 7}}, .downscale = 2};
-    const VolumeInfo& after = make_preparation(source, options)->info();
+    const VolumeInfo after = make_preparation(source, options)->info();
     CHECK(after.size == Size3(3, 2, 3));
     CHECK(after.spacing == glm::dvec3(1.0, 2.0, 4.0));
     // Its first voxel has its centre between voxels 2 and 3 along x, 3 and 4 along y, 1 and 2 along z.

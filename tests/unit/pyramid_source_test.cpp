@@ -68,6 +68,25 @@ TEST_CASE("the mean of floats is that of the finite ones, NaN where there is non
     CHECK(means[3] == 7.0f);
 }
 
+TEST_CASE("the most frequent label stays, of several one that is not 0, and of those the smallest")
+{
+    const auto label = [](const std::vector<std::vector<int16_t>>& rows) {
+        HalvingRows<int16_t> from;
+        for (const auto& row : rows) from.first[static_cast<size_t>(from.count++)] = row.data();
+        std::vector<int16_t> to((rows[0].size() + 1) / 2);
+        halve_rows(from, static_cast<int64_t>(rows[0].size()), to.data(), Halving::label);
+        return to;
+    };
+    CHECK(label({{1, 9}, {9, 2}}) == std::vector<int16_t>{9});
+    CHECK(label({{0, 0}, {7, 7}}) == std::vector<int16_t>{7});
+    CHECK(label({{-4, 0}, {5, 0}, {-4, 0}, {5, 5}}) == std::vector<int16_t>{5});
+    CHECK(label({{6, 5}, {5, 6}}) == std::vector<int16_t>{5});
+    CHECK(label({{-4, -4}, {0, 0}}) == std::vector<int16_t>{-4});
+    CHECK(label({{0, 0}, {0, 3}}) == std::vector<int16_t>{0});
+    CHECK(label({{1, 2, 300}, {2, 2, 0}}) == std::vector<int16_t>{2, 300});
+    CHECK(label({{8}}) == std::vector<int16_t>{8});
+}
+
 TEST_CASE("levels made in memory are those of a project, bit for bit")
 {
     const Size3 size{70, 45, 39};
@@ -77,7 +96,7 @@ TEST_CASE("levels made in memory are those of a project, bit for bit")
         const TemporaryFolder folder;
         import_volume(*source, folder.path / "source", folder.path / "project", {});
         const auto project = open_volume(folder.path / "project");
-        const auto levels = with_levels(source, uint64_t{1} << 30);
+        const auto levels = with_levels(source, uint64_t{4} << 30);
         REQUIRE(levels->levels() == project->levels());
         for (int level = 0; level < levels->levels(); ++level) {
             const VoxelBox all{Size3(0), size_of_level(size, level)};
@@ -91,8 +110,22 @@ TEST_CASE("levels made in memory are those of a project, bit for bit")
     }
 }
 
-TEST_CASE("levels that would take too much memory are refused before anything is read")
+TEST_CASE("levels that would take too much memory are refused before anything is read, and it is said what would do")
 {
+    // Levels of 35 x 23 x 20, 18 x 12 x 10 voxels; two slices of 70 x 45.
+    const uint64_t bytes = 2 * (35 * 23 * 20 + 18 * 12 * 10 + 2 * 70 * 45);
     const auto source = noise<uint16_t>(VoxelType::uint16, {70, 45, 39});
-    CHECK(contains(error_of([&] { with_levels(source, 1000); }), "its coarser levels take 1 MiB of host memory"));
+    CHECK(error_of([&] { with_levels(source, 4 * bytes - 1); }) ==
+          "memory: is drawn in pieces, and making its coarser levels takes 1 MiB; expected at most 0 MiB, a quarter of "
+          "--budget-host: use --budget-host 1, or make a project with `shvr import FILE PROJECT` and open that");
+    CHECK(with_levels(source, 4 * bytes)->levels() == 3);
+
+    class Flat final : public VolumeSource {
+    public:
+        Flat() : VolumeSource({.name = "flat", .size = {1 << 17, 1 << 15, 2}, .type = VoxelType::uint8}) {}
+        void read(const VoxelBox& /*box*/, std::span<std::byte> /*voxels*/) const override { fail("was read"); }
+    };
+    // The two slices are the whole volume, 8 GiB; its levels take (1 + 1/4 + ...) GiB.
+    CHECK(contains(error_of([&] { with_levels(std::make_shared<Flat>(), uint64_t{24} << 30); }),
+                   "takes 9558 MiB; expected at most 6144 MiB, a quarter of --budget-host: use --budget-host 38230,"));
 }

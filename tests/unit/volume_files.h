@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -121,6 +123,14 @@ std::string error_of(const Action& action)
         return error.what();
     }
     return {};
+}
+
+/// Processor time of all threads of this process so far. Limits are on this time: a busy machine does not stretch it.
+inline std::chrono::nanoseconds processor_time()
+{
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 inline bool contains(std::string_view text, std::string_view part)

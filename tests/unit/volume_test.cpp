@@ -125,7 +125,7 @@ TEST_CASE("measuring agrees with counting by hand, for every type")
     const auto check = [&]<class T>(VoxelType type, T first, T step) {
         std::vector<T> voxels(105);
         for (size_t i = 0; i < voxels.size(); ++i)
-            voxels[i] = static_cast<T>(first + static_cast<T>(i * 37 % 105) * step);
+            voxels[i] = static_cast<T>(static_cast<double>(first) + double(i * 37 % 105) * static_cast<double>(step));
         const VolumeStatistics found = measure(memory_source(size, type, voxels));
         const double maximum = static_cast<double>(first) + 104.0 * static_cast<double>(step);
         CHECK(found.minimum == static_cast<double>(first));

@@ -104,7 +104,7 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
-        opened.annotator->load(opened.session.mask_path);
+        opened.annotator->load(opened.session.mask_path, opened.session.volume_hash);
     if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
         opened.annotator->load_trace(opened.session.trace_path);
     show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);

@@ -144,7 +144,7 @@ public:
         const std::filesystem::path &mask = opened.session.mask_path, &trace_file = opened.session.trace_path;
         if (mask.empty() && (trace_file.empty() || !opened.annotator->document().mask.painted_bricks().empty()))
             fail(at, ": the session names no mask to save to; expected the key annotation.mask");
-        if (!mask.empty()) opened.annotator->save(mask);
+        if (!mask.empty()) opened.annotator->save(mask, opened.session.volume_hash);
         // A trace that was there and is empty now is saved as such; one that never was makes no file.
         const bool has_trace = !trace().nodes().empty() || std::filesystem::exists(trace_file);
         if (has_trace) opened.annotator->save_trace(trace_file);

@@ -24,6 +24,7 @@ struct Options {
     OpenOptions choice;
     int downscale = 1;
     bool reverse = false;
+    bool labels = false;
     bool overwrite = false;
 };
 
@@ -200,6 +201,7 @@ void run(const Options& options)
                                          .reverse = options.reverse,
                                          .blur_sigma_voxels = parse_blur(options.blur),
                                          .downscale = options.downscale},
+                         .halving = options.labels ? Halving::label : Halving::mean,
                          .choice = sentence(options.choice.channel, "\n", options.choice.frame, "\n", options.raw),
                          .overwrites = options.overwrite,
                          .threads = options.common.threads};
@@ -256,6 +258,8 @@ void add_import(CLI::App& program)
     command->add_option("--downscale", options->downscale, "Make it N times smaller along every axis")
         ->type_name("N")
         ->check(CLI::Range(1, LARGEST_DOWNSCALE));
+    command->add_flag("--labels", options->labels,
+                      "The voxels are labels: coarser levels hold the most frequent one instead of a mean");
     command->add_option("--raw", options->raw, "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
     command->add_option("--spacing", options->spacing, "Size of a voxel, instead of what the file says")

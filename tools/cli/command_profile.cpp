@@ -11,6 +11,7 @@ namespace shvr::cli {
 namespace {
 
 constexpr int64_t LARGEST_PROFILE = int64_t(64) << 20;
+constexpr int DEEPEST_PROFILE = 16;  // ours have 4; every level costs memory many times its two characters
 
 struct Options {
     Common common;
@@ -104,7 +105,13 @@ void run(Options options)
 
 Json read_profile(const std::string& path)
 {
-    const Json summary = Json::parse(read_text(path, LARGEST_PROFILE), nullptr, false);
+    const auto check_depth = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+        if (depth > DEEPEST_PROFILE)
+            fail(path, ": JSON nests deeper than ", DEEPEST_PROFILE,
+                 " levels; expected what shvr profile --json prints");
+        return true;
+    };
+    const Json summary = Json::parse(read_text(path, LARGEST_PROFILE), check_depth, false);
     if (summary.is_discarded()) fail(path, ": is no JSON; expected what shvr profile --json prints");
     return summary;
 }

@@ -72,8 +72,9 @@ Json counters_compared(const Json& a, const Json& b)
     for (const auto& [name, value] : a["counters"].items()) {
         const auto other = b["counters"].find(name);
         if (other == b["counters"].end() || !value.is_number_integer() || !other->is_number_integer()) continue;
-        rows.push_back(
-            {{"name", name}, {"a", value}, {"b", *other}, {"delta", other->get<int64_t>() - value.get<int64_t>()}});
+        // Unsigned, because a stranger's numbers may lie farther apart than an int64_t reaches.
+        const auto delta = static_cast<int64_t>(other->get<uint64_t>() - value.get<uint64_t>());
+        rows.push_back({{"name", name}, {"a", value}, {"b", *other}, {"delta", delta}});
     }
     return rows;
 }
