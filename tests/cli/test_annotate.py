@@ -211,7 +211,7 @@ class Annotate(CliTest):
         record.unlink()
         self.annotate([{"op": "save"}])
         self.assertNotEqual(json.loads(record.read_text())["image"], image)
-        for wrong, says in (("[" * 100_000, "nested more than"), ('{"shvr_mask": 2}', "shvr_mask is 2; expected 1"),
+        for wrong, says in (("[" * 10_000, "is nested more than 64 deep"), ('{"shvr_mask": 2}', "shvr_mask is 2; expected 1"),
                             ('{"shvr_mask": 1}', "image is missing"), ("\0", "is not valid JSON")):
             record.write_text(wrong)
             self.assertIn(f"paint.mask.json: {says}", self.annotate([{"op": "save"}], status=1).stderr)

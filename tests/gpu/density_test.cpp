@@ -238,7 +238,7 @@ TEST_CASE("a volume without offsets keeps no byte for them")
         std::map<std::string, uint64_t> bytes = device.renderer.memory().bytes_by_name();
         std::erase_if(bytes, [](const auto& entry) {
             return entry.second == 0 || entry.first.starts_with("region ") || entry.first.starts_with("brick ") ||
-                   entry.first == "blocks" || entry.first == "read back";
+                   entry.first == "blocks" || entry.first == "staging" || entry.first == "read back";
         });
         return bytes;
     };
@@ -249,5 +249,6 @@ TEST_CASE("a volume without offsets keeps no byte for them")
     op.paints_group = false;
     REQUIRE(annotator.paint(op) > 0);
     static_cast<void>(device.renderer.render(session, camera));
-    CHECK((lasting() == before));
+    for (const auto& [name, bytes] : lasting())
+        CHECK_MESSAGE((before.contains(name) && before.at(name) == bytes), name, ": ", bytes, " bytes");
 }
