@@ -144,16 +144,16 @@ public:
         const std::filesystem::path &mask = opened.session.mask_path, &trace_file = opened.session.trace_path;
         if (mask.empty() && (trace_file.empty() || !opened.annotator->document().mask.painted_bricks().empty()))
             fail(at, ": the session names no mask to save to; expected the key annotation.mask");
+        const std::filesystem::path& density = opened.session.density_path;
+        const bool has_offsets = opened.annotator->document().density.voxels() > 0;
+        if (density.empty() && has_offsets)
+            fail(at, ": the session names no file for density offsets; expected the key annotation.density");
         if (!mask.empty()) opened.annotator->save(mask, opened.session.volume_hash);
         // A trace that was there and is empty now is saved as such; one that never was makes no file.
         const bool has_trace = !trace().nodes().empty() || std::filesystem::exists(trace_file);
         if (has_trace) opened.annotator->save_trace(trace_file);
         for (const auto& [path, is_saved] : {std::pair(&mask, !mask.empty()), {&trace_file, has_trace}})
             if (is_saved) say(options.common, sentence(at, ": saved ", path->string()));
-        const std::filesystem::path& density = opened.session.density_path;
-        const bool has_offsets = opened.annotator->document().density.voxels() > 0;
-        if (density.empty() && has_offsets)
-            fail(at, ": the session names no file for density offsets; expected the key annotation.density");
         if (density.empty()) return;
         opened.annotator->save_offsets(density);
         say(options.common, sentence(at, ": saved ", density.string()));
