@@ -4,7 +4,8 @@
 //   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
 //   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
 //   SURFACED   rays end at opaque surfaces (surfaces.comp)
-// variants: PAGED FILTERED MASKED OCCLUDED SURFACED
+//   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they drop it
+// variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
 // Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
@@ -37,8 +38,9 @@ layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 // Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
 layout(constant_id = 7) const uint SLICE = 0u;
-// An iso-surface in the region around the probe (shell.glsl).
-layout(constant_id = 8) const uint SHELL = SHELL_NONE;
+#ifdef SHELLED
+layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
+#endif
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
@@ -251,7 +253,9 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
+#ifdef SHELLED
 #include "shell.glsl"
+#endif
 
 uint bricks_between(vec3 a, vec3 b)
 {
@@ -305,8 +309,9 @@ void main()
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(extent / params.step);
 
-    Shell shell = Shell(NO_SHELL, 0.0, 0.0, false);
-    if (SHELL != SHELL_NONE) shell = begin_shell(params, ray, begin, end);
+#ifdef SHELLED
+    Shell shell = begin_shell(params, ray, begin, end);
+#endif
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // loop of its own, and lanes meet again at the costly sample.
@@ -323,8 +328,9 @@ void main()
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (place.distance > 0u && i < steps);
-        if (SHELL != SHELL_NONE && i < steps)
-            add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
+#ifdef SHELLED
+        if (i < steps) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
+#endif
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
         if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
         ++i;
@@ -332,7 +338,9 @@ void main()
 
     // The rest of the ray is a step of its own, shorter and so more transparent.
     const float rest = extent - float(steps) * params.step;
-    if (SHELL != SHELL_NONE) add_shells(params, ray, end - 0.5 * rest, shell, sum);
+#ifdef SHELLED
+    add_shells(params, ray, end - 0.5 * rest, shell, sum);
+#endif
     if (rest > 0.0 && sum.a < params.opacity_limit) {
         const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
         const Place place = place_at(params, position);
@@ -344,7 +352,9 @@ void main()
         }
     }
 
-    if (SHELL != SHELL_NONE) add_shells(params, ray, NO_SHELL, shell, sum);
+#ifdef SHELLED
+    add_shells(params, ray, NO_SHELL, shell, sum);
+#endif
 
     const bool is_stopped = sum.a >= params.opacity_limit;
 #ifdef SURFACED

@@ -12,7 +12,7 @@ SHARED_CONST uint TABLE_HEIGHT = 16u;
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess where that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
-/// The specialization constant SHELL: no iso-surface, or where there is one.
+/// No iso-surface, or the region where there is one: the specialization constant SHELL.
 SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;

@@ -14,10 +14,12 @@ uint32_t shininess_squarings(float shininess)
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    Pass pass = graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") +
-                                  (volume.filtered ? "_filtered" : "") + (input.mask ? "_masked" : "") +
-                                  (input.occlusion ? "_occluded" : "") + (input.surfaces ? "_surfaced" : ""),
-                              "raycast");
+    const bool is_shelled = input.shell != gpu::SHELL_NONE && !input.pick;
+    Pass pass =
+        graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "") +
+                          (input.mask ? "_masked" : "") + (input.occlusion ? "_occluded" : "") +
+                          (input.surfaces ? "_surfaced" : "") + (is_shelled ? "_shelled" : ""),
+                      "raycast");
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     if (volume.pages) {
@@ -44,7 +46,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("SLICE", input.slice);
-    pass.constant("SHELL", input.pick ? gpu::SHELL_NONE : input.shell);
+    if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.

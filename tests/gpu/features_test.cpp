@@ -61,7 +61,7 @@ const std::vector<Feature> FEATURES{
      {"surfaces"}},
     {"iso-surface around the probe",
      [](Scenery& s) { s.options.probe = probe_of(s.options.probe ? 0.5 : 0.0, true); },
-     {}},
+     {"raycast_shelled"}},
     {"surfaces",
      [](Scenery& s) {
          s.session.surfaces = {{{10, 10, 10}, {40, 30, 35}, 2.0, 4.0, GREEN}};
