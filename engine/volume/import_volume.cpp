@@ -59,7 +59,8 @@ public:
           identity_(import_identity(source, origin_, options)),
           folder_(project, options.overwrites),
           threads_(thread_count(options.threads)),
-          pool_(threads_, [this] { poll(); })
+          pool_(
+              threads_, [this] { poll(); }, [this] { stop_where_asked(); })
     {
         begin_anew();
         report_.was_resumed = resume(source.info().warnings);
@@ -297,9 +298,13 @@ private:
 
     // ---- While others work ----
 
-    void poll()
+    void stop_where_asked() const
     {
         if (options_.cancel != nullptr && *options_.cancel) throw ImportStopped("stopped");
+    }
+    void poll()
+    {
+        stop_where_asked();
         if (!options_.progress || seconds_since(told_) < 0.1) return;
         told_ = Clock::now();
         const auto all = static_cast<double>(chunks_of_plane_ * counts(0).z);

@@ -39,7 +39,7 @@ struct ImportOptions {
     int threads = 0;  ///< 0: one a core
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
     std::function<void(const ImportProgress&)> progress{};  ///< about every 100 ms, on the calling thread
-    const std::atomic<bool>* cancel = nullptr;              ///< looked at before every task, which take milliseconds
+    const std::atomic<bool>* cancel = nullptr;              ///< looked at before every task; they take milliseconds
 };
 
 struct ImportReport {

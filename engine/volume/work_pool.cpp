@@ -15,7 +15,8 @@ public:
     bool is_finished() const { return next >= end && running == 0; }
 };
 
-WorkPool::WorkPool(int threads, std::function<void()> poll) : poll_(std::move(poll))
+WorkPool::WorkPool(int threads, std::function<void()> poll, std::function<void()> before_task)
+    : poll_(std::move(poll)), before_task_(std::move(before_task))
 {
     for (int worker = 0; worker < std::max(1, threads); ++worker) {
         threads_.emplace_back([this, worker] { work(worker); });
@@ -92,6 +93,7 @@ void WorkPool::work(int worker)
         lock.unlock();
         std::exception_ptr failure;
         try {
+            if (before_task_) before_task_();
             batch->run(task, worker);
         } catch (...) {
             failure = std::current_exception();

@@ -25,7 +25,8 @@ public:
 
     /// `poll` is called every 50 ms by a thread that waits, for one batch or for many short ones; what it throws ends the
     /// batch that is waited for and is thrown on.
-    explicit WorkPool(int threads, std::function<void()> poll = {});
+    /// `before_task` is called by workers before every task; what it throws is as if the task had thrown it.
+    explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
     /// Drops what has not begun, and waits for the rest.
     ~WorkPool();
     WorkPool(const WorkPool&) = delete;
@@ -48,6 +49,7 @@ private:
     static constexpr std::chrono::milliseconds POLL_INTERVAL{50};
 
     std::function<void()> poll_;
+    std::function<void()> before_task_;
     std::chrono::steady_clock::time_point polled_ = std::chrono::steady_clock::now();
     std::mutex mutex_;
     std::condition_variable begun_, finished_;

@@ -132,7 +132,7 @@ bool is_enabled(const Bytes& report)
 template <class Claim>
 bool comes_true(const Claim& claim)
 {
-    const SteadyClock::time_point end = SteadyClock::now() + std::chrono::seconds(2);
+    const SteadyClock::time_point end = SteadyClock::now() + std::chrono::seconds(30);
     while (SteadyClock::now() < end) {
         if (claim()) return true;
         std::this_thread::sleep_for(milliseconds(1));

@@ -1,5 +1,6 @@
 #include "engine/annotation/trace_index.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <random>
@@ -85,7 +86,7 @@ TEST_CASE("the nearest point is that of a search one by one, while points come, 
     }
 }
 
-TEST_CASE("the nearest of 100 000 points takes far less than a millisecond, also between edits")
+TEST_CASE("the nearest of 100 000 points takes far less than going through them, also between edits")
 {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0.0, 1000.0);
@@ -94,7 +95,8 @@ TEST_CASE("the nearest of 100 000 points takes far less than a millisecond, also
     const auto microseconds = [](Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); };
     TraceIndex index;
     const auto begin = Clock::now();
-    for (uint32_t number = 0; number < 100000; ++number) index.set(number, place());
+    std::vector<glm::dvec3> points(100000);
+    for (uint32_t number = 0; number < points.size(); ++number) index.set(number, points[number] = place());
     const double build_us = microseconds(Clock::now() - begin);
     constexpr int TIMES = 4000;
     double asked_us = 0.0, edited_us = 0.0;
@@ -102,14 +104,26 @@ TEST_CASE("the nearest of 100 000 points takes far less than a millisecond, also
     for (int i = 0; i < TIMES; ++i) {
         const glm::dvec3 at = place();
         const auto start = Clock::now();
-        sum += index.nearest(at).value();
+        const uint32_t found = index.nearest(at).value();
         const auto middle = Clock::now();
-        index.set(uint32_t(random() % 100000), at);
+        sum += found;
+        const auto moved = uint32_t(random() % points.size());
+        index.set(moved, points[moved] = at);
         edited_us += microseconds(Clock::now() - middle);
         asked_us += microseconds(middle - start);
     }
+    const auto all_begin = Clock::now();
+    for (int i = 0; i < 20; ++i) {
+        const glm::dvec3 at = place();
+        sum +=
+            uint64_t(std::ranges::min_element(points, {}, [&](const glm::dvec3& p) { return glm::distance(p, at); }) -
+                     points.begin());
+    }
+    const double all_us = microseconds(Clock::now() - all_begin) / 20.0;
     MESSAGE("100 000 points: added in " << build_us / 1000.0 << " ms, asked in " << asked_us / TIMES << " us, moved in "
-                                        << edited_us / TIMES << " us (sum " << sum << ")");
-    CHECK(asked_us / TIMES < 500.0);
-    CHECK(edited_us / TIMES < 500.0);
+                                        << edited_us / TIMES << " us; all gone through in " << all_us << " us (sum "
+                                        << sum << ")");
+    // Paired in one run: an eighth and less on an idle machine.
+    CHECK(asked_us / TIMES < all_us);
+    CHECK(edited_us / TIMES < all_us);
 }

@@ -72,10 +72,29 @@ TEST_CASE("who waits for many short batches is asked as often as who waits for a
 {
     int polls = 0;
     WorkPool pool(1, [&] { ++polls; });
-    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(400);
-    while (std::chrono::steady_clock::now() < end) {
+    const auto begin = std::chrono::steady_clock::now();
+    int batches = 0;
+    while (polls < 5) {
         pool.run(1, [](int64_t, int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+        REQUIRE(++batches < 1000);  // 50 an interval at most
     }
-    CHECK(polls >= 3);
-    CHECK(polls <= 9);
+    CHECK(std::chrono::steady_clock::now() - begin >= 5 * std::chrono::milliseconds(50));
+}
+
+TEST_CASE("what is called before every task drops those that have not begun, for whoever waits")
+{
+    std::atomic<bool> stop = false;
+    WorkPool pool(2, {}, [&] {
+        if (stop) fail("stopped");
+    });
+    std::atomic<int> begun = 0;
+    const std::string said = error_of([&] {
+        pool.run(1000, [&](int64_t, int) {
+            if (++begun == 10) stop = true;
+        });
+    });
+    CHECK(said == "stopped");
+    CHECK(begun <= 11);
+    CHECK(error_of([&] { pool.run(1, [&](int64_t, int) { ++begun; }); }) == "stopped");
+    CHECK(begun <= 11);
 }
