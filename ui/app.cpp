@@ -77,6 +77,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     look_again();
     std::string status = "Opened " + path.string();
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
+    for (const std::string& message : document_->messages) status += "; " + message;
     if (!device_said.empty()) status += "; " + device_said;
     say(status);
 }
@@ -116,7 +117,7 @@ void App::run()
 bool App::closes()
 {
     if (!window_.should_close()) return false;
-    if (!document_ || document_->paint_is_saved) return true;
+    if (!document_ || document_->work_is_saved()) return true;
     try {
         save();
         return true;
@@ -213,10 +214,17 @@ void App::work()
     }
     extend_stroke();
     const bool stroke_was_running = document.annotator.stroke_is_running();
-    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+    try {
+        if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+    } catch (const Error& error) {
+        return say(error.what());
+    }
+    if (const std::string failure = document.annotator.work().journal().failure; failure != journal_failure_) {
+        say(failure.empty() ? "The journal is written again: all that was done is kept" : failure);
+        journal_failure_ = failure;
+    }
     if (stroke_was_running && !document.annotator.stroke_is_running()) {
         const int64_t voxels = document.annotator.last_stroke_voxels();
-        if (voxels > 0) document.is_saved = document.paint_is_saved = false;
         say(voxels > 0
                 ? sentence("Painted ", voxels, " voxels in group ", int(document.brush.group))
                 : std::string("The stroke changed nothing: no voxel at or above the paint threshold here, or all of "
@@ -354,7 +362,7 @@ Model App::model()
         .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
         .undoable = document.annotator.history().undoable(),
         .redoable = document.annotator.history().redoable(),
-        .is_saved = document.is_saved,
+        .is_saved = document.is_saved && document.work_is_saved(),
         .status = status_,
         .shows_help = shows_help_,
         .gpu_name = renderer_->device().traits().name,

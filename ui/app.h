@@ -140,6 +140,7 @@ private:
     bool device_paints_ = false;                    ///< its paint button is down
     std::future<std::string> screenshot_;
     std::string status_;
+    std::string journal_failure_;  ///< as it was said
 
     // Pace
     double next_frame_s_ = 0.0;

@@ -307,7 +307,6 @@ void App::apply(const Undo&)
     const Command* command = document_->annotator.undo();
     if (!command) return say("Nothing is left to undo");
     document_->screen.changed(document_->annotator.reach_of(*command));
-    document_->is_saved = document_->paint_is_saved = false;
     say("Undone: " + command->label);
 }
 
@@ -316,7 +315,6 @@ void App::apply(const Redo&)
     const Command* command = document_->annotator.redo();
     if (!command) return say("Nothing is left to redo");
     document_->screen.changed(document_->annotator.reach_of(*command));
-    document_->is_saved = document_->paint_is_saved = false;
     say("Redone: " + command->label);
 }
 
@@ -399,7 +397,7 @@ void App::finish_screenshot()
 
 void App::apply(const Open& action)
 {
-    if (document_ && !document_->paint_is_saved) save();
+    if (document_ && !document_->work_is_saved()) save();
     open(action.path, {});
 }
 

@@ -45,13 +45,11 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         session.mask_path = session_path;
         session.mask_path.replace_extension(".mask");
     }
-    if (std::filesystem::exists(session.mask_path)) annotator.load(session.mask_path, session.volume_hash);
-    if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
-        annotator.load_trace(session.trace_path);
+    if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
+    messages = annotator.open(work_files(session, volume()));
+    is_saved = annotator.work().unsaved() == 0;
     surfaces = std::exchange(session.surfaces, {});
     show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
-    if (!session.density_path.empty() && std::filesystem::exists(session.density_path))
-        annotator.load_offsets(session.density_path);
     const ProbeSettings& probe = session.probe;
     const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
     brush = {.brush = probe.brush,
@@ -108,13 +106,13 @@ Session Document::saved_session() const
 void Document::save()
 {
     const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
-    annotator.save(session.mask_path, session.volume_hash);
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
-    if (!session.density_path.empty()) annotator.save_offsets(session.density_path);
+    annotator.name_files(session.mask_path, session.trace_path, session.density_path);
+    annotator.save();
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
-    is_saved = paint_is_saved = true;
+    is_saved = true;
 }
 
 std::vector<std::string> Document::cameras() const

@@ -26,8 +26,10 @@ struct Document {
     Screen screen;
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< the session's; taken out of it, since views copy that at every turn
-    bool is_saved = true;               ///< the session and the paint
-    bool paint_is_saved = true;
+    std::vector<std::string> messages;  ///< what opening the work found
+    bool is_saved = true;               ///< the session; work says it of itself
+
+    bool work_is_saved() const { return annotator.work().unsaved() == 0; }
 
     /// Loads the volume and, where there is one, the mask onto the device.
     /// `device`: what moves the probe; null for the mouse.
@@ -42,7 +44,7 @@ struct Document {
     VoxelBox voxels_around_probe() const;
     /// The session as it would be saved: with the camera, the probe and the thresholds of the moment.
     Session saved_session() const;
-    /// Writes the mask, then the session; each file appears whole or not at all.
+    /// Writes mask, trace and offsets, then the session; each file appears whole or not at all.
     void save();
     std::vector<std::string> cameras() const;
 };

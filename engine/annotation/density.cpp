@@ -1,6 +1,7 @@
 #include "engine/annotation/density.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/annotation/brick_run.h"
 #include "engine/base/error.h"
@@ -58,31 +59,47 @@ std::vector<int64_t> DensityField::painted_bricks() const
     return indices;
 }
 
-void DensityField::apply(const DensityBrickChange& change, Direction direction)
+std::string DensityField::misfit(const DensityBrickChange& change, Direction direction) const
 {
+    if (change.brick < 0 || change.brick >= counts_.x * counts_.y * counts_.z)
+        return sentence("there is no brick ", change.brick);
     const Size3 extent = extent_of(change.brick);
-    const auto found = bricks_.find(change.brick);
-    // A copy: loaders may hold the brick as it was.
-    auto brick = found == bricks_.end() ? std::make_shared<OffsetBrick>(OffsetBrick{})
-                                        : std::make_shared<OffsetBrick>(*found->second);
+    const std::shared_ptr<const OffsetBrick> held = brick(change.brick);
     const bool forwards = direction == Direction::forwards;
+    const double limit = offset_limit(type_);
     int64_t free_from = 0;  // where the next run may begin
     for (const DensityRun& run : change.runs) {
         const uint32_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
-        SHVR_CHECK(free_from <= run.first && run.first <= run.last && run.last < brick->size() &&
-                       run_is_inside(run.first, run.last, extent),
-                   "brick ", change.brick, " run ", run.first, " ... ", run.last);
-        const auto begin = brick->begin() + run.first, end = brick->begin() + run.last + 1;
-        SHVR_CHECK(std::all_of(begin, end, [&](uint32_t bits) { return bits == from; }), "brick ", change.brick,
-                   " does not hold offset ", offset_of(type_, from), " at ", run.first, " ... ", run.last);
-        std::fill(begin, end, to);
-        voxels_ += (end - begin) * (int(to != 0) - int(from != 0));
+        if (free_from > run.first || run.first > run.last || run.last >= MASK_BRICK_VOXELS ||
+            !run_is_inside(run.first, run.last, extent))
+            return sentence("brick ", change.brick, " has no run ", run.first, " ... ", run.last, " there");
+        const auto holds = [&](uint32_t bits) { return bits == from; };
+        if (held ? !std::all_of(held->begin() + run.first, held->begin() + run.last + 1, holds) : !holds(0))
+            return sentence("brick ", change.brick, " does not hold offset ", offset_of(type_, from), " at ", run.first,
+                            " ... ", run.last);
+        if (!(std::abs(offset_of(type_, to)) <= limit))
+            return sentence("brick ", change.brick, " is to hold offset ", offset_of(type_, to));
         free_from = run.last + 1;
     }
-    if (std::all_of(brick->begin(), brick->end(), [](uint32_t bits) { return bits == 0; }))
+    return {};
+}
+
+void DensityField::apply(const DensityBrickChange& change, Direction direction)
+{
+    const std::string misfits = misfit(change, direction);
+    SHVR_CHECK(misfits.empty(), misfits);
+    const std::shared_ptr<const OffsetBrick> held = brick(change.brick);
+    const auto changed = held ? std::make_shared<OffsetBrick>(*held) : std::make_shared<OffsetBrick>();
+    const bool forwards = direction == Direction::forwards;
+    for (const DensityRun& run : change.runs) {
+        const uint32_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
+        std::fill(changed->begin() + run.first, changed->begin() + run.last + 1, to);
+        voxels_ += (run.last - run.first + 1) * (int(to != 0) - int(from != 0));
+    }
+    if (std::all_of(changed->begin(), changed->end(), [](uint32_t bits) { return bits == 0; }))
         bricks_.erase(change.brick);
     else
-        bricks_[change.brick] = std::move(brick);
+        bricks_[change.brick] = changed;
 }
 
 void DensityField::put(int64_t index, OffsetBrick offsets)

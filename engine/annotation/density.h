@@ -58,7 +58,9 @@ public:
     /// How many voxels have one.
     int64_t voxels() const { return voxels_; }
 
-    /// Applies one record; checks first that it fits, as Mask::apply does. Frees bricks that return to wholly 0.
+    /// Why a record cannot be applied, as Mask::misfit says; nor can offsets that are no numbers, or beyond the limit.
+    std::string misfit(const DensityBrickChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK). Frees bricks that return to wholly 0.
     void apply(const DensityBrickChange& change, Direction direction);
     /// Replaces a brick that has no offsets; those beyond the volume's end are dropped. For files.
     void put(int64_t index, OffsetBrick offsets);

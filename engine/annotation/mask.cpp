@@ -52,31 +52,46 @@ std::array<int64_t, 256> Mask::voxels_by_group() const
     return voxels_by_group_;
 }
 
-void Mask::apply(const MaskBrickChange& change, Direction direction)
+std::string Mask::misfit(const MaskBrickChange& change, Direction direction) const
 {
-    SHVR_CHECK(change.brick >= 0 && change.brick < counts_.x * counts_.y * counts_.z, "brick ", change.brick);
+    if (change.brick < 0 || change.brick >= counts_.x * counts_.y * counts_.z)
+        return sentence("there is no brick ", change.brick);
     const Size3 where(change.brick % counts_.x, change.brick / counts_.x % counts_.y,
                       change.brick / (counts_.x * counts_.y));
     const Size3 extent = glm::min(Size3(SIDE), size_ - SIDE * where);
-    std::unique_ptr<MaskBrick>& brick = bricks_[change.brick];
-    if (!brick) brick = std::make_unique<MaskBrick>(MaskBrick{});
-    const bool forwards = direction == Direction::forwards;
+    const MaskBrick* const held = brick(change.brick);
     int64_t free_from = 0;  // where the next run may begin
     for (const MaskRun& run : change.runs) {
-        const uint8_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
-        SHVR_CHECK(free_from <= run.first && run.first <= run.last && run.last < MASK_BRICK_VOXELS &&
-                       run_is_inside(run.first, run.last, extent),
-                   "brick ", change.brick, " run ", run.first, " ... ", run.last);
-        const auto begin = brick->begin() + run.first, end = brick->begin() + run.last + 1;
-        SHVR_CHECK(std::all_of(begin, end, [&](uint8_t group) { return group == from; }), "brick ", change.brick,
-                   " does not hold group ", int(from), " at ", run.first, " ... ", run.last);
-        std::fill(begin, end, to);
-        voxels_by_group_[from] -= end - begin;
-        voxels_by_group_[to] += end - begin;
+        const uint8_t from = direction == Direction::forwards ? run.before : run.after;
+        if (free_from > run.first || run.first > run.last || run.last >= MASK_BRICK_VOXELS ||
+            !run_is_inside(run.first, run.last, extent))
+            return sentence("brick ", change.brick, " has no run ", run.first, " ... ", run.last, " there");
+        const auto holds = [&](uint8_t group) { return group == from; };
+        if (held ? !std::all_of(held->begin() + run.first, held->begin() + run.last + 1, holds) : !holds(0))
+            return sentence("brick ", change.brick, " does not hold group ", int(from), " at ", run.first, " ... ",
+                            run.last);
         free_from = run.last + 1;
     }
-    if (std::all_of(brick->begin(), brick->end(), [](uint8_t group) { return group == 0; }))
+    return {};
+}
+
+void Mask::apply(const MaskBrickChange& change, Direction direction)
+{
+    const std::string misfits = misfit(change, direction);
+    SHVR_CHECK(misfits.empty(), misfits);
+    const MaskBrick* const held = brick(change.brick);
+    const auto changed = held ? std::make_shared<MaskBrick>(*held) : std::make_shared<MaskBrick>();
+    const bool forwards = direction == Direction::forwards;
+    for (const MaskRun& run : change.runs) {
+        const uint8_t from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
+        std::fill(changed->begin() + run.first, changed->begin() + run.last + 1, to);
+        voxels_by_group_[from] -= run.last - run.first + 1;
+        voxels_by_group_[to] += run.last - run.first + 1;
+    }
+    if (std::all_of(changed->begin(), changed->end(), [](uint8_t group) { return group == 0; }))
         bricks_.erase(change.brick);
+    else
+        bricks_[change.brick] = changed;
 }
 
 }  // namespace shvr

@@ -3,13 +3,14 @@
 // that is wholly 0 does not exist, so an unpainted volume costs nothing. The mask is changed through records of exact
 // before and after values and through nothing else; undo is the same record the other way round.
 //
-// Not thread safe: one thread owns a mask (the main one) and lends it as const.
+// Bricks never change once they are there, so a copy of a mask costs its table and shares them. One thread owns a mask (the
+// main one) and lends it as const; a copy may go to another thread.
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -54,14 +55,16 @@ public:
     /// Voxels by group; [0] counts the unpainted ones.
     std::array<int64_t, 256> voxels_by_group() const;
 
-    /// Applies one record. Checks first that the voxels hold what the record says they hold before the change
-    /// (SHVR_CHECK: a record that does not fit is our mistake). Frees bricks that return to wholly 0.
+    /// Why a record cannot be applied: runs must ascend inside the volume, over voxels that hold what the record says they
+    /// hold before the change. Empty where it fits.
+    std::string misfit(const MaskBrickChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK). Frees bricks that return to wholly 0.
     void apply(const MaskBrickChange& change, Direction direction);
 
 private:
     Size3 size_;
     glm::i64vec3 counts_;
-    std::map<int64_t, std::unique_ptr<MaskBrick>> bricks_;
+    std::map<int64_t, std::shared_ptr<const MaskBrick>> bricks_;
     std::array<int64_t, 256> voxels_by_group_{};
 };
 

@@ -1,6 +1,7 @@
 #include "engine/annotation/tracing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -11,11 +12,15 @@ namespace {
 
 constexpr uint64_t MOST_NUMBERS = uint64_t{1} << 32;
 
+bool is_radius(double radius)
+{
+    return std::isfinite(radius) && radius >= 0.0;
+}
+
 bool is_valid(const TraceNode& node)
 {
-    const auto is_finite = [](double value) { return value - value == 0.0; };
-    return is_finite(node.position.x) && is_finite(node.position.y) && is_finite(node.position.z) &&
-           is_finite(node.radius) && node.radius >= 0.0;
+    return std::isfinite(node.position.x) && std::isfinite(node.position.y) && std::isfinite(node.position.z) &&
+           is_radius(node.radius);
 }
 
 void drop(std::vector<uint32_t>& ascending, uint32_t number)
@@ -101,26 +106,73 @@ std::optional<uint32_t> TraceGraph::nearest_node(const glm::dvec3& position, std
 
 void TraceGraph::select(TraceSelection selection)
 {
-    for (const uint32_t number : selection.nodes) SHVR_CHECK(nodes_.contains(number), "node ", number);
-    for (const uint32_t number : selection.internodes) SHVR_CHECK(internodes_.contains(number), "internode ", number);
+    const std::string misfits = misfit_of(TraceSelectionChange{{}, selection}, true);
+    SHVR_CHECK(misfits.empty(), misfits);
     selection_ = std::move(selection);
+}
+
+std::string TraceGraph::misfit_of(const TraceNodeChange& change, bool forwards) const
+{
+    const auto& [number, before, after] = change;
+    const auto &from = forwards ? before : after, &to = forwards ? after : before;
+    const auto found = nodes_.find(number);
+    if (from ? found == nodes_.end() || found->second != *from : found != nodes_.end())
+        return sentence("node ", number, " is not what the record says");
+    if ((!from && !to) || (to && !is_valid(*to))) return sentence("node ", number, " has no place or radius");
+    if (!to && !internodes_of(number).empty()) return sentence("node ", number, " still has internodes");
+    return {};
+}
+
+std::string TraceGraph::misfit_of(const TraceInternodeChange& change, bool forwards) const
+{
+    const auto& [number, before, after] = change;
+    const auto &from = forwards ? before : after, &to = forwards ? after : before;
+    const auto found = internodes_.find(number);
+    if (from ? found == internodes_.end() || found->second != *from : found != internodes_.end())
+        return sentence("internode ", number, " is not what the record says");
+    if (!from && !to) return sentence("internode ", number, " neither was nor will be");
+    if (!to) return {};
+    if (from && (from->a != to->a || from->b != to->b)) return sentence("internode ", number, " changes its nodes");
+    if (to->a == to->b || !nodes_.contains(to->a) || !nodes_.contains(to->b))
+        return sentence("internode ", number, " joins ", to->a, " and ", to->b);
+    if (!from && internode_between(to->a, to->b))
+        return sentence("internode ", number, " joins ", to->a, " and ", to->b, " again");
+    return {};
+}
+
+std::string TraceGraph::misfit_of(const TraceSizeChange& change, bool forwards) const
+{
+    const auto &from = forwards ? change.before : change.after, &to = forwards ? change.after : change.before;
+    const auto found = internode_radii_.find(change.group);
+    const std::optional<double> now = found == internode_radii_.end() ? std::nullopt : std::optional(found->second);
+    if (now == from && (!to || is_radius(*to))) return {};
+    return sentence("the size of group ", int(change.group), " is not what the record says");
+}
+
+std::string TraceGraph::misfit_of(const TraceSelectionChange& change, bool forwards) const
+{
+    const TraceSelection& to = forwards ? change.after : change.before;
+    for (const uint32_t number : to.nodes)
+        if (!nodes_.contains(number)) return sentence("node ", number, " is to be selected and is not there");
+    for (const uint32_t number : to.internodes)
+        if (!internodes_.contains(number)) return sentence("internode ", number, " is to be selected and is not there");
+    return {};
+}
+
+std::string TraceGraph::misfit(const TraceChange& change, Direction direction) const
+{
+    return std::visit([&](const auto& record) { return misfit_of(record, direction == Direction::forwards); }, change);
 }
 
 void TraceGraph::set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to)
 {
-    const auto found = nodes_.find(number);
-    SHVR_CHECK(from ? found != nodes_.end() && found->second == *from : found == nodes_.end(), "node ", number,
-               " is not what the record says");
-    SHVR_CHECK(from || to, "node ", number);
     if (to) {
-        SHVR_CHECK(is_valid(*to), "node ", number);
         nodes_[number] = *to;
         next_node_ = std::max(next_node_, uint64_t{number} + 1);
         if (!from || from->position != to->position) index_.set(number, to->position);
         return;
     }
-    SHVR_CHECK(internodes_of(number).empty(), "node ", number, " still has internodes");
-    nodes_.erase(found);
+    nodes_.erase(number);
     index_.erase(number);
     if (holds(selection_.nodes, number)) selection_ = {};
 }
@@ -128,17 +180,9 @@ void TraceGraph::set_node(uint32_t number, const std::optional<TraceNode>& from,
 void TraceGraph::set_internode(uint32_t number, const std::optional<TraceInternode>& from,
                                const std::optional<TraceInternode>& to)
 {
-    const auto found = internodes_.find(number);
-    SHVR_CHECK(from ? found != internodes_.end() && found->second == *from : found == internodes_.end(), "internode ",
-               number, " is not what the record says");
-    SHVR_CHECK(from || to, "internode ", number);
     if (from && to) {
-        SHVR_CHECK(from->a == to->a && from->b == to->b, "internode ", number);
-        found->second = *to;
+        internodes_[number] = *to;
     } else if (to) {
-        SHVR_CHECK(to->a != to->b && nodes_.contains(to->a) && nodes_.contains(to->b), "internode ", number, " joins ",
-                   to->a, " and ", to->b);
-        SHVR_CHECK(!internode_between(to->a, to->b), "internode ", number, " joins ", to->a, " and ", to->b, " again");
         internodes_[number] = *to;
         for (const uint32_t end : {to->a, to->b}) keep(internodes_of_[end], number);
         next_internode_ = std::max(next_internode_, uint64_t{number} + 1);
@@ -147,35 +191,31 @@ void TraceGraph::set_internode(uint32_t number, const std::optional<TraceInterno
             drop(internodes_of_[end], number);
             if (internodes_of_[end].empty()) internodes_of_.erase(end);
         }
-        internodes_.erase(found);
+        internodes_.erase(number);
         if (holds(selection_.internodes, number)) selection_ = {};
     }
 }
 
 void TraceGraph::apply(const TraceChange& change, Direction direction)
 {
+    const std::string misfits = misfit(change, direction);
+    SHVR_CHECK(misfits.empty(), misfits);
     const bool forwards = direction == Direction::forwards;
     std::visit(
         [&](const auto& record) {
             using Record = std::decay_t<decltype(record)>;
             const auto& from = forwards ? record.before : record.after;
             const auto& to = forwards ? record.after : record.before;
-            if constexpr (std::is_same_v<Record, TraceNodeChange>) {
+            if constexpr (std::is_same_v<Record, TraceNodeChange>)
                 set_node(record.node, from, to);
-            } else if constexpr (std::is_same_v<Record, TraceInternodeChange>) {
+            else if constexpr (std::is_same_v<Record, TraceInternodeChange>)
                 set_internode(record.internode, from, to);
-            } else if constexpr (std::is_same_v<Record, TraceSizeChange>) {
-                const auto found = internode_radii_.find(record.group);
-                const std::optional<double> now =
-                    found == internode_radii_.end() ? std::nullopt : std::optional(found->second);
-                SHVR_CHECK(now == from, "size of group ", int(record.group));
-                if (to)
-                    internode_radii_[record.group] = *to;
-                else
-                    internode_radii_.erase(record.group);
-            } else {
-                select(to);
-            }
+            else if constexpr (std::is_same_v<Record, TraceSelectionChange>)
+                selection_ = to;
+            else if (to)
+                internode_radii_[record.group] = *to;
+            else
+                internode_radii_.erase(record.group);
         },
         change);
 }

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -99,15 +100,20 @@ public:
     /// What is selected must be there (SHVR_CHECK).
     void select(TraceSelection selection);
 
-    /// Checks first that the record fits (SHVR_CHECK: one that does not is our mistake): the trace holds what it says,
-    /// a removed node has no internodes, an internode joins two nodes that are there and not joined yet. What is
-    /// removed is no longer selected.
+    /// Why a record cannot be applied: the trace must hold what it says, a removed node has no internodes, an internode
+    /// joins two nodes that are there and not joined yet, what is selected is there. Empty where it fits.
+    std::string misfit(const TraceChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK). What is removed is no longer selected.
     void apply(const TraceChange& change, Direction direction);
 
     /// Equal nodes, internodes and sizes; neither the selection nor the numbers to come.
     friend bool operator==(const TraceGraph& left, const TraceGraph& right);
 
 private:
+    std::string misfit_of(const TraceNodeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceInternodeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceSizeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceSelectionChange& change, bool forwards) const;
     void set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to);
     void set_internode(uint32_t number, const std::optional<TraceInternode>& from,
                        const std::optional<TraceInternode>& to);

@@ -30,7 +30,8 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Makes the rename survive a power cut.
+}  // namespace
+
 void sync_folder(const fs::path& path)
 {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -43,8 +44,6 @@ void sync_folder(const fs::path& path)
              ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
     }
 }
-
-}  // namespace
 
 AtomicWriter::AtomicWriter(const fs::path& path)
     : target_(path), old_permissions_(permissions_of_old_file(path)), descriptor_(create())

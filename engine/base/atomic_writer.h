@@ -14,6 +14,9 @@
 
 namespace shvr {
 
+/// Makes a new or renamed file survive a power cut: syncs the folder that holds it.
+void sync_folder(const std::filesystem::path& path);
+
 class AtomicWriter {
 public:
     /// Refuses what is neither a regular file nor absent. A symbolic link will be replaced, not followed.

@@ -6,10 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/annotation/mask_file.h"
-#include "engine/annotation/mask_image.h"
-#include "engine/annotation/offset_file.h"
-#include "engine/annotation/trace_file.h"
 #include "engine/passes/paint.h"
 
 namespace shvr {
@@ -99,11 +95,18 @@ PaintOp with_offset(PaintOp op, const TransferFunction& function)
     return op;
 }
 
+WorkFiles work_files(const Session& session, const VolumeInfo& volume)
+{
+    return {.journal = session.journal_path,
+            .mask = session.mask_path,
+            .trace = session.trace_path,
+            .density = session.density_path,
+            .volume_hash = session.volume_hash,
+            .space = space_of(volume)};
+}
+
 Annotator::Annotator(Renderer& renderer)
-    : renderer_(renderer),
-      document_{.mask = Mask(renderer.volume().info().size),
-                .trace = {},
-                .density = DensityField(renderer.volume().info().size, renderer.volume().info().type)}
+    : renderer_(renderer), work_(renderer.volume().info().size, renderer.volume().info().type)
 {}
 
 std::optional<Annotator::Batch> Annotator::make_batch(const PaintOp& op, std::span<const glm::dvec3> positions,
@@ -182,9 +185,9 @@ Annotator::Answered Annotator::ask(const PaintOp& op)
 std::vector<Change> Annotator::changes_of(const PaintOp& op, const Answered& answered) const
 {
     std::vector<Change> changes;
-    if (op.paints_group) changes = paint_changes(document_.mask, answered.selection, op.group);
+    if (op.paints_group) changes = paint_changes(document().mask, answered.selection, op.group);
     if (answered.density)
-        for (Change& change : answered.density->changes(document_.density)) changes.push_back(std::move(change));
+        for (Change& change : answered.density->changes(document().density)) changes.push_back(std::move(change));
     return changes;
 }
 
@@ -201,7 +204,7 @@ int64_t Annotator::paint(const PaintOp& op)
     Command command{label_of(op), changes_of(op, ask(op))};
     const int64_t voxels = voxels_of(command.changes);
     const Touched touched = touched_by(command.changes);
-    history_.perform(document_, std::move(command));
+    work_.perform(std::move(command));
     bring_to_device(touched);
     return voxels;
 }
@@ -237,7 +240,12 @@ std::optional<VoxelBox> Annotator::advance()
     std::optional<VoxelBox> changed;
     if (stroke.answer) {
         if (!stroke.answer.done()) return std::nullopt;
-        changed = paint_answer();
+        try {
+            changed = paint_answer();
+        } catch (const Error&) {
+            stroke_.reset();  // what cannot be kept is not painted, nor is the rest
+            throw;
+        }
     }
     if (stroke.next < stroke.waiting.size()) {
         std::optional<Batch> batch = make_batch(stroke.brush, stroke.waiting, stroke.next, false);
@@ -262,16 +270,16 @@ std::optional<VoxelBox> Annotator::paint_answer()
     stroke.voxels += voxels_of(changes);
     const Touched touched = touched_by(changes);
     if (std::exchange(stroke.is_recorded, true))
-        history_.extend(document_, std::move(changes));
+        work_.extend(std::move(changes));
     else
-        history_.perform(document_, {label_of(stroke.brush), std::move(changes)});
+        work_.perform({label_of(stroke.brush), std::move(changes)});
     bring_to_device(touched);
     VoxelBox box = stroke.asked.front().region.box;
     for (const Asked& asked : stroke.asked)
         box = {glm::min(box.lower, asked.region.box.lower), glm::max(box.upper, asked.region.box.upper)};
     if (touched.raised.empty()) return box;
     return VoxelBox{glm::max(box.lower - RAISED_REACH, Size3(0)),
-                    glm::min(box.upper + RAISED_REACH, document_.mask.size())};
+                    glm::min(box.upper + RAISED_REACH, document().mask.size())};
 }
 
 Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
@@ -280,15 +288,15 @@ Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
     for (const Change& change : changes) {
         if (const auto* mask = std::get_if<MaskBrickChange>(&change)) touched.painted_bricks.push_back(mask->brick);
         if (const auto* density = std::get_if<DensityBrickChange>(&change))
-            touched.raised.push_back(document_.density.reach_of(*density));
+            touched.raised.push_back(document().density.reach_of(*density));
     }
     return touched;
 }
 
 void Annotator::bring_to_device(const Touched& touched)
 {
-    if (!touched.painted_bricks.empty()) renderer_.update_mask(document_.mask, touched.painted_bricks);
-    if (!touched.raised.empty()) renderer_.update_density(document_.density, touched.raised);
+    if (!touched.painted_bricks.empty()) renderer_.update_mask(document().mask, touched.painted_bricks);
+    if (!touched.raised.empty()) renderer_.update_density(document().density, touched.raised);
 }
 
 void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
@@ -296,26 +304,26 @@ void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
     SHVR_CHECK(!stroke_);
     Command command{std::move(label), {}};
     for (TraceChange& change : changes) command.changes.emplace_back(std::move(change));
-    history_.perform(document_, std::move(command));
+    work_.perform(std::move(command));
 }
 
 const Command* Annotator::undo()
 {
-    const Command* command = stroke_ ? nullptr : history_.undo(document_);
+    const Command* command = stroke_ ? nullptr : work_.undo();
     if (command) bring_to_device(touched_by(command->changes));
     return command;
 }
 
 const Command* Annotator::redo()
 {
-    const Command* command = stroke_ ? nullptr : history_.redo(document_);
+    const Command* command = stroke_ ? nullptr : work_.redo();
     if (command) bring_to_device(touched_by(command->changes));
     return command;
 }
 
 VoxelBox Annotator::reach_of(const Command& command) const
 {
-    const Size3 counts = document_.mask.brick_counts(), size = document_.mask.size();
+    const Size3 counts = document().mask.brick_counts(), size = document().mask.size();
     const Touched touched = touched_by(command.changes);
     if (touched.painted_bricks.empty() && touched.raised.empty()) return {};
     VoxelBox box{size, Size3(0)};
@@ -332,47 +340,15 @@ VoxelBox Annotator::reach_of(const Command& command) const
     return box;
 }
 
-void Annotator::load(const std::filesystem::path& mask_file, const std::string& volume_hash)
+std::vector<std::string> Annotator::open(const WorkFiles& files, Work::Start start)
 {
-    check_mask_image(mask_file, volume_hash);
-    std::vector<int64_t> bricks;
-    for (const MaskBrickChange& change : load_mask(mask_file, document_.mask.size())) {
-        document_.mask.apply(change, Direction::forwards);
-        bricks.push_back(change.brick);
-    }
-    renderer_.update_mask(document_.mask, bricks);
-}
-
-void Annotator::save(const std::filesystem::path& mask_file, const std::string& volume_hash) const
-{
-    save_mask(mask_file, document_.mask);
-    save_mask_image(mask_file, volume_hash);
-}
-
-void Annotator::load_trace(const std::filesystem::path& trace_file)
-{
-    document_.trace = shvr::load_trace(trace_file, space_of(renderer_.volume().info())).trace;
-}
-
-void Annotator::save_trace(const std::filesystem::path& trace_file) const
-{
-    shvr::save_trace(trace_file, document_.trace, space_of(renderer_.volume().info()));
-}
-
-void Annotator::load_offsets(const std::filesystem::path& offset_file)
-{
-    SHVR_CHECK(document_.density.voxels() == 0 && history_.undoable() == 0, "there are offsets");
-    document_.density = shvr::load_offsets(offset_file, document_.density.size(), document_.density.type());
-    std::vector<VoxelBox> boxes;
-    for (const int64_t brick : document_.density.painted_bricks())
-        boxes.push_back(voxels_of({0, document_.density.position_of(brick)}, document_.density.size()));
-    if (!boxes.empty()) renderer_.update_density(document_.density, boxes);
-}
-
-void Annotator::save_offsets(const std::filesystem::path& offset_file) const
-{
-    if (document_.density.voxels() > 0 || std::filesystem::exists(offset_file))
-        shvr::save_offsets(offset_file, document_.density);
+    std::vector<std::string> messages = work_.open(files, start);
+    Touched all{.painted_bricks = document().mask.painted_bricks(), .raised = {}};
+    const DensityField& density = document().density;
+    for (const int64_t brick : density.painted_bricks())
+        all.raised.push_back(shvr::voxels_of({0, density.position_of(brick)}, density.size()));
+    bring_to_device(all);
+    return messages;
 }
 
 }  // namespace shvr

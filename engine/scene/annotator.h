@@ -10,22 +10,27 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/annotation/history.h"
 #include "engine/annotation/script.h"
+#include "engine/annotation/work.h"
 #include "engine/scene/renderer.h"
+#include "engine/scene/session.h"
 
 namespace shvr {
 
 /// The same, with a number where the offset is automatic.
 PaintOp with_offset(PaintOp op, const TransferFunction& function);
 
+/// What a session says of where work is kept.
+WorkFiles work_files(const Session& session, const VolumeInfo& volume);
+
 class Annotator {
 public:
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
 
-    const Document& document() const { return document_; }
-    const History& history() const { return history_; }
+    const Work& work() const { return work_; }
+    const Document& document() const { return work_.document(); }
+    const History& history() const { return work_.history(); }
     /// How many voxels the last stroke that ended has changed, of groups and offsets.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
 
@@ -50,7 +55,7 @@ public:
     /// running.
     void edit_trace(std::string label, std::vector<TraceChange> changes);
     /// No step of the history. What is selected must be there.
-    void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
+    void select_trace(TraceSelection selection) { work_.select_trace(std::move(selection)); }
 
     /// The command undone or redone; null where there is nothing left, or a stroke is running.
     const Command* undo();
@@ -58,16 +63,15 @@ public:
     /// The bricks that a command changed lie in this box; empty where it changed none.
     VoxelBox reach_of(const Command& command) const;
 
-    /// Replaces the (unpainted) mask by a file's; not a step of the history. Fails where it was painted on another image
-    /// (engine/annotation/mask_image.h), which saving notes. `volume_hash`: Session::volume_hash.
-    void load(const std::filesystem::path& mask_file, const std::string& volume_hash = {});
-    void save(const std::filesystem::path& mask_file, const std::string& volume_hash = {}) const;
-    /// The same of the trace. Fails where the file is of a volume of another size, spacing or unit.
-    void load_trace(const std::filesystem::path& trace_file);
-    void save_trace(const std::filesystem::path& trace_file) const;
-    /// The same of density offsets; there must be none. Saving none writes no new file.
-    void load_offsets(const std::filesystem::path& offset_file);
-    void save_offsets(const std::filesystem::path& offset_file) const;
+    /// As Work's; what is there comes to the device.
+    std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
+    std::vector<std::filesystem::path> save() { return work_.save(); }
+    void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
+                    const std::filesystem::path& density)
+    {
+        work_.name_files(mask, trace, density);
+    }
+    void flush() { work_.flush(); }
 
 private:
     /// A region that the device is asked about.
@@ -115,8 +119,7 @@ private:
     Renderer& renderer_;
     std::optional<Stroke> stroke_;
     int64_t last_stroke_voxels_ = 0;
-    Document document_;
-    History history_;
+    Work work_;
 };
 
 }  // namespace shvr

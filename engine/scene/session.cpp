@@ -64,6 +64,7 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     apply_settings(document, settings);
     OpenedSession opened;
     opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
+    if (!session_file.empty()) opened.session.journal_path = journal_beside(session_file);
     opened.source = open_source(opened.session);
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed);
@@ -84,6 +85,11 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
                                            function.upper(), " was made from the histogram"));
     }
     return opened;
+}
+
+fs::path journal_beside(const fs::path& session_file)
+{
+    return fs::absolute(session_file).replace_extension(".journal");
 }
 
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume)

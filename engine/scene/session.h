@@ -130,6 +130,8 @@ struct Session {
     /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< the same, of density offsets
+    /// Of what was done, beside the session's file (engine/annotation/work.h); empty where a bare volume was opened.
+    std::filesystem::path journal_path;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
@@ -144,6 +146,9 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
+
+/// "scan.journal" for "scan.json".
+std::filesystem::path journal_beside(const std::filesystem::path& session_file);
 
 /// The same from text; relative paths are relative to `folder`, `origin` names the text in messages.
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,

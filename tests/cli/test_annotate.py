@@ -203,6 +203,9 @@ class Annotate(CliTest):
         other.values[100] ^= 1
         self.prepare(other)
         stderr = self.annotate([{"op": "save"}], status=1).stderr
+        self.assertIn(f"session.journal: is of an image with the hash {image}; expected xxh3-128:", stderr)
+        (self.folder / "session.journal").unlink()
+        stderr = self.annotate([{"op": "save"}], status=1).stderr
         self.assertIn(f'paint.mask.json: image is "{image}"; expected "xxh3-128:', stderr)
         self.assertIn("the mask was painted on other voxels", stderr)
         self.assertEqual(stderr.count("shvr: "), 1, stderr)
@@ -215,6 +218,61 @@ class Annotate(CliTest):
                             ('{"shvr_mask": 1}', "image is missing"), ("\0", "is not valid JSON")):
             record.write_text(wrong)
             self.assertIn(f"paint.mask.json: {says}", self.annotate([{"op": "save"}], status=1).stderr)
+
+
+class Journal(CliTest):
+    """What was done is there without a save; tests/durability shows what it survives."""
+
+    def setUp(self):
+        super().setUp()
+        name = Volume.noise((9, 8, 7), seed=1).write(self.folder).name
+        self.session = self.write_session(volume={"path": name})
+        self.journal = self.folder / "session.journal"
+
+    def annotate(self, operations, *arguments):
+        script = self.write_script("script.jsonl", operations)
+        return self.check_json("annotate", self.session, "--script", script, *arguments)
+
+    def test_what_was_not_saved_is_there_for_every_command(self):
+        self.assertEqual(self.annotate([])["journal_bytes"], 0)
+        self.assertFalse(self.journal.exists())
+        stroke = paint("fill", "ball", 7, 0, 2, [[4, 4, 4]])
+        voxels = self.annotate([stroke])["voxels_changed"]
+        self.assertGreater(voxels, 0)
+        self.assertFalse((self.folder / "paint.mask").exists())
+        kept = self.journal.read_bytes()
+        # Another run goes on, and undoes what an earlier one did.
+        result = self.annotate([{"op": "expect", "voxels_in_group": {"7": voxels}}, {"op": "undo"},
+                                {"op": "expect", "voxels_in_group": {"7": 0}}, {"op": "redo"}])
+        self.assertEqual(result["journal_bytes"], self.journal.stat().st_size)
+        self.assertTrue(self.journal.read_bytes().startswith(kept))
+        # Who only looks sees it, says so, and leaves it as it is.
+        kept = self.journal.read_bytes()
+        export = self.check("export", self.session, "--mask", self.folder / "out.mask")
+        self.assertIn("session.journal: holds 3 steps that were not saved", export.stderr)
+        self.assertEqual((self.folder / "out.mask").read_bytes().count(7), voxels)
+        self.check("render", self.session, "-o", self.folder / "a.png", "--size", "16x16")
+        self.assertEqual(self.journal.read_bytes(), kept)
+
+    def test_starting_afresh_keeps_the_journal_under_another_name(self):
+        self.annotate([paint("fill", "ball", 7, 0, 2, [[4, 4, 4]])])
+        kept = self.journal.read_bytes()
+        self.annotate([{"op": "expect", "voxels_in_group": {"7": 0}}, paint("fill", "ball", 3, 0, 1, [[4, 4, 4]])],
+                      "--fresh")
+        self.assertEqual((self.folder / "session.journal.old").read_bytes(), kept)
+
+    def test_what_is_no_journal_is_refused(self):
+        self.journal.write_text("What is this?")
+        script = self.write_script("script.jsonl", [])
+        self.check_refused("annotate", self.session, "--script", script,
+                           says=["session.journal: begins with other bytes than SHVRJRNL"])
+
+    def test_a_folder_that_takes_no_journal_takes_no_paint(self):
+        self.journal.symlink_to(self.folder / "nowhere" / "session.journal")
+        script = self.write_script("script.jsonl", [paint("fill", "ball", 7, 0, 2, [[4, 4, 4]]), {"op": "save"}])
+        self.check_refused("annotate", self.session, "--script", script,
+                           says=["session.journal: cannot be written: No such file or directory"])
+        self.assertFalse((self.folder / "paint.mask").exists())
 
 
 class Killed(CliTest):

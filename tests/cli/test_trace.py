@@ -115,7 +115,7 @@ class Trace(CliTest):
                 ([node(1, 1, 1), {"op": "select", "near": [9, 1, 1], "within": 3}], ["8 voxels away", "within 3"]),
                 ([node(1, 1, 1), {"op": "select_segment"}], ["node 0 has no internodes"])]:
             with self.subTest(words=words):
-                stderr = self.annotate(operations, status=1).stderr
+                stderr = self.annotate(operations, "--fresh", status=1).stderr
                 for word in words:
                     self.assertIn(word, stderr)
 
@@ -130,6 +130,9 @@ class Trace(CliTest):
         self.session = self.write_session(
             volume={"procedural": "constant", "size": [24, 24, 25], "spacing": self.SPACING, "unit": "um"},
             annotation={"trace": "veins.graphml"})
+        stderr = self.annotate([{"op": "save"}], status=1).stderr
+        self.assertIn("session.journal: is of a volume of 24x24x24 voxels of uint8; expected 24x24x25 voxels", stderr)
+        (self.folder / "session.journal").unlink()
         stderr = self.annotate([{"op": "save"}], status=1).stderr
         self.assertIn("24 24 24", stderr)
         self.assertIn("24 24 25", stderr)

@@ -1,84 +1,22 @@
 #include "engine/annotation/history.h"
 
-#include <functional>
 #include <random>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "engine/annotation/density_brush.h"
+#include "tests/support/random_annotation.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
-
-constexpr Size3 SIZE(45, 40, 35);  // no multiple of a brick's side
-
-/// Differs (but for one chance in 2^64) where any group, or the set of bricks that exist, differs.
-uint64_t hash_of(const Mask& mask)
-{
-    uint64_t hash = 0;
-    for (const int64_t index : mask.painted_bricks()) {
-        const MaskBrick& brick = *mask.brick(index);
-        const std::string_view bytes(reinterpret_cast<const char*>(brick.data()), brick.size());
-        hash = hash * 0x9e3779b97f4a7c15u + std::hash<std::string_view>()(bytes) + uint64_t(index);
-    }
-    return hash;
-}
-
-/// The same of offsets.
-uint64_t hash_of(const DensityField& field)
-{
-    uint64_t hash = uint64_t(field.voxels());
-    for (const int64_t index : field.painted_bricks()) {
-        const OffsetBrick& brick = *field.brick(index);
-        const std::string_view bytes(reinterpret_cast<const char*>(brick.data()), brick.size() * sizeof brick[0]);
-        hash = hash * 0x9e3779b97f4a7c15u + std::hash<std::string_view>()(bytes) + uint64_t(index);
-    }
-    return hash;
-}
-
-uint64_t hash_of(const Document& document)
-{
-    return hash_of(document.mask) * 31 + hash_of(document.density);
-}
 
 Command command_of(const std::string& label, MaskBrickChange change)
 {
     Command command{label, {}};
     command.changes.emplace_back(std::move(change));
-    return command;
-}
-
-/// Paints or erases random parts of a random region: groups, offsets, or both in one command.
-Command random_command(const Document& document, std::mt19937& random)
-{
-    const auto uniform = [&](double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(random);
-    };
-    VoxelSelection selection(SIZE);
-    const auto what = random() % 3;  // groups, offsets, both
-    DensityStroke density(SIZE, {1, 1, 1.5}, VoxelType::int16, double(random() % 400) - 100.0,
-                          random() % 2 == 0 ? Falloff::flat : Falloff::distance);
-    for (auto dabs = 1 + random() % 3; dabs > 0; --dabs) {
-        const auto shape = random() % 2 == 0 ? RegionShape::ball : RegionShape::box;
-        const glm::dvec3 centre(uniform(-2, 47), uniform(-2, 42), uniform(-2, 37));
-        const double radius = uniform(0.5, 6.0);
-        const BrushRegion region = make_region(shape, centre, radius, {1, 1, 1.5}, SIZE);
-        std::vector<uint32_t> words(size_t(region.words_per_row()) * region.rows.size());
-        const auto share = random() % 3;
-        for (uint32_t& word : words)
-            word = share == 0 ? ~0u : share == 1 ? uint32_t(random()) : uint32_t(random() & random() & random());
-        selection.add(region, words);
-        density.add(region, words, centre, radius);
-    }
-    const auto group = uint8_t(random() % 3 == 0 ? 0 : random() % 256);
-    Command command{"random", {}};
-    if (what != 1) command.changes = paint_changes(document.mask, selection, group);
-    if (what != 0)
-        for (Change& change : density.changes(document.density)) command.changes.push_back(std::move(change));
     return command;
 }
 
@@ -152,7 +90,7 @@ TEST_CASE("10 000 random operations: every state that undo or redo comes to is t
     for (const uint32_t seed : {1u, 2u}) {
         CAPTURE(seed);
         std::mt19937 random(seed);
-        Document document{.mask = Mask(SIZE), .trace = {}, .density = DensityField(SIZE, VoxelType::int16)};
+        Document document = unannotated();
         History history;
         std::vector<uint64_t> states{hash_of(document)};  // after 0, 1, ... commands
         size_t at = 0, wrong = 0, performed = 0;
@@ -185,6 +123,6 @@ TEST_CASE("10 000 random operations: every state that undo or redo comes to is t
         CHECK(wrong == 0);
         CHECK(document.mask.painted_bricks().empty());
         CHECK(document.density.painted_bricks().empty());
-        CHECK(document.mask.voxels_by_group()[0] == SIZE.x * SIZE.y * SIZE.z);
+        CHECK(document.mask.voxels_by_group()[0] == ANNOTATED_SIZE.x * ANNOTATED_SIZE.y * ANNOTATED_SIZE.z);
     }
 }

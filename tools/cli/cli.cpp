@@ -88,7 +88,7 @@ glm::uvec2 parse_size(const std::string& text)
     return {width, height};
 }
 
-Opened open(const std::string& path, const Common& common, bool with_annotation)
+Opened open(const std::string& path, const Common& common, Work::Start start)
 {
     OpenedSession session = open_session(path, common.settings);
     Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings), nullptr, nullptr};
@@ -103,13 +103,8 @@ Opened open(const std::string& path, const Common& common, bool with_annotation)
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
-    if (with_annotation && !opened.session.mask_path.empty() && std::filesystem::exists(opened.session.mask_path))
-        opened.annotator->load(opened.session.mask_path, opened.session.volume_hash);
-    if (with_annotation && !opened.session.trace_path.empty() && std::filesystem::exists(opened.session.trace_path))
-        opened.annotator->load_trace(opened.session.trace_path);
+    warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
     show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
-    if (with_annotation && !opened.session.density_path.empty() && std::filesystem::exists(opened.session.density_path))
-        opened.annotator->load_offsets(opened.session.density_path);
     return opened;
 }
 

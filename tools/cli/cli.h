@@ -50,7 +50,7 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
 };
-Opened open(const std::string& path, const Common& common, bool with_annotation = true);
+Opened open(const std::string& path, const Common& common, Work::Start start = Work::Start::as_left);
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);

@@ -141,22 +141,8 @@ public:
     }
     void operator()(const SaveOp&)
     {
-        const std::filesystem::path &mask = opened.session.mask_path, &trace_file = opened.session.trace_path;
-        if (mask.empty() && (trace_file.empty() || !opened.annotator->document().mask.painted_bricks().empty()))
-            fail(at, ": the session names no mask to save to; expected the key annotation.mask");
-        const std::filesystem::path& density = opened.session.density_path;
-        const bool has_offsets = opened.annotator->document().density.voxels() > 0;
-        if (density.empty() && has_offsets)
-            fail(at, ": the session names no file for density offsets; expected the key annotation.density");
-        if (!mask.empty()) opened.annotator->save(mask, opened.session.volume_hash);
-        // A trace that was there and is empty now is saved as such; one that never was makes no file.
-        const bool has_trace = !trace().nodes().empty() || std::filesystem::exists(trace_file);
-        if (has_trace) opened.annotator->save_trace(trace_file);
-        for (const auto& [path, is_saved] : {std::pair(&mask, !mask.empty()), {&trace_file, has_trace}})
-            if (is_saved) say(options.common, sentence(at, ": saved ", path->string()));
-        if (density.empty()) return;
-        opened.annotator->save_offsets(density);
-        say(options.common, sentence(at, ": saved ", density.string()));
+        for (const std::filesystem::path& path : in_words([&] { return opened.annotator->save(); }))
+            say(options.common, sentence(at, ": saved ", path.string()));
     }
     void operator()(const ExpectOp& op)
     {
@@ -179,7 +165,7 @@ public:
 void run(const Options& options)
 {
     const std::vector<ScriptLine> script = read_script(options.script);
-    Opened opened = open(options.project, options.common, !options.fresh);
+    Opened opened = open(options.project, options.common, options.fresh ? Work::Start::fresh : Work::Start::as_left);
     const VolumeInfo& volume = opened.source->info();
     for (const ScriptLine& line : script)  // before anything is painted
         if (const auto* paint = std::get_if<PaintOp>(&line.op)) try {
@@ -192,13 +178,14 @@ void run(const Options& options)
         replay.at = sentence(options.script, ":", line.number);
         std::visit(replay, line.op);
     }
+    opened.annotator->flush();
     check_validation(opened);
     if (options.common.json)
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},
                {"nodes", opened.annotator->document().trace.nodes().size()},
                {"internodes", opened.annotator->document().trace.internodes().size()},
-               {"journal_bytes", 0}});
+               {"journal_bytes", opened.annotator->work().journal().bytes}});
 }
 
 }  // namespace
@@ -209,7 +196,8 @@ void add_annotate(CLI::App& program)
     CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
-    command->add_flag("--fresh", options->fresh, "Start without the saved mask, trace and offsets");
+    command->add_flag("--fresh", options->fresh,
+                      "Start without the annotation there is; its journal is kept as JOURNAL.old");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

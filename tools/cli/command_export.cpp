@@ -28,25 +28,13 @@ void check_extension(const char* option, const std::string& path, const std::vec
     throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
 }
 
-/// The saved mask, or an unpainted one.
-Mask saved_mask(const Session& session, const Size3& size)
+/// Fails where a trace is asked for, and there is none.
+void expect_trace(const Session& session, const TraceGraph& trace)
 {
-    Mask mask(size);
-    if (!session.mask_path.empty() && std::filesystem::exists(session.mask_path))
-        for (const MaskBrickChange& change : load_mask(session.mask_path, size))
-            mask.apply(change, Direction::forwards);
-    return mask;
-}
-
-TraceGraph saved_trace(const Session& session, const TraceSpace& space, bool is_needed)
-{
-    if (!session.trace_path.empty() && std::filesystem::exists(session.trace_path))
-        return load_trace(session.trace_path, space).trace;
-    if (is_needed)
-        fail(session.trace_path.empty() ? "the session" : session.trace_path.string(),
-             session.trace_path.empty() ? ": names no trace; expected the key annotation.trace"
-                                        : ": does not exist; expected the trace that shvr annotate saves");
-    return {};
+    if (!trace.nodes().empty() || std::filesystem::exists(session.trace_path)) return;
+    fail(session.trace_path.empty() ? "the session" : session.trace_path.string(),
+         session.trace_path.empty() ? ": names no trace; expected the key annotation.trace"
+                                    : ": does not exist; expected the trace that shvr annotate saves");
 }
 
 /// Of all that is painted (-1), and of each group.
@@ -91,8 +79,11 @@ void run(const Options& options)
     const OpenedSession opened = open_session(options.project, options.common.settings);
     warn(opened.source->info().warnings, options.common);
     const TraceSpace space = space_of(opened.source->info());
-    const Mask mask = saved_mask(opened.session, space.size);
-    const TraceGraph trace = saved_trace(opened.session, space, !options.trace.empty() || !options.mesh.empty());
+    Work work(space.size, opened.source->info().type);
+    warn(work.open(work_files(opened.session, opened.source->info())), options.common);
+    const Mask& mask = work.document().mask;
+    const TraceGraph& trace = work.document().trace;
+    if (!options.trace.empty() || !options.mesh.empty()) expect_trace(opened.session, trace);
 
     std::vector<std::string> written, left_out;
     const auto wrote = [&](const std::string& path) {
