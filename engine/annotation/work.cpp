@@ -3,7 +3,9 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <utility>
 
 #include "engine/annotation/mask_file.h"
@@ -270,9 +272,8 @@ void Work::set_journal_aside()
     }
     scanned_.reset();
     const fs::path old = old_of(files_.journal, is_fresh_ || steps_since_save(scan_) == 0);
-    std::error_code error;
-    fs::rename(files_.journal, old, error);
-    if (error) fail(old.string(), ": cannot be written: ", error.message());
+    if (std::rename(files_.journal.c_str(), old.c_str()) != 0)
+        fail(old.string(), ": cannot be written: ", reason_of(errno));
     sync_folder(old);
     scan_ = {};
     is_to_set_aside_ = false;

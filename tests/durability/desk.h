@@ -1,0 +1,64 @@
+#pragma once
+// A folder to work in, and steps of work at random that two processes make alike.
+
+#include <memory>
+#include <random>
+
+#include "engine/annotation/work.h"
+#include "tests/support/random_annotation.h"
+
+namespace shvr::test {
+
+inline WorkFiles files_in(const std::filesystem::path& folder)
+{
+    return {.journal = folder / "a.journal",
+            .mask = folder / "a.mask",
+            .trace = folder / "a.graphml",
+            .density = folder / "a.offset",
+            .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
+            .space = {ANNOTATED_SIZE, {1.0, 1.0, 1.5}, "um"}};
+}
+
+/// What opening says goes to `said`.
+inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said)
+{
+    auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
+    // So small that states and fetching from the journal are part of it.
+    work->set_limits({.history_bytes = 20000, .bytes_between_states = 20000, .steps_between_states = 100});
+    said.clear();
+    for (const std::string& message : work->open(files)) said += message + "\n";
+    return work;
+}
+
+/// A command, an undo or a redo; false where it did nothing. `Work` or a model of it.
+template <class Undo, class Redo, class Perform>
+bool random_step(const Document& document, std::mt19937& random, const Undo& undo, const Redo& redo,
+                 const Perform& perform)
+{
+    const auto choice = random() % 8;
+    if (choice == 0) return undo();
+    if (choice == 1) return redo();
+    Command command = random_command(document, random);
+    if (command.changes.empty()) return false;
+    perform(std::move(command));
+    return true;
+}
+
+inline bool random_step(Work& work, std::mt19937& random)
+{
+    return random_step(
+        work.document(), random, [&] { return work.undo() != nullptr; }, [&] { return work.redo() != nullptr; },
+        [&](Command command) { work.perform(std::move(command)); });
+}
+
+/// How many steps a journal holds.
+inline size_t steps_in(const std::filesystem::path& journal)
+{
+    size_t steps = 0;
+    for (const JournalRecord& record : scan_journal(journal).records)
+        steps += record.kind == RecordKind::command || record.kind == RecordKind::undo ||
+                 record.kind == RecordKind::redo;
+    return steps;
+}
+
+}  // namespace shvr::test

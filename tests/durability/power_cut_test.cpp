@@ -1,0 +1,129 @@
+// The power is cut at any moment of work and saving: no state is unreadable or mixed, and nothing that was acknowledged is
+// gone. The same proof on a disk that lies about syncing must fail.
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "tests/durability/desk.h"
+#include "tests/durability/power_cut.h"
+#include "tests/unit/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What was done, and the states it went through.
+struct Record {
+    std::vector<FileCall> calls;
+    std::vector<uint64_t> states;  ///< after 0, 1, ... steps
+    std::set<uint64_t> masks, traces, fields;  ///< that were saved, and nothing
+};
+
+/// Notes in the calls are the number of steps that have been acknowledged.
+Record work_of_a_day(const fs::path& folder)
+{
+    Record record;
+    std::mt19937 random(5);
+    record.states.push_back(hash_of(unannotated()));
+    record.masks.insert(hash_of(Mask(ANNOTATED_SIZE)));
+    record.traces.insert(hash_of(TraceGraph()));
+    record.fields.insert(hash_of(DensityField(ANNOTATED_SIZE, ANNOTATED_TYPE)));
+    watch(folder);
+    std::string said;
+    for (int day = 0; day < 3; ++day) {
+        auto work = open_work(files_in(folder), said);
+        for (int i = 0; i < 60; ++i) {
+            if (random_step(*work, random)) record.states.push_back(hash_of(work->document()));
+            if (random() % 6 == 0) {
+                work->flush();
+                note(record.states.size() - 1);
+            }
+            if (random() % 20 != 0) continue;
+            record.masks.insert(hash_of(work->document().mask));
+            record.traces.insert(hash_of(work->document().trace));
+            record.fields.insert(hash_of(work->document().density));
+            work->save();
+            note(record.states.size() - 1);
+        }
+        work.reset();
+        note(record.states.size() - 1);
+    }
+    record.calls = stop_watching();
+    return record;
+}
+
+/// Why a disk is not what was promised; empty where it is.
+std::string fault_of(const fs::path& folder, const Disk& disk, const Record& record, size_t acknowledged)
+{
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    for (const auto& [path, content] : disk) {
+        std::ofstream file(folder / fs::path(path).filename(), std::ios::binary);
+        file.write(content.data(), std::streamsize(content.size()));
+    }
+    WorkFiles files = files_in(folder);
+    std::string said;
+    try {
+        const auto work = open_work(files, said);
+        const size_t steps = steps_in(files.journal);
+        if (steps < acknowledged) return sentence("acknowledged ", acknowledged, " steps, found ", steps);
+        if (steps >= record.states.size()) return sentence("found ", steps, " steps that nobody made");
+        if (hash_of(work->document()) != record.states[steps]) return sentence("step ", steps, " is of another state");
+        if (contains(said, "were changed")) return said;
+        // The files alone, each as one save left it.
+        files.journal.clear();
+        const auto saved = open_work(files, said);
+        if (!record.masks.contains(hash_of(saved->document().mask))) return "the mask is of no save";
+        if (!record.traces.contains(hash_of(saved->document().trace))) return "the trace is of no save";
+        if (!record.fields.contains(hash_of(saved->document().density))) return "the offsets are of no save";
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+struct Faults {
+    size_t count = 0;
+    std::string first;
+};
+
+Faults faults_of(const Record& record, const fs::path& folder, size_t cuts, bool syncs_count)
+{
+    Faults faults;
+    std::mt19937 random(17);
+    for (size_t i = 0; i < cuts; ++i) {
+        const PowerCut cut{.calls = random() % (record.calls.size() + 1), .syncs_count = syncs_count};
+        size_t acknowledged = 0;
+        for (const FileCall& call : std::span(record.calls).first(cut.calls))
+            if (call.kind == FileCall::Kind::note) acknowledged = call.at;
+        const std::string fault = fault_of(folder, disk_after(record.calls, cut, random), record, acknowledged);
+        if (fault.empty()) continue;
+        if (faults.count++ == 0) faults.first = sentence("after ", cut.calls, " calls: ", fault);
+    }
+    return faults;
+}
+
+}  // namespace
+
+TEST_CASE("2000 power cuts at any moment leave what was acknowledged, and nothing mixed")
+{
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path / "desk");
+    const Record record = work_of_a_day(folder.path / "desk");
+    REQUIRE(record.states.size() > 100);
+    REQUIRE(record.masks.size() > 4);
+    const Faults faults = faults_of(record, folder.path / "cut", 2000, true);
+    CAPTURE(faults.first);
+    CHECK(faults.count == 0);
+    MESSAGE(record.calls.size(), " calls, ", record.states.size() - 1, " steps, ", record.masks.size() - 1, " saves");
+
+    const Faults without_syncs = faults_of(record, folder.path / "cut", 300, false);
+    CHECK(without_syncs.count > 100);
+    MESSAGE("without syncs: ", without_syncs.count, " of 300, the first ", without_syncs.first);
+}
