@@ -56,8 +56,8 @@ inline size_t steps_in(const std::filesystem::path& journal)
 {
     size_t steps = 0;
     for (const JournalRecord& record : scan_journal(journal).records)
-        steps += record.kind == RecordKind::command || record.kind == RecordKind::undo ||
-                 record.kind == RecordKind::redo;
+        steps +=
+            record.kind == RecordKind::command || record.kind == RecordKind::undo || record.kind == RecordKind::redo;
     return steps;
 }
 

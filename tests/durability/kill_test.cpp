@@ -73,8 +73,8 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
 {
     const TemporaryFolder folder;
     const WorkFiles files = files_in(folder.path);
-    auto* const told = static_cast<Told*>(
-        ::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+    auto* const told =
+        static_cast<Told*>(::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
     REQUIRE(told != MAP_FAILED);
     std::mt19937 random(1);
     Model model;

@@ -57,8 +57,8 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
         const FileCall* call;
         std::shared_ptr<File> created;
     };
-    Folder now, synced;         // entries as programs see them, and as the disk holds them for sure
-    std::vector<Entry> later;   // what leads from one to the other
+    Folder now, synced;        // entries as programs see them, and as the disk holds them for sure
+    std::vector<Entry> later;  // what leads from one to the other
     for (const FileCall& call : calls.first(cut.calls)) {
         switch (call.kind) {
             case FileCall::Kind::create:

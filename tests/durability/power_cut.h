@@ -16,8 +16,8 @@ namespace shvr::test {
 using Disk = std::map<std::string, std::string>;
 
 struct PowerCut {
-    size_t calls = 0;          ///< that were made before
-    bool syncs_count = true;   ///< false: a disk that lies about syncing, to see a proof fail
+    size_t calls = 0;         ///< that were made before
+    bool syncs_count = true;  ///< false: a disk that lies about syncing, to see a proof fail
 };
 Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt19937& random);
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// What was done, and the states it went through.
 struct Record {
     std::vector<FileCall> calls;
-    std::vector<uint64_t> states;  ///< after 0, 1, ... steps
+    std::vector<uint64_t> states;              ///< after 0, 1, ... steps
     std::set<uint64_t> masks, traces, fields;  ///< that were saved, and nothing
 };
 

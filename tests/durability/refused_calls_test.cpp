@@ -59,9 +59,8 @@ TEST_CASE("every call of a save fails once: each file is the old or the new one,
             const uint64_t hash = hash_of(work->document());
 
             int calls = 0;
-            refuse_calls(desk, [&](const FileCall& call) {
-                return can_happen(call.kind) && calls++ == nth ? error : 0;
-            });
+            refuse_calls(desk,
+                         [&](const FileCall& call) { return can_happen(call.kind) && calls++ == nth ? error : 0; });
             const std::string refused = error_of([&] { work->save(); });
             refuse_calls(desk, {});
             const auto between = saved_files(desk);
@@ -75,7 +74,8 @@ TEST_CASE("every call of a save fails once: each file is the old or the new one,
             }
             CHECK((between.size() >= before.size() && between.size() <= after.size()));
             for (const auto& [name, content] : between)
-                CHECK_MESSAGE(((before.contains(name) && before.at(name) == content) || after.at(name) == content), name);
+                CHECK_MESSAGE(((before.contains(name) && before.at(name) == content) || after.at(name) == content),
+                              name);
             // Interrupted and short calls go on.
             if (error == EINTR || error == SHORT_WRITE) CHECK(refused.empty());
             work.reset();

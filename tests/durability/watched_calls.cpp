@@ -134,9 +134,8 @@ int __wrap_open(const char* path, int flags, ...)
 ssize_t __wrap_write(int file, const void* bytes, size_t count)
 {
     const off_t at = ::lseek(file, 0, SEEK_CUR);
-    return made(write_call(file, bytes, count, uint64_t(at < 0 ? 0 : at)), [&](int error) {
-        return __real_write(file, bytes, error == SHORT_WRITE ? (count + 1) / 2 : count);
-    });
+    return made(write_call(file, bytes, count, uint64_t(at < 0 ? 0 : at)),
+                [&](int error) { return __real_write(file, bytes, error == SHORT_WRITE ? (count + 1) / 2 : count); });
 }
 
 ssize_t __wrap_pwrite(int file, const void* bytes, size_t count, off_t at)

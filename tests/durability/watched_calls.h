@@ -16,9 +16,9 @@ namespace shvr::test {
 struct FileCall {
     enum class Kind { create, write, truncate, sync, sync_folder, rename, unlink, note };
     Kind kind = Kind::note;
-    std::string path, to;           ///< absolute; `to` of rename alone
-    uint64_t at = 0;                ///< of write: where; of truncate: the new size; of note: its number
-    std::vector<std::byte> bytes;   ///< of write
+    std::string path, to;          ///< absolute; `to` of rename alone
+    uint64_t at = 0;               ///< of write: where; of truncate: the new size; of note: its number
+    std::vector<std::byte> bytes;  ///< of write
 };
 
 /// From now on calls about files below `folder` are kept.

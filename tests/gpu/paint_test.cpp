@@ -692,11 +692,12 @@ TEST_CASE("a mask that grew brick by brick looks like one loaded at once")
         bytes = mask_bytes(grown);
     }
     CHECK(growths >= 3);
-    annotator.save(folder.path / "a.mask");
+    annotator.name_files(folder.path / "a.mask", {}, {});
+    annotator.save();
     Renderer fresh(with_validation());
     load(fresh, voxels);
     Annotator loaded(fresh);
-    loaded.load(folder.path / "a.mask");
+    CHECK(loaded.open({.mask = folder.path / "a.mask"}).empty());
     CHECK(groups_of(loaded.document().mask) == groups_of(annotator.document().mask));
     CHECK((picture(grown, session) == picture(fresh, session)));
     while (annotator.undo()) {
