@@ -324,6 +324,52 @@ def make_dicom():
 # ---- Zarr and projects ----------------------------------------------------------------------------------------------
 
 
+# ---- Journals -------------------------------------------------------------------------------------------------------
+
+def number(value):
+    out = b""
+    while value > 127:
+        out += bytes([value % 128 + 128])
+        value //= 128
+    return out + bytes([value])
+
+
+def record(kind, content=b"", about=0):
+    return struct.pack("<BBH", kind, about, len(content)) + content
+
+
+def make_journals():
+    STATE, COMMAND, EXTENSION, UNDO, REDO, SAVING, SAVED, LATER = 2, 3, 4, 5, 6, 7, 8, 200
+    mask = bytes([1]) + number(1) + number(2) + bytes([3, 4, 0, 7]) + number(200) + bytes([1, 0, 8])
+    more = bytes([1]) + number(1) + number(1) + bytes([3, 2, 7, 0])
+    density = bytes([2]) + number(0) + number(1) + bytes([9, 0]) + struct.pack("<ii", 0, 60)
+    node = lambda n, x: bytes([3]) + number(n) + bytes([2]) + struct.pack("<dddd", x, 2, 3, 1.5) + bytes([1])
+    link = bytes([4]) + number(0) + bytes([2]) + number(0) + number(1) + bytes([1])
+    size = bytes([5]) + number(1) + bytes([2]) + struct.pack("<d", 0.5)
+    selects = bytes([6]) + number(0) + number(0) + number(1) + number(1) + number(0)
+    nothing = number(0) + number(0)
+    files = bytes(27)
+    seed("journal", "paints", b"\1" + record(COMMAND, mask) + record(EXTENSION, more) + record(UNDO) + record(REDO))
+    seed("journal", "traces", b"\1" + record(COMMAND, node(0, 1.0) + node(1, 5.0) + link + size + selects) +
+         record(UNDO) + record(COMMAND, density))
+    seed("journal", "states", b"\1" + record(COMMAND, mask) + record(STATE, nothing + mask, 2) + record(COMMAND, density) +
+         record(SAVING) + record(SAVED, files) + record(UNDO) + record(UNDO) + record(LATER, b"later"))
+    seed("journal", "does_not_fit", b"\1" + record(COMMAND, mask) + record(COMMAND, mask) + record(UNDO))
+    header = b"SHVRJRNL" + struct.pack("<II", 1, 0)
+    seed("journal", "length_beyond_the_end", b"\0" + header + struct.pack("<IHHQQQQ", 1, 0, 0, 1 << 60, 1 << 60, 0, 0) + bytes(64))
+    with tempfile.TemporaryDirectory() as folder:
+        session, script = Path(folder, "a.json"), Path(folder, "a.jsonl")
+        session.write_text(json.dumps({"shvr_session": 1, "volume": {"procedural": "sphere", "size": [40, 24, 24]},
+                                       "annotation": {"mask": "a.mask", "density": "a.offset"}}))
+        brush = {"brush": "fill", "threshold": 0, "radius": 4, "path": [[12, 12, 12], [30, 12, 12]]}
+        script.write_text("\n".join(json.dumps(line) for line in [
+            {"op": "paint", "group": 3, **brush}, {"op": "density", "offset": 20, "falloff": "distance", **brush},
+            {"op": "node", "at": [3, 4, 5]}, {"op": "node", "at": [9, 4, 5]}, {"op": "save"}, {"op": "undo", "count": 2}]))
+        subprocess.run([os.environ["SHVR"], "annotate", session, "--script", script, "--quiet"], check=True)
+        seed("journal", "version_1", b"\0" + Path(folder, "a.journal").read_bytes())
+    seed("journal", "runs_beyond_the_end", b"\1" + record(COMMAND, bytes([1]) + number(0) + number(1 << 40)))
+
+
 def packed(folder):
     return [(str(file.relative_to(folder)), file.read_bytes()) for file in sorted(folder.rglob("*")) if file.is_file()]
 
@@ -493,6 +539,7 @@ def main():
     make_states()
     make_text()
     make_trace()
+    make_journals()
     make_png()
     files = [file for file in SEEDS.rglob("*") if file.is_file()]
     print(f"{len(files)} seeds, {sum(file.stat().st_size for file in files)} bytes")
