@@ -287,6 +287,7 @@ Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
 
 void Annotator::bring_to_device(const Touched& touched)
 {
+    revision_ += !touched.painted_bricks.empty() || !touched.raised.empty();
     if (!touched.painted_bricks.empty()) renderer_.update_mask(document_.mask, touched.painted_bricks);
     if (!touched.raised.empty()) renderer_.update_density(document_.density, touched.raised);
 }
@@ -340,6 +341,7 @@ void Annotator::load(const std::filesystem::path& mask_file, const std::string& 
         document_.mask.apply(change, Direction::forwards);
         bricks.push_back(change.brick);
     }
+    ++revision_;
     renderer_.update_mask(document_.mask, bricks);
 }
 
@@ -363,6 +365,7 @@ void Annotator::load_offsets(const std::filesystem::path& offset_file)
 {
     SHVR_CHECK(document_.density.voxels() == 0 && history_.undoable() == 0, "there are offsets");
     document_.density = shvr::load_offsets(offset_file, document_.density.size(), document_.density.type());
+    ++revision_;
     std::vector<VoxelBox> boxes;
     for (const int64_t brick : document_.density.painted_bricks())
         boxes.push_back(voxels_of({0, document_.density.position_of(brick)}, document_.density.size()));
