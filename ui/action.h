@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/annotation/script.h"
+#include "engine/annotation/trace_command.h"
 #include "engine/scene/session.h"
 #include "haptics/proxy.h"
 
@@ -96,10 +96,26 @@ struct ShowShell {  ///< an iso-surface at the paint threshold around the probe
     bool on = true;
     double opacity = 0.4;
 };
+struct ShowPreview {  ///< what the brush would change, drawn before it does
+    bool on = true;
+};
 struct ChooseGroup {
     uint8_t group = 1;
 };
-struct Paint {  ///< begins and ends a stroke
+enum class Tool { paint, trace };
+/// How far a node may be from the probe to be nearby, in radii of the probe.
+inline constexpr double NEARBY_RADII = 4.0;
+/// What the right mouse button, F and the stylus do, and what is shown of what they would.
+struct SetTool {
+    Tool tool = Tool::paint;
+};
+struct Paint {  ///< begins and ends a stroke; where the tool is tracing, the beginning adds a node
+    bool on = false;
+};
+struct Trace {
+    TraceOp op;
+};
+struct DragNode {  ///< the selected node goes with the probe until it is let go, as one step of the history
     bool on = false;
 };
 struct SetHapticThreshold {
@@ -130,11 +146,11 @@ struct ShowHelp {
 };
 struct Quit {};
 
-using Action =
-    std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
-                 SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo, ProbeOnto,
-                 PushProbe, ScaleProbe, SetBrush, ShowShell, ChooseGroup, Paint, SetHapticThreshold, Assist,
-                 SetProxyLaw, Undo, Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
+using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
+                            SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo,
+                            ProbeOnto, PushProbe, ScaleProbe, SetBrush, ShowShell, ShowPreview, ChooseGroup, SetTool,
+                            Paint, Trace, DragNode, SetHapticThreshold, Assist, SetProxyLaw, Undo, Redo, Save,
+                            Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

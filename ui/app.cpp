@@ -150,9 +150,9 @@ double App::next_reason_to_draw_s() const
 
 double App::time_to_wait() const
 {
-    const bool has_work =
-        document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
-                      document_->assistance || look_is_stale_ || camera_moved_ || screenshot_.valid());
+    const bool has_work = document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
+                                        document_->assistance || look_is_stale_ || camera_moved_ ||
+                                        screenshot_.valid() || !document_->previewer.is_current());
     const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
     return std::clamp(until_frame, 0.0, has_work ? WORK_S : IDLE_S);
 }
@@ -223,13 +223,8 @@ void App::work()
         say(failure.empty() ? "The journal is written again: all that was done is kept" : failure);
         journal_failure_ = failure;
     }
-    if (stroke_was_running && !document.annotator.stroke_is_running()) {
-        const int64_t voxels = document.annotator.last_stroke_voxels();
-        say(voxels > 0
-                ? sentence("Painted ", voxels, " voxels in group ", int(document.brush.group))
-                : std::string("The stroke changed nothing: no voxel at or above the paint threshold here, or all of "
-                              "them are in this group"));
-    }
+    if (stroke_was_running && !document.annotator.stroke_is_running()) stroke_ended();
+    show_preview();
     if (viewport_.pixels().x > 0 && viewport_.pixels().y > 0) {
         const bool moved = std::exchange(camera_moved_, false);
         if (std::exchange(look_is_stale_, false))
@@ -309,6 +304,7 @@ void App::draw_strokes() const
     const Document& document = *document_;
     if (!document.screen.shows_anything()) return;
     const ProbeLook look = document.probe_look();
+    const TraceMarks marks = document.trace_marks();
     const ServoState* servo = document.touch.servo();
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const Screen::Part& part : document.screen.parts()) {
@@ -318,7 +314,7 @@ void App::draw_strokes() const
             return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
         };
         list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
-        for (const Stroke& stroke : document.screen.strokes(part, look))
+        for (const Stroke& stroke : document.screen.strokes(part, look, marks))
             list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
                          float(stroke.width));
         if (document.screen.parts().size() > 1) {
@@ -359,6 +355,13 @@ Model App::model()
         .law = document.law,
         .servo = document.touch.servo(),
         .device_name = document.touch.device_name(),
+        .tool = document.tool,
+        .trace = document.annotator.document().trace,
+        .trace_summary = document.trace_summary,
+        .nearby_node = document.nearby_node(),
+        .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
+                                ? std::optional(document.previewer.shown()->voxels)
+                                : std::nullopt,
         .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
         .undoable = document.annotator.history().undoable(),
         .redoable = document.annotator.history().redoable(),

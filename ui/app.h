@@ -45,6 +45,7 @@ struct AppReport {
     glm::dvec3 probe_voxel{0.0};
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
+    std::optional<int64_t> previewed_voxels;  ///< when the last stroke began, where there was a preview of it
     std::string status;
     std::vector<std::string> messages;  ///< every status so far
     std::vector<std::string> validation_messages;
@@ -77,6 +78,9 @@ private:
     void note_presented();
     TouchSettings touch_settings() const;
     void extend_stroke();
+    void show_changes(const Command& command);
+    void stroke_ended();
+    void show_preview();
     void save();
     bool closes();
     void finish_screenshot();
@@ -107,8 +111,12 @@ private:
     void apply(const ScaleProbe& action);
     void apply(const SetBrush& action);
     void apply(const ShowShell& action);
+    void apply(const ShowPreview& action);
     void apply(const ChooseGroup& action);
+    void apply(const SetTool& action);
     void apply(const Paint& action);
+    void apply(const Trace& action);
+    void apply(const DragNode& action);
     void apply(const SetHapticThreshold& action);
     void apply(const Assist& action);
     void apply(const SetProxyLaw& action);

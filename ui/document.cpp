@@ -50,22 +50,21 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     is_saved = annotator.work().unsaved() == 0;
     surfaces = std::exchange(session.surfaces, {});
     show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
+    trace_summary = summary_of(annotator.document().trace);
     const ProbeSettings& probe = session.probe;
-    const double threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics));
-    brush = {.brush = probe.brush,
-             .region = probe.region,
-             .group = probe.group,
-             .threshold = threshold,
-             .radius_voxels = probe.radius_voxels,
-             .connectivity = probe.connectivity,
-             .path = {}};
-    haptic_threshold = probe.haptic_threshold.value_or(threshold);
+    brush = dab_of(session, volume(), statistics);
+    brush.path.clear();
+    haptic_threshold = probe.haptic_threshold.value_or(brush.threshold);
     touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
 ProbeLook Document::probe_look() const
 {
     ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush.group)};
+    if (previewer.shown()) {
+        look.ball_share = BALL_IN_SHELL;
+        look.preview = previewer.shown();
+    }
     if (session.probe.shell) {
         look.ball_share = BALL_IN_SHELL;
         look.shell = ShellLook{.threshold = brush.threshold,
@@ -99,7 +98,10 @@ Session Document::saved_session() const
                    .haptic_threshold = haptic_threshold,
                    .shown = session.probe.shown,
                    .shell = session.probe.shell,
-                   .shell_opacity = session.probe.shell_opacity};
+                   .shell_opacity = session.probe.shell_opacity,
+                   .preview = session.probe.preview,
+                   .density = brush.density,
+                   .paints_group = brush.paints_group};
     return saved;
 }
 
@@ -108,11 +110,56 @@ void Document::save()
     const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+    name_trace();
     annotator.name_files(session.mask_path, session.trace_path, session.density_path);
     annotator.save();
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
     is_saved = true;
+}
+
+/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its own.
+void Document::name_trace()
+{
+    if (annotator.work().trace_is_saved()) return;
+    if (session.trace_path.empty()) {
+        session.trace_path = session_path;
+        session.trace_path.replace_extension(".graphml");
+    } else if (session.trace_path.extension() != ".graphml") {
+        const std::filesystem::path stem = std::filesystem::path(session.trace_path).replace_extension();
+        session.trace_path = stem.string() + ".graphml";
+        for (int number = 2; std::filesystem::exists(session.trace_path); ++number)
+            session.trace_path = sentence(stem.string(), "-", number, ".graphml");
+    }
+}
+
+PaintOp Document::dab() const
+{
+    PaintOp dab = with_offset(brush, session.transfer_function);
+    dab.path = {probe_voxel()};
+    return dab;
+}
+
+TraceDefaults Document::trace_defaults() const
+{
+    return {.spacing = volume().spacing, .radius_voxels = brush.radius_voxels, .group = brush.group};
+}
+
+std::optional<uint32_t> Document::nearby_node() const
+{
+    const TraceGraph& trace = annotator.document().trace;
+    const std::optional<uint32_t> nearest = trace.nearest_node(touch.probe(), trace.selection().node());
+    if (!nearest || glm::distance(trace.node(*nearest).position, touch.probe()) > NEARBY_RADII * probe_radius())
+        return std::nullopt;
+    return nearest;
+}
+
+TraceMarks Document::trace_marks() const
+{
+    const glm::dvec3& spacing = volume().spacing;
+    const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
+    return shvr::trace_marks(annotator.document().trace, tool == Tool::trace ? nearby_node() : std::nullopt, least,
+                             drags_node ? std::optional(touch.probe()) : std::nullopt);
 }
 
 std::vector<std::string> Document::cameras() const

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/scene/annotator.h"
+#include "engine/annotation/trace_command.h"
 #include "engine/scene/picture_job.h"
+#include "engine/scene/previewer.h"
 #include "engine/scene/screen.h"
 #include "engine/scene/session.h"
+#include "ui/action.h"
 #include "ui/touch.h"
 
 namespace shvr::ui {
@@ -23,11 +25,15 @@ struct Document {
     bool assistance = false;
     ProxyLaw law = ProxyLaw::potential;
     Annotator annotator;
+    Previewer previewer{annotator};
     Screen screen;
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< the session's; taken out of it, since views copy that at every turn
     std::vector<std::string> messages;  ///< what opening the work found
     bool is_saved = true;               ///< the session; work says it of itself
+    Tool tool = Tool::paint;
+    bool drags_node = false;  ///< the selected one goes with the probe
+    TraceSummary trace_summary;
 
     bool work_is_saved() const { return annotator.work().unsaved() == 0; }
 
@@ -40,13 +46,22 @@ struct Document {
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
     double probe_radius() const { return brush.radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
+    /// The brush as it would paint now, where the probe is.
+    PaintOp dab() const;
+    /// The node that a person would select or link with: the nearest within reach that is not selected.
+    std::optional<uint32_t> nearby_node() const;
+    TraceMarks trace_marks() const;
+    TraceDefaults trace_defaults() const;
     /// The probe's ball, of at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
     /// The session as it would be saved: with the camera, the probe and the thresholds of the moment.
     Session saved_session() const;
-    /// Writes mask, trace and offsets, then the session; each file appears whole or not at all.
+    /// Writes the mask, offsets and the trace, then the session; each file appears whole or not at all.
     void save();
     std::vector<std::string> cameras() const;
+
+private:
+    void name_trace();
 };
 
 }  // namespace shvr::ui

@@ -5,6 +5,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include "ui/trace_ops.h"
+
 namespace shvr::ui {
 
 namespace {
@@ -127,6 +129,24 @@ Action blend_rate(const Model& model, double amount)
     return SetBlend{blend};
 }
 
+template <uint8_t GROUP>
+Action regroup(const Model&, double)
+{
+    return Trace{GroupOp{GROUP}};
+}
+
+template <int DIRECTION>
+Action scale_selected(const Model& model, double amount)
+{
+    return Trace{scaled(model, std::pow(PROBE_FACTOR, DIRECTION * amount))};
+}
+
+template <int DIRECTION>
+Action scale_nodes(const Model& model, double amount)
+{
+    return Trace{scaled_nodes_of_group(model, std::pow(PROBE_FACTOR, DIRECTION * amount))};
+}
+
 // ---- The table
 
 using Act = Action (*)(const Model&, double);
@@ -137,6 +157,12 @@ constexpr KeyBinding tap(int key, int mods, const char* group, const char* name,
     return {.key = key, .mods = mods, .group = group, .name = name, .action = action};
 }
 
+/// A key that does something once, and a fifth of it with Shift.
+constexpr KeyBinding step(int key, int mods, const char* group, const char* name, Act action)
+{
+    return {.key = key, .mods = mods, .is_slowed = true, .group = group, .name = name, .action = action};
+}
+
 /// A key that goes on while it is held, and slowly with Shift.
 constexpr KeyBinding hold(int key, int mods, const char* group, const char* name, Act action)
 {
@@ -145,7 +171,7 @@ constexpr KeyBinding hold(int key, int mods, const char* group, const char* name
 }
 
 constexpr int CTRL = GLFW_MOD_CONTROL, ALT = GLFW_MOD_ALT, SHIFT = GLFW_MOD_SHIFT;
-constexpr const char *WORK = "Work", *PAINTING = "Painting", *PROBE = "Probe", *VIEWS = "Views",
+constexpr const char *WORK = "Work", *PAINTING = "Painting", *TRACING = "Tracing", *PROBE = "Probe", *VIEWS = "Views",
                      *TURN = "Turn the view", *MOVE = "Move the view", *CUT = "Cutting planes", *CLIP = "Clip planes",
                      *BLEND = "Distance blending";
 
@@ -168,6 +194,8 @@ constexpr KeyBinding BINDINGS[] = {
 
     // The application begins and ends the stroke.
     tap(GLFW_KEY_F, 0, PAINTING, "Paint while held", nullptr),
+    tap(GLFW_KEY_F5, 0, PAINTING, "Preview of the brush",
+        [](const Model& m, double) -> Action { return ShowPreview{!m.session.probe.preview}; }),
     tap(GLFW_KEY_0, 0, PAINTING, "Eraser", choose<0>),
     tap(GLFW_KEY_1, 0, PAINTING, "Group 1", choose<1>),
     tap(GLFW_KEY_2, 0, PAINTING, "Group 2", choose<2>),
@@ -181,6 +209,35 @@ constexpr KeyBinding BINDINGS[] = {
     tap(GLFW_KEY_END, 0, PAINTING, "Next brush", next_brush),
     hold(GLFW_KEY_RIGHT_BRACKET, 0, PAINTING, "Larger brush", scale_probe<1>),
     hold(GLFW_KEY_LEFT_BRACKET, 0, PAINTING, "Smaller brush", scale_probe<-1>),
+
+    tap(GLFW_KEY_X, 0, TRACING, "Paint or trace",
+        [](const Model& m, double) -> Action { return SetTool{m.tool == Tool::paint ? Tool::trace : Tool::paint}; }),
+    tap(GLFW_KEY_N, 0, TRACING, "Add a node, linked with the selected one",
+        [](const Model& m, double) -> Action { return Trace{node_at_probe(m)}; }),
+    // The application begins and ends it.
+    tap(GLFW_KEY_M, 0, TRACING, "Move the selected node while held", nullptr),
+    tap(GLFW_KEY_COMMA, 0, TRACING, "Link the selected node with the nearest",
+        [](const Model& m, double) -> Action { return Trace{link_with_nearest(m)}; }),
+    tap(GLFW_KEY_PERIOD, 0, TRACING, "Select the nearest node, then its internode",
+        [](const Model& m, double) -> Action { return Trace{nearest_selection(m)}; }),
+    tap(GLFW_KEY_PERIOD, SHIFT, TRACING, "Select the whole segment",
+        [](const Model&, double) -> Action { return Trace{SelectSegmentOp{}}; }),
+    tap(GLFW_KEY_SLASH, 0, TRACING, "Deselect", [](const Model&, double) -> Action { return Trace{DeselectOp{}}; }),
+    tap(GLFW_KEY_DELETE, 0, TRACING, "Delete what is selected",
+        [](const Model&, double) -> Action { return Trace{DeleteOp{}}; }),
+    step(GLFW_KEY_EQUAL, 0, TRACING, "Larger selected nodes, or internodes of the group", scale_selected<1>),
+    step(GLFW_KEY_MINUS, 0, TRACING, "Smaller selected nodes, or internodes of the group", scale_selected<-1>),
+    step(GLFW_KEY_EQUAL, ALT, TRACING, "Larger nodes of the group", scale_nodes<1>),
+    step(GLFW_KEY_MINUS, ALT, TRACING, "Smaller nodes of the group", scale_nodes<-1>),
+    tap(GLFW_KEY_1, CTRL, TRACING, "Selected to group 1", regroup<1>),
+    tap(GLFW_KEY_2, CTRL, TRACING, "Selected to group 2", regroup<2>),
+    tap(GLFW_KEY_3, CTRL, TRACING, "Selected to group 3", regroup<3>),
+    tap(GLFW_KEY_4, CTRL, TRACING, "Selected to group 4", regroup<4>),
+    tap(GLFW_KEY_5, CTRL, TRACING, "Selected to group 5", regroup<5>),
+    tap(GLFW_KEY_6, CTRL, TRACING, "Selected to group 6", regroup<6>),
+    tap(GLFW_KEY_7, CTRL, TRACING, "Selected to group 7", regroup<7>),
+    tap(GLFW_KEY_8, CTRL, TRACING, "Selected to group 8", regroup<8>),
+    tap(GLFW_KEY_9, CTRL, TRACING, "Selected to group 9", regroup<9>),
 
     tap(GLFW_KEY_SPACE, 0, PROBE, "Guide the probe",
         [](const Model& m, double) -> Action { return Assist{!m.assistance}; }),
@@ -262,6 +319,7 @@ std::string name_of_key(int key)
 {
     switch (key) {
         case GLFW_KEY_SPACE: return "Space";
+        case GLFW_KEY_DELETE: return "Delete";
         case GLFW_KEY_HOME: return "Home";
         case GLFW_KEY_END: return "End";
         case GLFW_KEY_PAGE_UP: return "Page Up";

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/annotation/trace_command.h"
 #include "engine/scene/annotator.h"
 #include "engine/scene/screen.h"
 #include "engine/scene/session.h"
 #include "engine/scene/transfer_presets.h"
 #include "haptics/servo.h"
+#include "ui/action.h"
 
 namespace shvr::ui {
 
@@ -32,6 +34,14 @@ struct Model {
     ProxyLaw law = ProxyLaw::potential;
     const ServoState* servo = nullptr;  ///< null while no servo runs
     std::string device_name;            ///< of what moves the probe: "mouse", ...
+
+    // Tracing
+    Tool tool = Tool::paint;
+    const TraceGraph& trace;
+    const TraceSummary& trace_summary;
+    std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
+    /// Voxels that painting would change now; nothing where no preview is shown or it is on its way.
+    std::optional<int64_t> previewed_voxels;
 
     // The work
     std::array<int64_t, 256> voxels_by_group{};

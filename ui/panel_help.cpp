@@ -23,7 +23,7 @@ constexpr Gesture GESTURES[] = {
     {"Ctrl + wheel", "Push the probe away or pull it closer"},
     {"Mouse without buttons", "The probe follows, in its plane"},
     {"Double click", "Put the probe onto what is seen there"},
-    {"Right button held", "Paint"},
+    {"Right button held", "Paint; when tracing, add a node"},
     {"Drop a file", "Open it"},
 };
 

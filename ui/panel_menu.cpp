@@ -189,6 +189,39 @@ void paint_menu(const Model& model, Actions& actions)
             actions.push_back(ChooseGroup{uint8_t(group)});
     }
     key_item("Eraser", model, actions, {.is_checked = model.brush.group == 0});
+    ImGui::Separator();
+    key_item("Preview of the brush", model, actions, {.is_checked = model.session.probe.preview});
+    ImGui::EndMenu();
+}
+
+void trace_menu(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginMenu("Trace")) return;
+    const TraceSelection& selected = model.trace.selection();
+    const bool has_nodes = !model.trace.nodes().empty();
+    key_item("Paint or trace", model, actions, {.is_checked = model.tool == Tool::trace});
+    ImGui::Separator();
+    key_item("Add a node, linked with the selected one", model, actions);
+    key_item("Select the nearest node, then its internode", model, actions, {.is_enabled = has_nodes});
+    key_item("Select the whole segment", model, actions, {.is_enabled = !selected.empty()});
+    key_item("Deselect", model, actions, {.is_enabled = !selected.empty()});
+    ImGui::Separator();
+    key_item("Link the selected node with the nearest", model, actions, {.is_enabled = selected.node().has_value()});
+    key_item("Delete what is selected", model, actions, {.is_enabled = !selected.empty()});
+    ImGui::Separator();
+    key_item("Larger selected nodes, or internodes of the group", model, actions, {.is_enabled = has_nodes});
+    key_item("Smaller selected nodes, or internodes of the group", model, actions, {.is_enabled = has_nodes});
+    key_item("Larger nodes of the group", model, actions, {.is_enabled = has_nodes});
+    key_item("Smaller nodes of the group", model, actions, {.is_enabled = has_nodes});
+    if (ImGui::BeginMenu("Group of what is selected", !selected.empty())) {
+        for (int group = 1; group <= 9; ++group) {
+            const std::string label =
+                group_of(model.session.groups, uint8_t(group)).name + "##" + std::to_string(group);
+            if (ImGui::MenuItem(label.c_str(), ("Ctrl + " + std::to_string(group)).c_str()))
+                actions.push_back(Trace{GroupOp{uint8_t(group)}});
+        }
+        ImGui::EndMenu();
+    }
     ImGui::EndMenu();
 }
 
@@ -238,6 +271,7 @@ void menu_bar(const Model& model, Actions& actions)
         edit_menu(model, actions);
         view_menu(model, actions);
         paint_menu(model, actions);
+        trace_menu(model, actions);
         probe_menu(model, actions);
         help_menu(model, actions);
         ImGui::EndMainMenuBar();

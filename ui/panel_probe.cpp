@@ -18,25 +18,6 @@ constexpr double SMALLEST_RADIUS = 0.5;
 constexpr double LARGEST_RADIUS = 60.0;
 constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
 
-/// Labels stand at the left in one column, what belongs to them beside.
-void text_label(const char* text)
-{
-    ImGui::TextUnformatted(text);
-    ImGui::SameLine(6.2f * ImGui::GetFontSize());
-}
-
-/// The same before something with a frame.
-void label(const char* text)
-{
-    ImGui::AlignTextToFramePadding();
-    text_label(text);
-}
-
-const char* spelled(const std::string& unit)
-{
-    return unit == "um" ? "\u00b5m" : unit.c_str();
-}
-
 /// Intensities of whole numbers need no decimals.
 const char* format_of(VoxelType type)
 {
@@ -127,6 +108,78 @@ bool connectivity(PaintOp& brush)
     return brush.connectivity != was;
 }
 
+/// Offsets that make faint structures as visible as bright ones.
+bool density(const Model& model, PaintOp& brush)
+{
+    bool is_on = brush.density.has_value();
+    label("Density");
+    bool changed = ImGui::Checkbox("raise", &is_on);
+    hint(
+        "Density painting: raises the intensities of what is painted, so that faint structures are seen like bright "
+        "ones. The volume's file stays as it is; the eraser takes offsets away.");
+    if (changed) {
+        brush.density = is_on ? std::optional(DensityBrush{}) : std::nullopt;
+        brush.paints_group = true;
+    }
+    if (!brush.density) return changed;
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("and paint the group", &brush.paints_group);
+    hint("Off: intensities are raised and colours stay.");
+
+    label("Raise by");
+    const double automatic = automatic_offset(model.session.transfer_function.lower(), brush.threshold);
+    bool is_automatic = !brush.density->offset;
+    if (ImGui::Checkbox("automatic", &is_automatic)) {
+        brush.density->offset = is_automatic ? std::nullopt : std::optional(automatic);
+        changed = true;
+    }
+    hint("As much as makes the paint threshold visible: the lowest point of the transfer function less the threshold.");
+    ImGui::SameLine();
+    double offset = brush.density->offset.value_or(automatic);
+    ImGui::BeginDisabled(is_automatic);
+    ImGui::SetNextItemWidth(-1.0f);
+    const auto [lower, upper] = model.statistics.range();
+    const double most = upper - lower, least = -most;
+    if (ImGui::DragScalar("##offset", ImGuiDataType_Double, &offset, float(most / 400.0), &least, &most,
+                          format_of(model.volume.type), ImGuiSliderFlags_AlwaysClamp)) {
+        brush.density->offset = offset;
+        changed = true;
+    }
+    ImGui::EndDisabled();
+    if (is_automatic && automatic == 0.0) {
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextWrapped("Nothing to raise: the paint threshold is visible. Lower it, or give a number.");
+        ImGui::PopStyleColor();
+    }
+
+    label("Falls off");
+    if (ImGui::RadioButton("nowhere", brush.density->falloff == Falloff::flat)) {
+        brush.density->falloff = Falloff::flat;
+        changed = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::RadioButton("to the brush's edge", brush.density->falloff == Falloff::distance)) {
+        brush.density->falloff = Falloff::distance;
+        changed = true;
+    }
+    return changed;
+}
+
+void preview(const Model& model, Actions& actions)
+{
+    bool is_on = model.session.probe.preview;
+    label("Preview");
+    if (ImGui::Checkbox("(F5)", &is_on)) actions.push_back(ShowPreview{is_on});
+    hint(
+        "Shows the voxels that painting would change now, before the button is pressed; striped where it would erase.");
+    if (!is_on) return;
+    ImGui::SameLine();
+    if (model.tool == Tool::trace)
+        ImGui::TextDisabled("when painting");
+    else if (model.previewed_voxels)
+        ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
+}
+
 void painting(const Model& model, Actions& actions)
 {
     PaintOp brush = model.brush;
@@ -138,7 +191,9 @@ void painting(const Model& model, Actions& actions)
     ImGui::BeginDisabled(brush.brush == Brush::fill);  // which asks no neighbours
     changed |= connectivity(brush);
     ImGui::EndDisabled();
+    changed |= density(model, brush);
     if (changed) actions.push_back(SetBrush{brush});
+    preview(model, actions);
 }
 
 // ---- Feeling

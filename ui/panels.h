@@ -20,6 +20,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
 
 // The parts of the side panel, each in a file of its own.
 void probe_panel(const Model& model, Actions& actions);
+void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);

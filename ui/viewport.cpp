@@ -12,7 +12,7 @@ constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turn
 constexpr double DOUBLE_CLICK_S = 0.35;
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
-constexpr int PAINT_KEY = GLFW_KEY_F;
+constexpr int PAINT_KEY = GLFW_KEY_F, DRAG_KEY = GLFW_KEY_M;
 
 }  // namespace
 
@@ -120,6 +120,8 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
     } else if (const auto* key = std::get_if<KeyEvent>(&event.what)) {
         if (key->key == PAINT_KEY && key->mods == 0 && !key->repeated && (!ui_has_keys || !key->pressed))
             actions.emplace_back(Paint{key->pressed});
+        else if (key->key == DRAG_KEY && key->mods == 0 && !key->repeated && (!ui_has_keys || !key->pressed))
+            actions.emplace_back(DragNode{key->pressed});
         else if (key->pressed && !ui_has_keys)
             key_pressed(*key, model, actions);
     } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {

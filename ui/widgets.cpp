@@ -4,6 +4,23 @@
 
 namespace shvr::ui {
 
+void text_label(const char* text)
+{
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+}
+
+void label(const char* text)
+{
+    ImGui::AlignTextToFramePadding();
+    text_label(text);
+}
+
+const char* spelled(const std::string& unit)
+{
+    return unit == "um" ? "\u00b5m" : unit.c_str();
+}
+
 void hint(const char* text)
 {
     if (!ImGui::IsItemHovered()) return;

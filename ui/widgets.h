@@ -1,9 +1,18 @@
 #pragma once
 // Small widgets that panels share. Between Window::begin_ui and Window::present, main thread.
 
+#include <string>
+
 namespace shvr::ui {
 
 /// A tooltip for the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
+
+/// Labels stand at the left in one column, what belongs to them beside: text, or something with a frame.
+void text_label(const char* text);
+void label(const char* text);
+
+/// A unit as a person writes it.
+const char* spelled(const std::string& unit);
 
 }  // namespace shvr::ui

@@ -24,6 +24,7 @@ struct PaintOp {
     /// Offsets for the selected voxels; group 0 takes theirs away.
     std::optional<DensityBrush> density{};
     bool paints_group = true;  ///< false: offsets alone
+    bool operator==(const PaintOp&) const = default;
 };
 /// Tracing, as the window will send it, too. Positions in voxel coordinates, radii in voxels along x.
 struct NodeOp {
@@ -40,8 +41,9 @@ struct SelectOp {
 struct SelectSegmentOp {};
 struct DeselectOp {};
 struct LinkOp {
-    std::optional<glm::dvec3> near;  ///< the nearest other node
-    std::optional<uint32_t> node;    ///< where `near` is not given
+    std::optional<glm::dvec3> near;         ///< the nearest other node
+    std::optional<uint32_t> node;           ///< where `near` is not given
+    std::optional<double> within_voxels{};  ///< how far the nearest may be; any distance
 };
 struct MoveOp {
     glm::dvec3 to{0.0};

@@ -98,6 +98,7 @@ std::vector<std::string> Work::open(const WorkFiles& files, Start start)
     std::vector<std::string> messages;
     const std::string name = files.journal.string();
     is_to_set_aside_ = is_fresh_ && scan_.inode != 0;
+    touched_.trace = touched_.density = is_fresh_;  // files of earlier work are not what is here
     if (is_fresh_) return messages;
     if (!scan_.records.empty()) {
         check_subject();
@@ -119,6 +120,7 @@ std::vector<std::string> Work::open(const WorkFiles& files, Start start)
                                     " bytes were not written to the end; the ", scan_.records.size(),
                                     " records before are taken"));
     unsaved_ = steps_since_save(scan_);
+    touched_.trace = touched_.density = unsaved_ > 0;
     if (unsaved_ > 0)
         messages.push_back(sentence(name, ": holds ", unsaved_, unsaved_ == 1 ? " step that was" : " steps that were",
                                     " not saved; nothing is lost"));
@@ -287,6 +289,14 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
     return journal_->append(kind, std::move(label), std::move(content));
 }
 
+void Work::touch(std::span<const Change> changes)
+{
+    for (const Change& change : changes) {
+        touched_.trace = touched_.trace || std::holds_alternative<TraceChange>(change);
+        touched_.density = touched_.density || std::holds_alternative<DensityBrickChange>(change);
+    }
+}
+
 void Work::note_step()
 {
     keep_state();
@@ -298,6 +308,7 @@ void Work::perform(Command command)
     if (command.changes.empty()) return;
     begin_journal();
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
+    touch(command.changes);
     history_.perform(document_, std::move(command), number);
     ++unsaved_;
     note_step();
@@ -307,6 +318,7 @@ void Work::extend(std::vector<Change> changes)
 {
     if (changes.empty()) return;
     const RecordNumber number = record(RecordKind::extension, {}, bytes_of(changes));
+    touch(changes);
     history_.extend(document_, std::move(changes), number);
     unsaved_ = std::max<size_t>(unsaved_, 1);
     note_step();
@@ -317,6 +329,7 @@ const Command* Work::undo()
     if (history_.undoable() == 0) return nullptr;
     begin_journal();
     const Command* const command = history_.undo(document_);
+    touch(command->changes);
     record(RecordKind::undo);
     ++unsaved_;
     note_step();
@@ -328,6 +341,7 @@ const Command* Work::redo()
     if (history_.redoable() == 0) return nullptr;
     begin_journal();
     const Command* const command = history_.redo(document_);
+    touch(command->changes);
     record(RecordKind::redo);
     ++unsaved_;
     note_step();
@@ -383,11 +397,15 @@ std::vector<fs::path> Work::save()
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }
-    if (has_trace || is_there(files_.trace)) {
+    // A trace that was there and is empty now is saved as such; one that never was makes no file.
+    const auto is_to_write = [](bool is_touched, bool has_any, const fs::path& path) {
+        return is_there(path) ? is_touched : has_any;
+    };
+    if (is_to_write(touched_.trace, has_trace, files_.trace)) {
         save_trace(files_.trace, document_.trace, files_.space);
         written.push_back(files_.trace);
     }
-    if (has_offsets || is_there(files_.density)) {
+    if (is_to_write(touched_.density, has_offsets, files_.density)) {
         save_offsets(files_.density, document_.density);
         written.push_back(files_.density);
     }
@@ -397,6 +415,7 @@ std::vector<fs::path> Work::save()
         journal_->flush();
     }
     unsaved_ = 0;
+    touched_ = {};
     return written;
 }
 

@@ -55,14 +55,16 @@ public:
     /// No step of the history. What is selected must be there.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each whole or not at all, and notes it in the journal. A trace or offsets that never were make no
-    /// file. Fails where one cannot be written (a second try may succeed), and where there is something to save and no
+    /// Writes the files, each whole or not at all, and notes it in the journal. A trace or offsets that have not changed are
+    /// left as they are. Fails where one cannot be written (a second try may succeed), and where there is something to save and no
     /// file named for it. Returns the files it wrote.
     std::vector<std::filesystem::path> save();
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undone and redone ones included, since the last save.
     size_t unsaved() const { return unsaved_; }
+    /// No command since has changed the trace.
+    bool trace_is_saved() const { return !touched_.trace; }
     /// Waits until all is in the journal, on the disk; fails with the reason why it is not.
     void flush();
 
@@ -96,6 +98,7 @@ private:
     void begin_journal();
     void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
+    void touch(std::span<const Change> changes);
     void note_step();
     void keep_state();
 
@@ -111,6 +114,9 @@ private:
     std::map<std::filesystem::path, std::filesystem::file_time_type> loaded_;  ///< files, as they were taken
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;
+    struct Touched {
+        bool trace = false, density = false;
+    } touched_;  ///< since the last save
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
     std::future<std::vector<std::byte>> state_;  ///< being made of a copy of the document

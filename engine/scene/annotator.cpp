@@ -295,6 +295,7 @@ Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
 
 void Annotator::bring_to_device(const Touched& touched)
 {
+    revision_ += !touched.painted_bricks.empty() || !touched.raised.empty();
     if (!touched.painted_bricks.empty()) renderer_.update_mask(document().mask, touched.painted_bricks);
     if (!touched.raised.empty()) renderer_.update_density(document().density, touched.raised);
 }

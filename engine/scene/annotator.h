@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/annotation/paint_preview.h"
 #include "engine/annotation/script.h"
 #include "engine/annotation/work.h"
 #include "engine/scene/renderer.h"
@@ -34,8 +35,13 @@ public:
     /// How many voxels the last stroke that ended has changed, of groups and offsets.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
 
-    /// What `op` would paint: the exact preview, and what paint() uses.
+    /// The voxels that `op` selects, whatever their group.
     VoxelSelection select(const PaintOp& op);
+    /// The exact preview: the voxels that paint(op) would change now. Nothing is painted. A hand has a Previewer
+    /// (engine/scene/previewer.h), which does not wait.
+    PaintPreview preview(const PaintOp& op);
+    /// Counts the changes of groups and offsets.
+    uint64_t revision() const { return revision_; }
     /// Paints, as one command. Returns the number of voxels whose group changed and of those whose offset changed,
     /// together. All regions of a stroke see the volume as it was before it.
     int64_t paint(const PaintOp& op);
@@ -74,6 +80,7 @@ public:
     void flush() { work_.flush(); }
 
 private:
+    friend class Previewer;
     /// A region that the device is asked about.
     struct Asked {
         BrushRegion region;
@@ -113,12 +120,14 @@ private:
                     const gpu::FrameResult& result);
     Answered ask(const PaintOp& op);
     std::vector<Change> changes_of(const PaintOp& op, const Answered& answered) const;
+    PaintPreview preview_with(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
     Touched touched_by(std::span<const Change> changes) const;
     void bring_to_device(const Touched& touched);
     Renderer& renderer_;
     std::optional<Stroke> stroke_;
     int64_t last_stroke_voxels_ = 0;
+    uint64_t revision_ = 0;
     Work work_;
 };
 

@@ -55,9 +55,11 @@ public:
         for (double at = 0.0; at < length; at += DASH + GAP)
             add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color);
     }
-    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color)
+    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = WIDTH)
     {
+        const size_t before = strokes_.size();
         for (size_t i = 0; i < points.size(); ++i) line(points[i], points[(i + 1) % points.size()], color);
+        for (size_t i = before; i < strokes_.size(); ++i) strokes_[i].width = width;
     }
     /// Halos first, so that none lies on a neighbour's stroke.
     std::vector<Stroke> taken()
@@ -174,6 +176,41 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }
 
+/// Not smaller than a person sees, however far away it is.
+void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene::Ball& ball)
+{
+    constexpr double LEAST = 5.0, APART = 2.5;  ///< pixels
+    const Camera& camera = pane.shot.camera;
+    double radius = ball.radius;
+    if (pane.kind == Pane::Kind::slice) {  // the circle in which the plane cuts it
+        const double depth = glm::dot(ball.center - camera.eye, axes_of(camera).forward);
+        const double away = depth - 0.5 * (camera.near_distance + camera.far_distance);
+        if (!(std::abs(away) < radius)) return;
+        radius = std::sqrt(radius * radius - away * away);
+    }
+    const auto at = project(camera, pixels, ball.center);
+    if (!at) return;
+    const std::vector<glm::dvec2> outline = silhouette_of(camera, pixels, ball.center, radius);
+    double reach = 0.0;
+    for (const glm::dvec2& point : outline) reach = std::max(reach, glm::distance(point, at->pixel));
+    if (outline.empty()) return;
+    const double scale = std::max(reach + APART, LEAST) / std::max(reach, 1e-9);
+    std::vector<glm::dvec2> ring;
+    for (const glm::dvec2& point : outline) ring.push_back(at->pixel + scale * (point - at->pixel));
+    strokes.closed(ring, ball.color, 2.5);
+}
+
+void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
+{
+    if (pane.kind != Pane::Kind::slice)  // where a line lies beside the plane
+        for (const OverlayScene::Line& line : scene.lines) {
+            const auto from = project(pane.shot.camera, pixels, line.from);
+            const auto to = project(pane.shot.camera, pixels, line.to);
+            if (from && to) strokes.line(from->pixel, to->pixel, line.color);
+        }
+    for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
+}
+
 /// The pixels that a stroke touches, and how much of each.
 template <class Paint>
 void for_each_covered(const Stroke& stroke, const PixelBox& pane, const Paint& paint)
@@ -233,6 +270,7 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     // Two eyes see a line at two depths where only one of them has a camera: an anaglyph goes without.
     if (scene.probe.is_outlined && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
         add_probe(strokes, pane.shot.camera, pixels, scene.probe);
+    if (!pane.shot.right_eye) add_trace(strokes, pane, pixels, scene);
     return strokes.taken();
 }
 

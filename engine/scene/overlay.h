@@ -28,6 +28,18 @@ struct OverlayScene {
         bool is_outlined = true;  ///< by its silhouette, or an arrow where it is out of sight
     };
     Probe probe;
+    /// What stands out of the trace: nodes in rings, internodes along their middles.
+    struct Ball {
+        glm::dvec3 center{0.0};  ///< volume space
+        double radius = 1.0;     ///< physical units
+        glm::dvec3 color{1.0};   ///< linear light
+    };
+    struct Line {
+        glm::dvec3 from{0.0}, to{0.0};
+        glm::dvec3 color{1.0};
+    };
+    std::vector<Ball> balls{};
+    std::vector<Line> lines{};
 };
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 

@@ -57,6 +57,7 @@ struct Pane {
     PixelBox box;      ///< of the whole picture
     std::string name;  ///< "top", "slice across z", ...
     int axis = -1;     ///< of a slice: what it lies across
+    glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
 /// The panes of a picture, the one that `main` sees first. They cover the picture, but for a row or column where it does

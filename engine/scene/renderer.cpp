@@ -173,13 +173,13 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
                                      const VolumeStatistics& statistics)
 {
     const ProbeSettings& probe = session.probe;
-    if (!probe.shown && !probe.shell) return std::nullopt;
+    if (!probe.shown && !probe.shell && !probe.preview) return std::nullopt;
     ProbeLook look{.center = probe.voxel.value_or(0.5 * glm::dvec3(volume.size)) * volume.spacing,
                    .radius = probe.radius_voxels * volume.spacing.x,
                    .color = probe_color(session, probe.group),
-                   .ball_share = !probe.shown  ? 0.0
-                                 : probe.shell ? BALL_IN_SHELL
-                                               : 1.0};
+                   .ball_share = !probe.shown                   ? 0.0
+                                 : probe.shell || probe.preview ? BALL_IN_SHELL
+                                                                : 1.0};
     if (probe.shell)
         look.shell = ShellLook{
             .threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
@@ -495,7 +495,7 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
     Prepared prepared = prepare(graph, session, shot, part, true);
     prepared.input.count_work = count_work;
     if (!shot.right_eye) {
-        drawn.target = raycast(graph, prepared.volume, prepared.input, target);
+        drawn.target = cast_rays(graph, prepared.volume, prepared.input, shot.camera, part, target);
     } else {
         const glm::uvec2 size = part.end - part.begin;
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
@@ -503,8 +503,10 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
         set_rays(right.params, session, *shot.right_eye, volume_->info(), part.pixels);
         right.surfaces = draw_surfaces(graph, prepared, right, *shot.right_eye, part);
         prepared.input.params.target = right.params.target = glm::uvec2(0);
-        const Resource seen_left = raycast(graph, prepared.volume, prepared.input, graph.create("left eye", desc));
-        const Resource seen_right = raycast(graph, prepared.volume, right, graph.create("right eye", desc));
+        const Resource seen_left =
+            cast_rays(graph, prepared.volume, prepared.input, shot.camera, part, graph.create("left eye", desc));
+        const Resource seen_right =
+            cast_rays(graph, prepared.volume, right, *shot.right_eye, part, graph.create("right eye", desc));
         drawn.target = anaglyph(graph, seen_left, seen_right, target, size, part.target);
     }
     if (paged_) {

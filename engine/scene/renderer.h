@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "engine/annotation/density.h"
+#include "engine/annotation/paint_preview.h"
 #include "engine/base/image.h"
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
@@ -42,9 +43,11 @@ struct ProbeLook {
     glm::dvec3 color{1.0};    ///< linear light
     double ball_share = 1.0;  ///< of the radius, of the ball; 0: none
     std::optional<ShellLook> shell;
+    std::shared_ptr<const PaintPreview>
+        preview;  ///< what its brush would change, which slices show, too; null: not shown
     bool operator==(const ProbeLook&) const = default;
-    /// Of a ball that holds all of it.
-    double reach() const { return shell && shell->is_box ? std::sqrt(3.0) * radius : radius; }
+    /// Of a ball that holds all of it. `spacing`: of the volume.
+    double reach(const glm::dvec3& spacing) const;
 };
 /// The ball beside a shell, which it must not hide.
 inline constexpr double BALL_IN_SHELL = 0.12;
@@ -198,6 +201,8 @@ private:
     };
     Prepared prepare(FrameGraph& graph, const Session& session, const Shot& shot, const PicturePart& part,
                      bool feedback);
+    Resource cast_rays(FrameGraph& graph, VolumeBinding& volume, RaycastInput& input, const Camera& camera,
+                       const PicturePart& part, Resource target);
     std::optional<Resource> draw_surfaces(FrameGraph& graph, const Prepared& prepared, const RaycastInput& input,
                                           const Camera& camera, const PicturePart& part);
 

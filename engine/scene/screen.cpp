@@ -43,13 +43,14 @@ void Screen::arrange(bool session_changed)
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // A twentieth of a voxel is less than a pixel of any slice that shows all of the volume.
+    // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel of any slice that shows all of the volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.volume().info().spacing;
     const bool follows = session_.view.arrangement == Arrangement::slices && !parts_.empty();
     if (follows && glm::distance(voxel, probe_voxel_) > STIR_VOXELS) look_from(camera_, voxel);
     for (const Part& part : parts_)
-        part.view->show_probe(part.pane.kind == Pane::Kind::slice ? std::nullopt : std::optional(probe));
+        part.view->show_probe(part.pane.kind == Pane::Kind::slice && !probe.preview ? std::nullopt
+                                                                                    : std::optional(probe));
 }
 
 void Screen::changed(const VoxelBox& voxels)
@@ -123,7 +124,7 @@ std::optional<size_t> Screen::part_at(const glm::dvec2& pixel) const
     return std::nullopt;
 }
 
-std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe) const
+std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks) const
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};
     Pane shown = part.pane;
@@ -132,7 +133,9 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe) co
     return strokes_of(shown,
                       {.main = camera_,
                        .main_pixels = box.end - box.begin,
-                       .probe = {.center = probe.center, .radius = probe.radius, .color = probe.color}},
+                       .probe = {.center = probe.center, .radius = probe.radius, .color = probe.color},
+                       .balls = marks.balls,
+                       .lines = marks.lines},
                       renderer_.volume().info());
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/scene/overlay.h"
+#include "engine/scene/trace_look.h"
 #include "engine/scene/view.h"
 
 namespace shvr {
@@ -39,7 +40,7 @@ public:
     /// Which pane a pixel belongs to; nothing beside all of them.
     std::optional<size_t> part_at(const glm::dvec2& pixel) const;
     /// The lines over what is shown of a pane, in its pixels.
-    std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe) const;
+    std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {}) const;
     /// Something of the first pane can be seen.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 

@@ -99,6 +99,10 @@ struct ProbeSettings {
     /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
+    bool preview = false;        ///< what the brush would change there is drawn
+    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
+    std::optional<DensityBrush> density;
+    bool paints_group = true;  ///< false, where there is `density`: offsets alone
     bool operator==(const ProbeSettings&) const = default;
 };
 

@@ -297,12 +297,27 @@ CutBox read_cut(const JsonNode& node)
     return cut;
 }
 
+DensityBrush read_density(const JsonNode& node)
+{
+    node.expect_object({"offset", "falloff"});
+    DensityBrush density;
+    const JsonNode offset = node["offset"];
+    if (offset.is_text()) {
+        if (offset.text("") != "automatic") offset.refuse("a number or \"automatic\"");
+    } else {
+        density.offset = read_intensity(offset);
+    }
+    density.falloff =
+        node["falloff"].choice(density.falloff, {{"flat", Falloff::flat}, {"distance", Falloff::distance}});
+    return density;
+}
+
 ProbeSettings read_probe(const JsonNode& node)
 {
     ProbeSettings probe;
     if (!node.exists()) return probe;
     node.expect_object({"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold",
-                        "haptic_threshold", "shown", "shell", "shell_opacity"});
+                        "haptic_threshold", "shown", "shell", "shell_opacity", "preview", "density", "paints_group"});
     if (node["voxel"].exists()) probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-1048576.0, 2097152.0));
     probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
     probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
@@ -317,6 +332,10 @@ ProbeSettings read_probe(const JsonNode& node)
     probe.shown = node["shown"].flag(probe.shown);
     probe.shell = node["shell"].flag(probe.shell);
     probe.shell_opacity = node["shell_opacity"].number(probe.shell_opacity, SHARE);
+    probe.preview = node["preview"].flag(probe.preview);
+    if (node["density"].exists()) probe.density = read_density(node["density"]);
+    probe.paints_group = node["paints_group"].flag(probe.paints_group);
+    if (!probe.paints_group && !probe.density) node["paints_group"].refuse("true, where there is no probe.density");
     return probe;
 }
 

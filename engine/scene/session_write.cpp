@@ -221,6 +221,11 @@ json write_probe(const ProbeSettings& probe)
     document["shown"] = probe.shown;
     document["shell"] = probe.shell;
     document["shell_opacity"] = probe.shell_opacity;
+    document["preview"] = probe.preview;
+    if (probe.density)
+        document["density"] = {{"offset", probe.density->offset ? json(*probe.density->offset) : json("automatic")},
+                               {"falloff", probe.density->falloff == Falloff::flat ? "flat" : "distance"}};
+    document["paints_group"] = probe.paints_group;
     return document;
 }
 

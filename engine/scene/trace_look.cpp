@@ -39,4 +39,88 @@ void show_surfaces(Renderer& renderer, std::vector<SurfaceLook> surfaces, const 
     renderer.set_surfaces(surfaces);
 }
 
+namespace {
+
+/// The box around balls.
+class Reach {
+public:
+    void add(const TraceNode& node) { add(node.position, node.radius); }
+    void add(const glm::dvec3& position, double radius)
+    {
+        lower_ = glm::min(lower_, position - radius);
+        upper_ = glm::max(upper_, position + radius);
+    }
+    /// A voxel more on each side: what has no radius is drawn with some.
+    VoxelBox box(const glm::dvec3& spacing) const
+    {
+        if (lower_.x > upper_.x) return {};
+        return {Size3(glm::floor(lower_ / spacing)) - int64_t{1}, Size3(glm::ceil(upper_ / spacing)) + int64_t{1}};
+    }
+
+private:
+    glm::dvec3 lower_{1e300}, upper_{-1e300};
+};
+
+}  // namespace
+
+VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing)
+{
+    Reach reach;
+    double thickest = 0.0;
+    for (const auto& [group, radius] : trace.internode_radii()) thickest = std::max(thickest, radius);
+    const auto add_node = [&](uint32_t number) {
+        const auto found = trace.nodes().find(number);
+        if (found == trace.nodes().end()) return;  // its own change tells where it was
+        reach.add(found->second);
+        reach.add(found->second.position, thickest);
+    };
+    const auto add_changed = [&](uint32_t number, const std::optional<TraceNode>& node) {
+        if (!node) return;
+        reach.add(*node);
+        reach.add(node->position, thickest);
+        if (!trace.nodes().contains(number)) return;
+        for (const uint32_t internode : trace.internodes_of(number)) add_node(trace.internode(internode).other(number));
+    };
+    for (const Change& change : changes) {
+        const auto* const of_trace = std::get_if<TraceChange>(&change);
+        if (!of_trace) continue;
+        if (const auto* node = std::get_if<TraceNodeChange>(of_trace)) {
+            add_changed(node->node, node->before);
+            add_changed(node->node, node->after);
+        } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
+            for (const auto& ends : {internode->before, internode->after})
+                if (ends) add_node(ends->a), add_node(ends->b);
+        } else if (const auto* size = std::get_if<TraceSizeChange>(of_trace)) {
+            const double largest = std::max({thickest, size->before.value_or(0.0), size->after.value_or(0.0)});
+            for (const auto& [number, any] : trace.nodes()) reach.add(any.position, std::max(largest, any.radius));
+        }
+    }
+    return reach.box(spacing);
+}
+
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+                       const std::optional<glm::dvec3>& moved_to)
+{
+    TraceMarks marks;
+    const auto add_ball = [&](const glm::dvec3& at, double radius, const glm::dvec3& color) {
+        if (marks.balls.size() < MOST_MARKS) marks.balls.push_back({at, std::max(radius, least_radius), color});
+    };
+    const TraceSelection& selected = trace.selection();
+    if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
+    for (const uint32_t number : selected.internodes) {
+        if (marks.lines.size() == MOST_MARKS) break;
+        const TraceInternode& internode = trace.internode(number);
+        marks.lines.push_back({trace.node(internode.a).position, trace.node(internode.b).position, SELECTED_COLOR});
+    }
+    const bool is_moved = moved_to && selected.node();
+    for (const uint32_t node : selected.nodes) {
+        add_ball(is_moved ? *moved_to : trace.node(node).position, trace.node(node).radius, SELECTED_COLOR);
+        if (!is_moved) continue;
+        for (const uint32_t number : trace.internodes_of(node))
+            marks.lines.push_back(
+                {*moved_to, trace.node(trace.internode(number).other(node)).position, SELECTED_COLOR});
+    }
+    return marks;
+}
+
 }  // namespace shvr

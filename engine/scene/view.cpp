@@ -185,9 +185,10 @@ void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<Prob
     PixelBox part{glm::uvec2(0), scene->pixels};
     if (is_patch) part = PixelBox{};
     if (is_patch && probe) {
-        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach());
+        const glm::dvec3& spacing = renderer_.volume().info().spacing;
+        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach(spacing));
         if (const auto& eye = scene->shot.right_eye)
-            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach()));
+            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach(spacing)));
     }
     // Where all is still it is made sharp, whatever it costs.
     const double most = std::isinf(target_ms) ? 1.0 : scene->session.interaction.resolution;

@@ -205,6 +205,72 @@ class View(CliTest):
             {"op": "expect", "voxels_in_group": {"3": painted}}]))
         self.assertEqual(again["commands"], 1)
 
+    def test_three_nodes_are_traced_linked_moved_deleted_undone_and_saved(self):
+        session = self.write_ball(camera={"projection": "orthographic", "eye": [32, -60, 32], "target": [32, 32, 32],
+                                          "height": 80})
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "key", "x", pause_s=0.4)
+        for at in [(x - 60, y), (x, y - 60), (x + 60, y)]:
+            self.do("mousemove", *at, pause_s=0.4)
+            self.do("key", "n", pause_s=0.3)
+        self.do("mousemove", x - 55, y, pause_s=0.4)   # the last node is selected, the first one near
+        self.do("key", "comma", pause_s=0.3)
+        self.do("keydown", "m", "mousemove", x + 40, y + 20, pause_s=0.4)
+        self.do("mousemove", x + 60, y + 60, pause_s=0.4)
+        self.do("keyup", "m", pause_s=0.4)
+        self.do("mousemove", x, y - 55, pause_s=0.4)
+        self.do("key", "period", "key", "ctrl+5", "key", "equal", pause_s=0.4)
+        self.do("key", "Delete", pause_s=0.3)
+        self.do("key", "ctrl+z", pause_s=0.4)
+        self.do("key", "ctrl+s", pause_s=0.7)
+        report = self.finish()
+        said = "\n".join(report["messages"])
+        for line in ["Node 0 added", "Node 2 added, linked with node 1", "Trace: link", "Trace: move", "Node 1 is selected",
+                     "Trace: group 5", "Trace: size", "Trace: delete", "Undone: delete"]:
+            self.assertIn(line, said)
+        self.assertEqual((report["undoable"], report["redoable"]), (7, 1))
+
+        saved = json.loads(session.read_text())
+        traced = self.folder / "traced.graphml"
+        self.assertEqual(saved["annotation"]["trace"], "paint.graphml")
+        self.check("export", session, "--trace", traced, "--metrics", self.folder / "metrics.csv")
+        text = (self.folder / "paint.graphml").read_text()
+        self.assertEqual((text.count("<node "), text.count("<edge ")), (3, 3))
+        self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
+            {"op": "select", "node": 1}, {"op": "delete"}, {"op": "expect", "nodes": 2, "internodes": 1},
+            {"op": "undo", "count": 1}, {"op": "expect", "nodes": 3, "internodes": 3}]))
+        self.assertEqual(traced.read_text().count("<edge "), 3)
+
+    def test_a_trace_of_another_form_is_left_as_it_was(self):
+        swc = self.folder / "old.swc"
+        swc.write_text("1 3 10 32 32 2 -1\n2 3 30 32 32 2 1\n")
+        before = swc.read_text()
+        session = self.write_ball(annotation={"mask": "paint.mask", "trace": "old.swc"})
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "key", "n", pause_s=0.5)
+        report = self.finish()   # closing saves
+        self.assertIn("Node 2 added", "\n".join(report["messages"]))
+        self.assertEqual(swc.read_text(), before)
+        self.assertEqual(json.loads(session.read_text())["annotation"]["trace"], "old.graphml")
+        self.assertEqual((self.folder / "old.graphml").read_text().count("<node "), 3)
+
+    def test_the_preview_tells_what_painting_then_changes(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.do("key", "F5", pause_s=3)
+        self.do("click", 3, pause_s=1)
+        report = self.finish()
+        self.assertGreater(report["previewed_voxels"], 50, report["messages"])
+        self.assertEqual(report["previewed_voxels"], report["voxels_in_group"].get("3"))
+        self.assertTrue(json.loads(session.read_text())["probe"]["preview"])
+
     def test_what_cannot_be_opened_is_said_before_a_window_stays(self):
         self.start(self.folder / "missing.nhdr")
         _, errors = self.program.communicate(timeout=PATIENCE_S)

@@ -39,6 +39,13 @@ ProbeLook probe_of(double ball_share, bool has_shell)
     return probe;
 }
 
+std::shared_ptr<const PaintPreview> previewed()
+{
+    const Change change =
+        MaskBrickChange{.brick = 0, .runs = {{.first = 20000, .last = 21500, .before = 0, .after = 3}}};
+    return std::make_shared<PaintPreview>(preview_of({&change, 1}, Size3(48), PaintPreview::Kind::group));
+}
+
 /// Names of passes as they are with nothing else on; variants of the ray caster are told apart by their kernel's name.
 const std::vector<Feature> FEATURES{
     {"shading", [](Scenery& s) { s.session.light.shaded = true; }, {}},
@@ -62,6 +69,13 @@ const std::vector<Feature> FEATURES{
     {"iso-surface around the probe",
      [](Scenery& s) { s.options.probe = probe_of(s.options.probe ? 0.5 : 0.0, true); },
      {"raycast_shelled"}},
+    {"preview of the brush",
+     [](Scenery& s) {
+         if (!s.options.probe) s.options.probe = probe_of(0.0, false);
+         s.options.probe->preview = previewed();
+     },
+     {"preview", "preview_over", "raycast_surfaced"},
+     {"preview", "preview surfaces"}},
     {"surfaces",
      [](Scenery& s) {
          s.session.surfaces = {{{10, 10, 10}, {40, 30, 35}, 2.0, 4.0, GREEN}};
@@ -229,6 +243,11 @@ TEST_CASE_FIXTURE(Everything, "neutral settings change no bit")
          [](Scenery& s) {
              s.options.probe = probe_of(0.0, true);
              s.options.probe->shell->opacity = 0.0;
+         }},
+        {"a preview of nothing",
+         [](Scenery& s) {
+             s.options.probe = probe_of(0.0, false);
+             s.options.probe->preview = std::make_shared<PaintPreview>();
          }},
         {"a cut around everything",
          [](Scenery& s) {

@@ -19,7 +19,7 @@
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
-#include "engine/scene/annotator.h"
+#include "engine/scene/previewer.h"
 
 using namespace shvr;
 using Json = nlohmann::ordered_json;
@@ -85,6 +85,7 @@ std::vector<Golden> all_goldens()
 /// layer fails the test it belongs to.
 struct Studio {
     Renderer renderer{{.device = {.device = "", .validation = true}}};
+    std::optional<Annotator> annotator;
     ~Studio()
     {
         const std::vector<std::string> messages = renderer.device().take_validation_messages();
@@ -100,14 +101,14 @@ struct Studio {
     {
         renderer.load(golden.opened.source, golden.opened.statistics, golden.opened.session.render);
         renderer.set_surfaces(golden.opened.session.surfaces);
-        Annotator annotator(renderer);
+        annotator.emplace(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {
-                if (annotator.paint(with_offset(*paint, golden.opened.session.transfer_function)) == 0)
+                if (annotator->paint(with_offset(*paint, golden.opened.session.transfer_function)) == 0)
                     fail(golden.name, ": script line ", line.number, " paints nothing");
             } else if (const auto* undo = std::get_if<UndoOp>(&line.op)) {
                 for (int i = 0; i < undo->count; ++i)
-                    if (!annotator.undo()) fail(golden.name, ": script line ", line.number, ": nothing to undo");
+                    if (!annotator->undo()) fail(golden.name, ": script line ", line.number, ": nothing to undo");
             } else {
                 fail(golden.name, ": script line ", line.number, " is neither paint nor undo");
             }
@@ -116,8 +117,8 @@ struct Studio {
 
     Image8 draw(const Session& session, const Camera& camera)
     {
-        const Picture picture = renderer.render(
-            session, camera, {.probe = shown_probe(session, renderer.volume().info(), renderer.statistics())});
+        const Picture picture =
+            renderer.render(session, camera, {.probe = shown_probe(session, renderer, annotator.value())});
         REQUIRE(picture.complete);
         REQUIRE(count_not_finite(picture.image) == 0);
         return to_image8(picture.image);

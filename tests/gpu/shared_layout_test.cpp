@@ -9,6 +9,7 @@
 #include "shaders/occlusion.h"
 #include "shaders/pages.h"
 #include "shaders/paint.h"
+#include "shaders/preview.h"
 #include "shaders/raycast.h"
 #include "shaders/surfaces.h"
 
@@ -48,6 +49,14 @@ Members raycast_params()
             MEMBER(RaycastParams, shell_center),  MEMBER(RaycastParams, shell_reach),
             MEMBER(RaycastParams, shell_code),    MEMBER(RaycastParams, shell_color),
             MEMBER(RaycastParams, shell_opacity)};
+}
+
+Members preview_params()
+{
+    return {MEMBER(PreviewParams, near_corner), MEMBER(PreviewParams, near_dx),       MEMBER(PreviewParams, near_dy),
+            MEMBER(PreviewParams, far_corner),  MEMBER(PreviewParams, far_dx),        MEMBER(PreviewParams, far_dy),
+            MEMBER(PreviewParams, size),        MEMBER(PreviewParams, words_per_row), MEMBER(PreviewParams, lower),
+            MEMBER(PreviewParams, color),       MEMBER(PreviewParams, is_striped)};
 }
 
 Members surface_params()
@@ -158,6 +167,13 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "params_block", raycast_params());
         check_members(kernel, "surface_params", surface_params());
     }
+    for (const char* kernel : {"preview", "preview_surfaced"}) {
+        check_members(kernel, "params_block", raycast_params());
+        check_members(kernel, "preview_params", preview_params());
+    }
+    check_members(
+        "preview_over", "push",
+        {MEMBER(PreviewOverParams, target), MEMBER(PreviewOverParams, size), MEMBER(PreviewOverParams, share)});
     check_members("surfaces_listed", "surface_nodes",
                   {MEMBER(SurfaceNode, lower), MEMBER(SurfaceNode, upper), MEMBER(SurfaceNode, skip),
                    MEMBER(SurfaceNode, begin), MEMBER(SurfaceNode, end)});

@@ -1,5 +1,6 @@
 #include "ui/keys.h"
 
+#include <cmath>
 #include <cstring>
 #include <set>
 #include <tuple>
@@ -22,12 +23,16 @@ struct World {
     std::vector<Screen::Part> panes;
     std::vector<TransferPreset> presets;
     PaintOp brush;
+    TraceGraph trace;
+    TraceSummary trace_summary;
     Model model{.session = session,
                 .volume = volume,
                 .statistics = statistics,
                 .panes = panes,
                 .presets = presets,
                 .brush = brush,
+                .trace = trace,
+                .trace_summary = trace_summary,
                 .pass_times = {}};
 };
 
@@ -64,7 +69,9 @@ TEST_CASE("every key has a name and a group, and every name is given once")
         CHECK(std::strlen(binding.name) > 0);
         CHECK(std::strlen(binding.group) > 0);
         CHECK(names.insert(binding.name).second);
-        CHECK((binding.action || std::strcmp(binding.name, "Paint while held") == 0));
+        const bool is_of_application = std::strcmp(binding.name, "Paint while held") == 0 ||
+                                       std::strcmp(binding.name, "Move the selected node while held") == 0;
+        CHECK((binding.action || is_of_application));
     }
 }
 
@@ -143,6 +150,94 @@ TEST_CASE("End goes through all brushes and keeps the rest of the brush")
     CHECK(world.brush.brush == Brush::fill);
     CHECK(world.brush.threshold == 12.0);
     CHECK(world.brush.path.empty());
+}
+
+namespace {
+
+/// Three linked nodes 10 voxels apart along x, the last one selected; the probe beside it.
+void trace_three(World& world)
+{
+    world.volume.size = Size3(64);
+    world.volume.spacing = {0.5, 0.5, 0.5};
+    world.brush.radius_voxels = 4.0;
+    world.brush.group = 2;
+    for (uint32_t i = 0; i < 3; ++i)
+        world.trace.apply(TraceNodeChange{i, {}, TraceNode{{5.0 + 5.0 * i, 5.0, 5.0}, 1.0, 2}}, Direction::forwards);
+    for (uint32_t i = 0; i < 2; ++i)
+        world.trace.apply(TraceInternodeChange{i, {}, TraceInternode{i, i + 1, 2}}, Direction::forwards);
+    world.trace.select({{2}, {}});
+    world.model.probe_voxel = {29.0, 10.0, 10.0};
+}
+
+template <class Op>
+Op only_trace(const Actions& actions)
+{
+    const TraceOp op = only<Trace>(actions).op;
+    REQUIRE(std::holds_alternative<Op>(op));
+    return std::get<Op>(op);
+}
+
+}  // namespace
+
+TEST_CASE("keys of tracing become the operations that scripts have")
+{
+    World world;
+    trace_three(world);
+    const NodeOp node = only_trace<NodeOp>(actions_of(world, 'N', 0));
+    CHECK(node.at == glm::dvec3(29, 10, 10));
+    CHECK(node.radius_voxels == 4.0);
+    CHECK(node.group == uint8_t(2));
+    const LinkOp link = only_trace<LinkOp>(actions_of(world, ',', 0));
+    CHECK(link.near == glm::dvec3(29, 10, 10));
+    CHECK(link.within_voxels == 16.0);
+    only_trace<SelectSegmentOp>(actions_of(world, '.', SHIFT));
+    only_trace<DeselectOp>(actions_of(world, '/', 0));
+    only_trace<DeleteOp>(actions_of(world, 261, 0));
+    CHECK(only_trace<GroupOp>(actions_of(world, '4', CONTROL)).group == 4);
+    CHECK(actions_of(world, 'M', 0).empty());  // held: the application's
+}
+
+TEST_CASE("a full stop selects the nearest node, and where that is selected its internode")
+{
+    World world;
+    trace_three(world);
+    const SelectOp again = only_trace<SelectOp>(actions_of(world, '.', 0));
+    CHECK(again.is_internode);
+    CHECK_FALSE(again.within_voxels);
+    world.model.probe_voxel = {12.0, 10.0, 10.0};
+    const SelectOp other = only_trace<SelectOp>(actions_of(world, '.', 0));
+    CHECK_FALSE(other.is_internode);
+    CHECK(other.within_voxels == 16.0);
+    world.trace.select({});
+    CHECK_FALSE(only_trace<SelectOp>(actions_of(world, '.', 0)).is_internode);
+}
+
+TEST_CASE("equals and minus change what is selected, or the internodes of the group; with Alt its nodes")
+{
+    World world;
+    trace_three(world);
+    const RadiusOp larger = only_trace<RadiusOp>(actions_of(world, '=', 0));
+    CHECK((larger.of == RadiusOp::Of::selected));
+    CHECK(larger.radius_voxels.value() == doctest::Approx(2.2));
+    CHECK(only_trace<RadiusOp>(actions_of(world, '-', 0)).radius_voxels.value() == doctest::Approx(2.0 / 1.1));
+    CHECK(only_trace<RadiusOp>(actions_of(world, '=', SHIFT)).radius_voxels.value() ==
+          doctest::Approx(2.0 * std::pow(1.1, 0.2)));
+    world.trace.select({});
+    const RadiusOp internodes = only_trace<RadiusOp>(actions_of(world, '=', 0));
+    CHECK((internodes.of == RadiusOp::Of::internodes));
+    CHECK(internodes.group == 2);
+    CHECK(internodes.radius_voxels.value() == doctest::Approx(2.2));
+    const RadiusOp nodes = only_trace<RadiusOp>(actions_of(world, '=', ALT));
+    CHECK((nodes.of == RadiusOp::Of::nodes));
+    CHECK(nodes.group == 2);
+}
+
+TEST_CASE("X changes between painting and tracing")
+{
+    World world;
+    CHECK((only<SetTool>(actions_of(world, 'X', 0)).tool == Tool::trace));
+    world.model.tool = Tool::trace;
+    CHECK((only<SetTool>(actions_of(world, 'X', 0)).tool == Tool::paint));
 }
 
 TEST_CASE("cutting planes move inwards, and outwards with Ctrl")

@@ -83,7 +83,8 @@ const std::string EVERYTHING = R"({
   "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
-            "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25},
+            "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25,
+            "preview": true, "density": {"offset": 12.5, "falloff": "distance"}, "paints_group": false},
   "surfaces": [{"from": [1, 2, -3.5], "radius": 0.25, "color": "#d03020"},
                {"from": [0, 0, 0], "to": [10, 20, 30], "radii": [2, 1.5]},
                {"from": [5, 5, 5], "to": [6, 5, 5], "radius": 3}],
@@ -145,7 +146,7 @@ TEST_CASE("every key of a session is read")
     CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
     CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5,
-                                         -3, true, true, 0.25});
+                                         -3, true, true, 0.25, true, DensityBrush{12.5, Falloff::distance}, false});
     CHECK((session.surfaces == std::vector<SurfaceLook>{{{1, 2, -3.5}, {1, 2, -3.5}, 0.25, 0.25, color("#d03020")},
                                                         {{0, 0, 0}, {10, 20, 30}, 2.0, 1.5, glm::dvec3(1)},
                                                         {{5, 5, 5}, {6, 5, 5}, 3.0, 3.0, glm::dvec3(1)}}));

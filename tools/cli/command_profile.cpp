@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "engine/base/file.h"
+#include "engine/scene/previewer.h"
 #include "tools/cli/profile_report.h"
 
 namespace shvr::cli {
@@ -50,8 +51,7 @@ Profile measure_frames(const Options& options, Opened& opened)
     const auto started = std::chrono::steady_clock::now();
     const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
     double measured_from = 0.0;
-    const std::optional<ProbeLook> probe =
-        shown_probe(opened.session, opened.source->info(), opened.renderer->statistics());
+    const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     for (int i = 0; i < options.warmup + options.frames; ++i) {
         const double begin = now();
         Picture picture = renderer.render(opened.session, camera, {.probe = probe, .serialize = options.serialize});

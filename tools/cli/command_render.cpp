@@ -2,6 +2,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
+#include "engine/scene/previewer.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -28,8 +29,7 @@ void run(Options options)
     Opened opened = open(options.input, options.common);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
-    const std::optional<ProbeLook> probe =
-        shown_probe(opened.session, opened.source->info(), opened.renderer->statistics());
+    const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Picture picture = opened.renderer->render(
         opened.session, camera, {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
     if (std::filesystem::path(options.output).extension() == ".pfm")

@@ -66,6 +66,7 @@ Json json_of(const ui::AppReport& report)
             {"voxels_in_group", groups},
             {"undoable", report.undoable},
             {"redoable", report.redoable},
+            {"previewed_voxels", report.previewed_voxels ? Json(*report.previewed_voxels) : Json(nullptr)},
             {"messages", report.messages}};
 }
 

@@ -1,0 +1,32 @@
+#pragma once
+// The voxels that a brush would change, in a picture (shaders/preview.comp).
+
+#include <optional>
+#include <span>
+
+#include "engine/graph/frame_graph.h"
+#include "shaders/preview.h"
+#include "shaders/raycast.h"
+
+namespace shvr {
+
+struct PreviewInput {
+    gpu::RaycastParams params;  ///< the same as the ray caster's: pixels, light and distance blending are read
+    gpu::PreviewParams preview;
+    std::span<const uint32_t> words;   ///< a bit per voxel, as params.words_per_row says
+    std::optional<Resource> surfaces;  ///< of the same pixels; not in slices
+    bool slice = false;
+    uint32_t group_width = 8;  ///< as RaycastInput's
+};
+
+struct PreviewSeen {
+    std::optional<Resource> surfaces;  ///< for the ray caster, with the preview in it; none in slices
+    Resource seen;                     ///< for `preview_over`
+};
+/// Work of that one frame: nothing of it stays.
+PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
+
+/// Over the picture in `target`, which the ray caster has made with those surfaces. Returns its new version.
+Resource preview_over(FrameGraph& graph, Resource seen, Resource target, const gpu::PreviewOverParams& params);
+
+}  // namespace shvr

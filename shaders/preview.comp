@@ -1,0 +1,121 @@
+// The first voxel that a brush would change on each pixel's ray, as a solid cube: its lit colour and the length along the
+// ray, for the ray caster to end at where it lies before other surfaces (surfaces.comp). `seen` says where it does. In
+// slices it is the voxel half-way along the ray, and colours are as they are. One thread a pixel.
+//   SURFACED   there are other surfaces
+// variants: SURFACED
+//
+// Rays go from voxel to voxel (Amanatides and Woo 1987). The volume's cutting planes do not cut what they meet, since a
+// brush reaches behind them, too.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "raycast.h"
+#include "preview.h"
+#include "surfaces.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
+layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
+layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
+layout(constant_id = 3) const uint SLICE = 0u;
+
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+layout(binding = 1, scalar) readonly buffer Preview { PreviewParams data; } preview_params;
+layout(binding = 2, scalar) readonly buffer Words { uint words[]; } preview_words;
+layout(binding = 3, rgba32f) uniform writeonly image3D nearest;   // linear RGB, length along the ray
+layout(binding = 4, rgba32f) uniform writeonly image3D seen;      // linear RGB, 1; or 0
+#ifdef SURFACED
+layout(binding = 5, rgba32f) uniform readonly image3D surfaces;
+#endif
+
+#include "rays.glsl"
+#include "shade.glsl"
+
+bool is_set(const PreviewParams preview, ivec3 voxel)
+{
+    const ivec3 at = clamp(voxel, ivec3(0), preview.size - 1);
+    const uint row = uint(at.y + preview.size.y * at.z);
+    return (preview_words.words[preview.words_per_row * row + uint(at.x >> 5)] >> (uint(at.x) & 31u) & 1u) != 0u;
+}
+
+bool is_inside(const PreviewParams preview, ivec3 voxel)
+{
+    return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, preview.size));
+}
+
+vec3 color_of(const PreviewParams preview, ivec3 voxel)
+{
+    const ivec3 at = voxel + ivec3(preview.lower);
+    const bool is_dark = preview.is_striped != 0u && (uint(at.x + at.y + at.z) / PREVIEW_STRIPE & 1u) != 0u;
+    return preview.color * (is_dark ? 0.12 : 1.0);
+}
+
+void main()
+{
+    const RaycastParams params = params_block.data;
+    const PreviewParams preview = preview_params.data;
+    const uvec2 in_part = thread_in_part();
+    const uvec2 pixel = params.pixel_begin + in_part;
+    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
+
+    const vec2 centre = vec2(pixel) + 0.5;
+    const vec3 near = on_plane(preview.near_corner, preview.near_dx, preview.near_dy, centre);
+    const vec3 far = on_plane(preview.far_corner, preview.far_dx, preview.far_dy, centre);
+    if (SLICE != 0u) {
+        const ivec3 voxel = ivec3(floor(0.5 * (near + far)));
+        const bool is_hit = is_inside(preview, voxel) && is_set(preview, voxel);
+        imageStore(seen, ivec3(in_part, 0), is_hit ? vec4(color_of(preview, voxel), 1.0) : vec4(0.0));
+        return;
+    }
+
+    const vec3 physical = (far - near) * params.spacing;
+    const float length_to_far = length(physical);
+    const vec3 direction = (far - near) / length_to_far;
+    const vec3 safe = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    const vec3 inverse = 1.0 / safe;
+    const vec3 a = -near * inverse, b = (vec3(preview.size) - near) * inverse;
+    const vec3 low = min(a, b), high = max(a, b);
+    const float begin = max(max(low.x, low.y), max(low.z, 0.0));
+    const float end = min(min(high.x, high.y), min(high.z, length_to_far));
+
+    // Every variable that outlives a turn is carried from turn to turn: devices may run a loop until the last lane is done.
+    const ivec3 direction_sign = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(safe, vec3(0.0))));
+    const vec3 apart = abs(inverse);
+    ivec3 voxel = clamp(ivec3(floor(near + begin * direction)), ivec3(0), preview.size - 1);
+    vec3 next = (vec3(voxel + max(direction_sign, ivec3(0))) - near) * inverse;
+    // The face through which the ray came: that of the box it entered last, or none where it begins in the box.
+    ivec3 face = begin <= 0.0 ? ivec3(0) : ivec3(low.x >= begin ? 1 : 0, low.x < begin && low.y >= begin ? 1 : 0,
+                                                 low.x < begin && low.y < begin ? 1 : 0);
+    float at = begin;
+    bool goes_on = begin < end;
+    bool is_hit = false;
+    while (goes_on) {
+        is_hit = is_set(preview, voxel);
+        const ivec3 axis = next.x <= next.y && next.x <= next.z ? ivec3(1, 0, 0)
+                           : next.y <= next.z                  ? ivec3(0, 1, 0)
+                                                                : ivec3(0, 0, 1);
+        const float to = min(next.x, min(next.y, next.z));
+        at = is_hit ? at : to;
+        face = is_hit ? face : axis;
+        voxel = is_hit ? voxel : voxel + axis * direction_sign;
+        next = is_hit ? next : next + vec3(axis) * apart;
+        goes_on = !is_hit && to < end && is_inside(preview, voxel);
+    }
+
+#ifdef SURFACED
+    const vec4 behind = imageLoad(surfaces, ivec3(in_part, 0));
+#else
+    const vec4 behind = vec4(0.0, 0.0, 0.0, NO_SURFACE);
+#endif
+    if (!is_hit || at >= behind.a) {
+        imageStore(nearest, ivec3(in_part, 0), behind);
+        imageStore(seen, ivec3(in_part, 0), vec4(0.0));
+        return;
+    }
+    const vec3 to_eye = -physical / length_to_far;
+    const vec3 normal = face == ivec3(0) ? to_eye : -vec3(face * direction_sign);
+    vec3 color = lit(params, params.ambient, color_of(preview, voxel), normal, 1.0, half_way(params.light, to_eye));
+    if (DISTANCE_BLEND != 0u) color = blended(params, color, near + at * direction + preview.lower);
+    imageStore(nearest, ivec3(in_part, 0), vec4(color, at));
+    imageStore(seen, ivec3(in_part, 0), vec4(color, 1.0));
+}

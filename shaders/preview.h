@@ -1,0 +1,32 @@
+// The voxels that a brush would change, as rays meet them. Positions are in voxels from the box around those voxels, made in
+// double on the CPU, so that nothing is lost far from the volume's first corner.
+#ifndef SHVR_PREVIEW_H
+#define SHVR_PREVIEW_H
+#include "shared.h"
+
+SHARED_BEGIN
+
+struct PreviewParams {
+    vec3 near_corner;  ///< the ray of a pixel joins two points, as in RaycastParams
+    vec3 near_dx;
+    vec3 near_dy;
+    vec3 far_corner;
+    vec3 far_dx;
+    vec3 far_dy;
+    ivec3 size;          ///< of the box, voxels
+    uint words_per_row;  ///< bit b of word w is x = 32 w + b
+    vec3 lower;          ///< the box's first corner in the volume, voxels
+    vec3 color;          ///< linear light
+    uint is_striped;     ///< for what would be erased: told from a colour by any eye
+};
+
+struct PreviewOverParams {
+    uvec2 target;  ///< first texel of the picture that is changed
+    uvec2 size;    ///< texels
+    float share;   ///< of the preview's colour
+};
+
+SHARED_CONST uint PREVIEW_STRIPE = 2u;  ///< voxels along x + y + z
+
+SHARED_END
+#endif

@@ -1,0 +1,179 @@
+// What actions do to the probe and with its brush.
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/app.h"
+
+namespace shvr::ui {
+
+namespace {
+
+const char* name_of(Brush brush)
+{
+    return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
+}
+
+std::string painted_sentence(const PaintOp& brush, int64_t voxels)
+{
+    const bool erases = brush.paints_group && brush.group == 0;
+    if (erases) return sentence("Erased ", voxels, " voxels");
+    if (!brush.density) return sentence("Painted ", voxels, " voxels in group ", int(brush.group));
+    const std::string groups = brush.paints_group ? sentence(" and of group ", int(brush.group)) : std::string();
+    return sentence("Painted ", voxels, " changes of density", groups);
+}
+
+}  // namespace
+
+void App::apply(const ProbeTo& action)
+{
+    const Pane& seen = pane(action.pane);
+    const Camera& camera = seen.shot.camera;
+    const double depth = glm::dot(document_->touch.probe() - camera.eye, axes_of(camera).forward);
+    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
+    document_->touch.wish(unproject(camera, seen.pixels(), action.pixel, std::max(depth, shallowest)));
+}
+
+void App::apply(const ProbeOnto& action)
+{
+    const Pane& seen = pane(action.pane);
+    const glm::uvec2 pixels = seen.pixels();
+    std::optional<glm::dvec3> point;
+    if (seen.shot.is_slice) {
+        const Camera& camera = seen.shot.camera;
+        point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
+    } else {
+        const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+        point = renderer_->pick(document_->session, seen.shot.camera, pixels, pixel);
+    }
+    if (!point) return say("Nothing is seen there that is half opaque; the probe stays where it is");
+    document_->touch.place(*point);
+    const glm::dvec3 voxel = document_->probe_voxel();
+    say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
+}
+
+void App::apply(const PushProbe& action)
+{
+    const glm::dvec3 forward = axes_of(pane(action.pane).shot.camera).forward;
+    const double voxel = glm::length(forward * document_->volume().spacing);
+    document_->touch.wish(document_->touch.probe() + forward * (action.voxels * voxel));
+}
+
+void App::apply(const ScaleProbe& action)
+{
+    document_->brush.radius_voxels = std::clamp(document_->brush.radius_voxels * action.factor, 0.5, 60.0);
+    say(sentence("Probe radius ", std::round(10.0 * document_->brush.radius_voxels) / 10.0, " voxels"));
+}
+
+void App::apply(const SetBrush& action)
+{
+    const uint8_t group = document_->brush.group;
+    const bool is_other = action.brush.brush != document_->brush.brush;
+    document_->brush = action.brush;
+    document_->brush.group = group;
+    if (is_other) say(sentence("Brush: ", name_of(action.brush.brush)));
+}
+
+void App::apply(const ShowShell& action)
+{
+    ProbeSettings& probe = document_->session.probe;
+    if (action.on != probe.shell)
+        say(action.on ? "Iso-surface at the paint threshold around the probe" : "No iso-surface around the probe");
+    probe.shell = action.on;
+    probe.shell_opacity = action.opacity;
+}
+
+void App::apply(const ShowPreview& action)
+{
+    document_->session.probe.preview = action.on;
+    document_->is_saved = false;
+    say(action.on ? "What the brush would change is shown before it does" : "No preview of the brush");
+}
+
+void App::apply(const ChooseGroup& action)
+{
+    document_->brush.group = action.group;
+    say(action.group == 0
+            ? std::string("Eraser: painting takes voxels out of their group")
+            : sentence("Group ", int(action.group), ": ", group_of(document_->session.groups, action.group).name));
+}
+
+void App::apply(const SetHapticThreshold& action)
+{
+    document_->haptic_threshold = action.intensity;
+}
+
+void App::apply(const Assist& action)
+{
+    document_->assistance = action.on;
+    say(action.on ? "Assistance on: the probe is drawn to what is at or above the haptic threshold" : "Assistance off");
+}
+
+void App::apply(const SetProxyLaw& action)
+{
+    document_->law = action.law;
+    say(action.law == ProxyLaw::potential ? "Assistance: smooth" : "Assistance: as in the thesis");
+}
+
+// ---- Painting -------------------------------------------------------------------------------------------------------
+
+void App::apply(const SetTool& action)
+{
+    if (document_->annotator.stroke_is_open()) apply(Paint{false});
+    if (document_->drags_node) apply(DragNode{false});
+    document_->tool = action.tool;
+    say(action.tool == Tool::paint ? "Painting: hold the right mouse button or F"
+                                   : "Tracing: the right mouse button or N adds a node at the probe");
+}
+
+void App::apply(const Paint& action)
+{
+    Annotator& annotator = document_->annotator;
+    if (document_->tool == Tool::trace) {
+        if (action.on) apply(Trace{NodeOp{.at = document_->probe_voxel(), .radius_voxels = {}, .group = {}}});
+        return;
+    }
+    if (action.on && !annotator.stroke_is_running()) {
+        const Previewer& previewer = document_->previewer;
+        if (previewer.shown() && previewer.is_current()) report_.previewed_voxels = previewer.shown()->voxels;
+        check_radius(document_->brush.radius_voxels, document_->volume().spacing, document_->volume().size);
+        annotator.begin_stroke(with_offset(document_->brush, document_->session.transfer_function));
+        annotator.extend_stroke(document_->probe_voxel());
+    } else if (!action.on && annotator.stroke_is_running()) {
+        extend_stroke();
+        annotator.end_stroke();
+    }
+}
+
+void App::extend_stroke()
+{
+    if (document_->annotator.stroke_is_open()) document_->annotator.extend_stroke(document_->probe_voxel());
+}
+
+void App::stroke_ended()
+{
+    const int64_t voxels = document_->annotator.last_stroke_voxels();
+    if (voxels == 0)
+        return say(
+            "The stroke changed nothing: no voxel at or above the paint threshold here, or all of them are that way "
+            "already");
+    say(painted_sentence(document_->brush, voxels));
+}
+
+/// Asked for while it is wanted and no stroke is running, which shows itself.
+void App::show_preview()
+{
+    Document& document = *document_;
+    const bool is_wanted =
+        document.session.probe.preview && document.tool == Tool::paint && !document.annotator.stroke_is_running();
+    document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
+    try {
+        document.previewer.advance();
+    } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
+        document.session.probe.preview = false;
+        document.previewer.want(std::nullopt);
+        say(error.what());
+    }
+}
+
+}  // namespace shvr::ui

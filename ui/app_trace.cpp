@@ -1,0 +1,63 @@
+// What actions do to the trace: operations as scripts have them, as commands of the one history.
+
+#include "ui/app.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// What was done, for the status bar.
+std::string said_of(const TraceOp& op, const TraceEffect& effect, const TraceGraph& trace)
+{
+    const TraceSelection& selected = trace.selection();
+    if (effect.selection) {
+        if (selected.empty()) return "Nothing is selected";
+        if (const auto node = selected.node()) return sentence("Node ", *node, " is selected");
+        if (const auto internode = selected.internode()) return sentence("Internode ", *internode, " is selected");
+        return sentence("A segment is selected: ", selected.internodes.size(), " internodes, ", selected.nodes.size(),
+                        " nodes");
+    }
+    if (effect.changes.empty()) return "The trace is that way already";
+    if (std::holds_alternative<NodeOp>(op)) {
+        const uint32_t node = *selected.node();
+        const auto internodes = trace.internodes_of(node);
+        if (internodes.empty()) return sentence("Node ", node, " added");
+        return sentence("Node ", node, " added, linked with node ", trace.internode(internodes[0]).other(node));
+    }
+    return "Trace: " + effect.label;
+}
+
+}  // namespace
+
+void App::apply(const Trace& action)
+{
+    Annotator& annotator = document_->annotator;
+    if (annotator.stroke_is_running()) return say("The trace waits until the stroke is painted");
+    const TraceGraph& trace = annotator.document().trace;
+    if (std::holds_alternative<NodeOp>(action.op) && document_->brush.group == 0)
+        return say("Group 0 erases; choose a group from 1 for the node");
+    TraceEffect effect = effect_of(action.op, trace, document_->trace_defaults());
+    const bool changes_trace = !effect.changes.empty();
+    if (effect.selection) annotator.select_trace(*effect.selection);
+    document_->drags_node = false;
+    if (changes_trace) {
+        Command command{effect.label, {effect.changes.begin(), effect.changes.end()}};
+        annotator.edit_trace(effect.label, effect.changes);
+        show_changes(command);
+    }
+    say(said_of(action.op, effect, trace));
+}
+
+void App::apply(const DragNode& action)
+{
+    const TraceGraph& trace = document_->annotator.document().trace;
+    if (action.on) {
+        const std::optional<uint32_t> node = trace.selection().node();
+        if (!node) return say("No node is selected; select one to move it");
+        document_->drags_node = true;
+        return say(sentence("Node ", *node, " goes with the probe until the key is let go"));
+    }
+    if (document_->drags_node) apply(Trace{MoveOp{document_->probe_voxel()}});
+}
+
+}  // namespace shvr::ui

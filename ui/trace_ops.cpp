@@ -1,0 +1,79 @@
+#include "ui/trace_ops.h"
+
+namespace shvr::ui {
+
+namespace {
+
+double within_voxels(const Model& model)
+{
+    return NEARBY_RADII * model.brush.radius_voxels;
+}
+
+class Mean {
+public:
+    void add(double value)
+    {
+        sum_ += value;
+        ++count_;
+    }
+    double value_or(double other) const { return count_ > 0 ? sum_ / double(count_) : other; }
+
+private:
+    double sum_ = 0.0;
+    int64_t count_ = 0;
+};
+
+/// The mean radius of some nodes, in voxels along x; what has none counts as half a voxel.
+double scaled_radius(const Model& model, const Mean& mean, double factor)
+{
+    const double probe = model.brush.radius_voxels * model.volume.spacing.x;
+    return std::max(mean.value_or(probe) / model.volume.spacing.x, 0.5) * factor;
+}
+
+}  // namespace
+
+TraceOp node_at_probe(const Model& model)
+{
+    return NodeOp{.at = model.probe_voxel, .radius_voxels = model.brush.radius_voxels, .group = model.brush.group};
+}
+
+TraceOp nearest_selection(const Model& model)
+{
+    const std::optional<uint32_t> selected = model.trace.selection().node();
+    const bool is_nearest = selected && model.trace.nearest_node(model.probe_voxel * model.volume.spacing) == selected;
+    SelectOp op{.near = model.probe_voxel, .number = {}, .is_internode = false, .within_voxels = within_voxels(model)};
+    if (is_nearest && !model.trace.internodes_of(*selected).empty()) {
+        op.is_internode = true;
+        op.within_voxels.reset();  // its node is at hand
+    }
+    return op;
+}
+
+TraceOp link_with_nearest(const Model& model)
+{
+    return LinkOp{.near = model.probe_voxel, .node = {}, .within_voxels = within_voxels(model)};
+}
+
+RadiusOp scaled(const Model& model, double factor)
+{
+    const TraceSelection& selected = model.trace.selection();
+    Mean mean;
+    if (!selected.nodes.empty()) {
+        for (const uint32_t node : selected.nodes) mean.add(model.trace.node(node).radius);
+        return {.of = RadiusOp::Of::selected, .radius_voxels = scaled_radius(model, mean, factor)};
+    }
+    const uint8_t group = selected.internode() ? model.trace.internode(*selected.internode()).group : model.brush.group;
+    for (const auto& [number, internode] : model.trace.internodes())
+        if (internode.group == group) mean.add(model.trace.radius_of(internode, 0.5));
+    return {.of = RadiusOp::Of::internodes, .radius_voxels = scaled_radius(model, mean, factor), .group = group};
+}
+
+RadiusOp scaled_nodes_of_group(const Model& model, double factor)
+{
+    Mean mean;
+    for (const auto& [number, node] : model.trace.nodes())
+        if (node.group == model.brush.group) mean.add(node.radius);
+    return {.of = RadiusOp::Of::nodes, .radius_voxels = scaled_radius(model, mean, factor), .group = model.brush.group};
+}
+
+}  // namespace shvr::ui
