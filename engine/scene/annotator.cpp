@@ -6,8 +6,8 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/annotation/mask_file.h"
 #include "engine/annotation/mask_image.h"
+#include "engine/annotation/mask_import.h"
 #include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_file.h"
 #include "engine/passes/paint.h"
@@ -334,9 +334,11 @@ VoxelBox Annotator::reach_of(const Command& command) const
 
 void Annotator::load(const std::filesystem::path& mask_file, const std::string& volume_hash)
 {
+    // A mask of another size is of another image as well, and the size says more.
+    const std::vector<MaskBrickChange> changes = import_mask(mask_file, space_of(renderer_.volume().info()));
     check_mask_image(mask_file, volume_hash);
     std::vector<int64_t> bricks;
-    for (const MaskBrickChange& change : load_mask(mask_file, document_.mask.size())) {
+    for (const MaskBrickChange& change : changes) {
         document_.mask.apply(change, Direction::forwards);
         bricks.push_back(change.brick);
     }
@@ -345,7 +347,7 @@ void Annotator::load(const std::filesystem::path& mask_file, const std::string& 
 
 void Annotator::save(const std::filesystem::path& mask_file, const std::string& volume_hash) const
 {
-    save_mask(mask_file, document_.mask);
+    save_mask_as(mask_file, document_.mask, renderer_.volume().info(), {.painted_on = volume_hash});
     save_mask_image(mask_file, volume_hash);
 }
 

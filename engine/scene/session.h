@@ -144,6 +144,9 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
+/// Its volume alone; voxels are not gone through.
+std::shared_ptr<const VolumeSource> open_session_volume(const std::filesystem::path& path,
+                                                        const std::vector<std::string>& settings = {});
 
 /// The same from text; relative paths are relative to `folder`, `origin` names the text in messages.
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,

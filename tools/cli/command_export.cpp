@@ -1,10 +1,16 @@
 // shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
 
-#include "engine/annotation/mask_export.h"
-#include "engine/annotation/mask_file.h"
+#include <algorithm>
+#include <cmath>
+
+#include "engine/annotation/mask_image.h"
+#include "engine/annotation/mask_import.h"
 #include "engine/annotation/measures.h"
+#include "engine/annotation/offset_export.h"
+#include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_mesh.h"
 #include "engine/base/atomic_file.h"
+#include "engine/base/image.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -13,8 +19,8 @@ namespace {
 
 struct Options {
     Common common;
-    std::string project, mask, trace, mesh, metrics;
-    bool break_loops = false;
+    std::string project, mask, offset, trace, mesh, metrics;
+    bool break_loops = false, labels = false;
 };
 
 void check_extension(const char* option, const std::string& path, const std::vector<std::string>& known)
@@ -29,13 +35,59 @@ void check_extension(const char* option, const std::string& path, const std::vec
 }
 
 /// The saved mask, or an unpainted one.
-Mask saved_mask(const Session& session, const Size3& size)
+Mask saved_mask(const Session& session, const TraceSpace& space)
 {
-    Mask mask(size);
-    if (!session.mask_path.empty() && std::filesystem::exists(session.mask_path))
-        for (const MaskBrickChange& change : load_mask(session.mask_path, size))
-            mask.apply(change, Direction::forwards);
+    Mask mask(space.size);
+    if (session.mask_path.empty() || !std::filesystem::exists(session.mask_path)) return mask;
+    // A mask of another size is of another image as well, and the size says more.
+    const std::vector<MaskBrickChange> changes = import_mask(session.mask_path, space);
+    check_mask_image(session.mask_path, session.volume_hash);
+    for (const MaskBrickChange& change : changes) mask.apply(change, Direction::forwards);
     return mask;
+}
+
+/// The saved offsets, or none.
+DensityField saved_offsets(const Session& session, const VolumeInfo& volume)
+{
+    if (session.density_path.empty() || !std::filesystem::exists(session.density_path))
+        return {volume.size, volume.type};
+    return load_offsets(session.density_path, volume.size, volume.type);
+}
+
+uint8_t byte_of(double share)
+{
+    return uint8_t(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+}
+
+/// The looks of the groups that are painted or set up.
+LabelImage label_image_of(const Session& session, const Mask& mask)
+{
+    LabelImage image{.painted_on = session.volume_hash};
+    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group) {
+        if (voxels[size_t(group)] == 0 && !session.groups.contains(uint8_t(group))) continue;
+        const ColorGroup look = group_of(session.groups, uint8_t(group));
+        const auto channel = [&](int index) { return byte_of(srgb_encode(std::clamp(look.color[index], 0.0, 1.0))); };
+        image.colors.push_back({group, {channel(0), channel(1), channel(2), byte_of(look.opacity)}, look.name});
+    }
+    return image;
+}
+
+void check_mask_name(const std::string& path)
+{
+    if (!path.empty() && !is_mask_export(path))
+        throw UsageError(sentence("--mask is '", path, "'; expected a name that ends in one of: .mask, .nrrd, .tif, ",
+                                  ".tiff, .zarr, or PROJECT/labels/NAME"));
+}
+
+/// PROJECT/labels/mask; nothing where it is not asked for.
+std::string project_labels(const Options& options)
+{
+    if (!options.labels) return {};
+    const std::filesystem::path project = options.project;
+    if (!std::filesystem::exists(project / ".zattrs"))
+        fail(options.project, ": is no project folder; expected one, to write --labels into, or --mask with a name");
+    return (project / "labels" / "mask").string();
 }
 
 TraceGraph saved_trace(const Session& session, const TraceSpace& space, bool is_needed)
@@ -84,14 +136,16 @@ Json to_json(const std::vector<std::string>& written, const Mask& mask, const Tr
 
 void run(const Options& options)
 {
-    check_extension("--mask", options.mask, {".mask", ".nrrd", ".tif", ".tiff"});
+    check_mask_name(options.mask);
+    check_extension("--offset", options.offset, {".offset", ".nrrd", ".tif", ".tiff"});
     check_extension("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_extension("--mesh", options.mesh, {".obj", ".ply"});
     check_extension("--metrics", options.metrics, {".csv"});
     const OpenedSession opened = open_session(options.project, options.common.settings);
     warn(opened.source->info().warnings, options.common);
-    const TraceSpace space = space_of(opened.source->info());
-    const Mask mask = saved_mask(opened.session, space.size);
+    const VolumeInfo& volume = opened.source->info();
+    const TraceSpace space = space_of(volume);
+    const Mask mask = saved_mask(opened.session, space);
     const TraceGraph trace = saved_trace(opened.session, space, !options.trace.empty() || !options.mesh.empty());
 
     std::vector<std::string> written, left_out;
@@ -104,9 +158,14 @@ void run(const Options& options)
         warn(left_out, options.common);
         wrote(options.trace);
     }
-    if (!options.mask.empty()) {
-        export_mask(options.mask, mask, space);
-        wrote(options.mask);
+    for (const std::string& path : {options.mask, project_labels(options)}) {
+        if (path.empty()) continue;
+        export_mask(path, mask, volume, label_image_of(opened.session, mask));
+        wrote(path);
+    }
+    if (!options.offset.empty()) {
+        export_offsets(options.offset, saved_offsets(opened.session, volume), volume);
+        wrote(options.offset);
     }
     if (!options.mesh.empty()) {
         save_trace_mesh(options.mesh, trace, space);
@@ -125,9 +184,11 @@ void run(const Options& options)
 void add_export(CLI::App& program)
 {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("export", "Writes mask, trace and measures for other programs");
+    CLI::App* command = program.add_subcommand("export", "Writes mask, offsets, trace and measures for other programs");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
-    command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif)");
+    command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
+    command->add_flag("--labels", options->labels, "The painted voxels as OME-Zarr labels in the project, labels/mask");
+    command->add_option("--offset", options->offset, "The density offsets (.offset, .nrrd, .tif)");
     command->add_option("--trace", options->trace, "Nodes and internodes (.graphml, .txt, .swc, .rsml)");
     command->add_flag("--break-loops", options->break_loops,
                       "Open each loop where its last internode closed it, for .swc and .rsml, which hold trees");
