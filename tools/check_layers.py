@@ -41,7 +41,7 @@ THIRD_PARTIES = {
     "GDCM": (r"gdcm", r"engine/volume/dicom_file\.cpp|tests/unit/source_dicom_test\.cpp"),
     "zlib": (r"zlib\.h", r"engine/volume/.*\.cpp|tests/"),
     "blosc": (r"blosc", r"engine/volume/zarr_codec\.cpp"),
-    "libtiff": (r"tiff(io)?\.h", r"engine/volume/.*tiff.*\.cpp|engine/annotation/mask_export\.cpp|tests/unit/tiff_files\.h"),
+    "libtiff": (r"tiff(io)?\.h", r"engine/volume/.*tiff.*\.cpp|tests/unit/tiff_files\.h"),
     "pugixml": (r"pugixml", r"engine/volume/.*\.cpp|engine/annotation/trace_.*\.cpp"),
     "xxHash": (r"xxhash", r"engine/volume/|engine/annotation/journal_file\.cpp"),
     "CLI11": (r"CLI/", r"tools/cli/"),

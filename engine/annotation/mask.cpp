@@ -20,6 +20,23 @@ int64_t MaskBrickChange::voxels() const
     return sum;
 }
 
+void append_painted_runs(std::vector<MaskRun>& runs, std::span<const uint8_t> row, size_t first)
+{
+    for (size_t x = 0; x < row.size();) {
+        const uint8_t group = row[x];
+        size_t end = x + 1;
+        while (end < row.size() && row[end] == group) ++end;
+        if (group != 0) {
+            const auto last = uint16_t(first + end - 1);
+            if (!runs.empty() && runs.back().last + size_t{1} == first + x && runs.back().after == group)
+                runs.back().last = last;
+            else
+                runs.push_back({uint16_t(first + x), last, 0, group});
+        }
+        x = end;
+    }
+}
+
 Mask::Mask(Size3 size) : size_(size), counts_((size + Size3(SIDE - 1)) / Size3(SIDE))
 {
     voxels_by_group_[0] = size.x * size.y * size.z;

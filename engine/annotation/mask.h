@@ -38,6 +38,9 @@ struct MaskBrickChange {
     int64_t voxels() const;
 };
 
+/// Appends a row of groups that begins at voxel `first` of an unpainted brick. Joins the last run where it can.
+void append_painted_runs(std::vector<MaskRun>& runs, std::span<const uint8_t> row, size_t first);
+
 enum class Direction { forwards, backwards };
 
 class Mask {

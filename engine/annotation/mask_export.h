@@ -1,20 +1,23 @@
 #pragma once
 // A mask in forms that other programs read. Any thread may call this.
 //
-//   .mask   the thesis's raw bytes (mask_file.h)
-//   .nrrd   raw bytes behind a header with spacing and unit
-//   .tif    a page a slice, compressed; spacing and unit as ImageJ has them; BigTIFF where it must be
+//   .mask        the thesis's raw bytes (mask_file.h)
+//   .nrrd .tif   engine/volume/volume_export.h
+//   .zarr        an OME-Zarr 0.4 label image with its levels; so is PROJECT/labels/NAME
 
 #include <filesystem>
 
+#include "engine/annotation/mask.h"
 #include "engine/annotation/trace_file.h"
+#include "engine/volume/import_volume.h"
 
 namespace shvr {
 
 bool is_mask_export(const std::filesystem::path& path);
 
-/// Replaces an old file at once or not at all. `space.size` is the mask's. A compressed TIFF is held in memory until it is
-/// whole.
-void export_mask(const std::filesystem::path& path, const Mask& mask, const TraceSpace& space);
+/// Replaces an old file (or label image) at once or not at all. `volume`, of the mask's size, says where voxels lie; `image`
+/// is what a label image says besides.
+void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                 const LabelImage& image = {});
 
 }  // namespace shvr

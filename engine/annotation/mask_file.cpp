@@ -12,24 +12,6 @@ namespace {
 
 constexpr int64_t SIDE = gpu::BRICK_SIZE;
 
-/// Appends a row of groups that begins at voxel `first` of a brick. Joins the last run where it can.
-void append_runs(std::vector<MaskRun>& runs, std::span<const uint8_t> row, size_t first)
-{
-    for (size_t x = 0; x < row.size();) {
-        const uint8_t group = row[x];
-        size_t end = x + 1;
-        while (end < row.size() && row[end] == group) ++end;
-        if (group != 0) {
-            const auto last = uint16_t(first + end - 1);
-            if (!runs.empty() && runs.back().last + size_t{1} == first + x && runs.back().after == group)
-                runs.back().last = last;
-            else
-                runs.push_back({uint16_t(first + x), last, 0, group});
-        }
-        x = end;
-    }
-}
-
 }  // namespace
 
 void save_mask(const std::filesystem::path& path, const Mask& mask)
@@ -65,8 +47,8 @@ std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const 
         const bool is_painted = std::any_of(bytes.begin(), bytes.end(), [](uint8_t group) { return group != 0; });
         for (int64_t x = 0; is_painted && x < counts.x; ++x)
             for_each_row(strip, x, [&](size_t in_strip, size_t in_brick, size_t width) {
-                append_runs(layer[size_t(x + counts.x * strip.brick_y)], std::span(bytes).subspan(in_strip, width),
-                            in_brick);
+                append_painted_runs(layer[size_t(x + counts.x * strip.brick_y)],
+                                    std::span(bytes).subspan(in_strip, width), in_brick);
             });
         if (!strip.ends_layer()) return;
         for (size_t i = 0; i < layer.size(); ++i) {

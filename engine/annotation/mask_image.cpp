@@ -13,6 +13,12 @@ namespace {
 constexpr int64_t LARGEST_RECORD = int64_t{1} << 16;
 constexpr int VERSION = 1;
 
+bool is_folder(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored);
+}
+
 }  // namespace
 
 std::filesystem::path mask_image_path(const std::filesystem::path& mask)
@@ -24,7 +30,7 @@ std::filesystem::path mask_image_path(const std::filesystem::path& mask)
 
 void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
 {
-    if (content_hash.empty()) return;
+    if (content_hash.empty() || is_folder(mask)) return;
     const nlohmann::ordered_json record = {{"shvr_mask", VERSION}, {"image", content_hash}};
     const std::string text = record.dump(2) + "\n";
     write_file_atomically(mask_image_path(mask), std::as_bytes(std::span(text)));
@@ -32,18 +38,23 @@ void save_mask_image(const std::filesystem::path& mask, const std::string& conte
 
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
 {
-    const std::filesystem::path path = mask_image_path(mask);
+    const bool is_label_image = is_folder(mask);
+    const std::filesystem::path path = is_label_image ? mask / ".zattrs" : mask_image_path(mask);
     std::error_code ignored;
     if (content_hash.empty() || !std::filesystem::exists(path, ignored)) return;
-    const nlohmann::json record = read_json_object(path, LARGEST_RECORD);
+    nlohmann::json record = read_json_object(path, is_label_image ? LARGEST_ZARR_ATTRIBUTES : LARGEST_RECORD);
+    if (is_label_image) {
+        if (!record.contains("shvr")) return;
+        record = nlohmann::json(record["shvr"]);
+        if (!record.is_object()) refuse_json(path, "shvr", record, "an object");
+    }
     const nlohmann::json& version = required(path, record, "shvr_mask", sentence(VERSION));
     if (version != VERSION) refuse_json(path, "shvr_mask", version, sentence(VERSION));
     const nlohmann::json& image = required(path, record, "image", "the hash of an image");
     if (image != content_hash) {
         refuse_json(path, "image", image,
-                    shown(content_hash) +
-                        ", the volume's: the mask was painted on other voxels (without this file "
-                        "only its size is compared)");
+                    shown(content_hash) + ", the volume's: the mask was painted on other voxels (without this " +
+                        (is_label_image ? "member" : "file") + " only its size is compared)");
     }
 }
 

@@ -55,7 +55,7 @@ std::vector<std::string> save_trace(const std::filesystem::path& path, const Tra
                                     Loops loops)
 {
     const std::string form = extension_of(path);
-    if (!is_trace_file(path) && form != ".rsml") refuse_extension(path, ".graphml, .txt, .swc or .rsml");
+    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
     std::vector<std::string> notes;
     std::string text;
     try {
@@ -73,13 +73,15 @@ std::vector<std::string> save_trace(const std::filesystem::path& path, const Tra
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected)
 {
     const std::string form = extension_of(path);
-    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt or .swc");
+    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
     const std::string text = read_text(path, MOST_BYTES);
     TraceReader reader(path.string());
     if (form == ".graphml")
         read_trace_graphml(reader, text);
     else if (form == ".txt")
         read_trace_text(reader, text);
+    else if (form == ".rsml")
+        read_trace_rsml(reader, text);
     else
         read_trace_swc(reader, text);
     const StatedSpace& stated = reader.stated;
@@ -92,7 +94,7 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
 bool is_trace_file(const std::filesystem::path& path)
 {
     const std::string form = extension_of(path);
-    return form == ".graphml" || form == ".txt" || form == ".swc";
+    return form == ".graphml" || form == ".txt" || form == ".swc" || form == ".rsml";
 }
 
 }  // namespace shvr

@@ -4,10 +4,11 @@
 //   .graphml  all there is, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
 //   .txt      the thesis's lines "-v x, y, z, group, radius" and "-l node, node, group"; nodes count from 0
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
-//   .rsml     trees, written only (Lobet et al. 2015)
+//   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Positions and radii are in the volume's unit in all of them but RSML, which counts in voxels along x. An internode has
-// no group of its own in SWC and RSML, and only GraphML keeps numbers and the sizes of groups.
+// Positions and radii are in the volume's unit in all of them but RSML, which counts in voxels along x. The way to
+// pixels and back costs the last bit or two. An internode has no group of its own in SWC and RSML, and only GraphML
+// keeps numbers and the sizes of groups.
 //
 // Files come from strangers: every refusal is one sentence with file, line or element, value and what was expected.
 // Any thread may call these.

@@ -1,7 +1,6 @@
 #include "engine/annotation/trace_forms.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -122,24 +121,6 @@ glm::dvec3 TraceReader::spacing(const std::string& where, std::string_view text)
     if (!glm::all(glm::greaterThan(spacing, glm::dvec3(0.0))))
         fail(where, ": spacing is ", in_quotes(text), "; expected three numbers above 0");
     return spacing;
-}
-
-std::string digits_of(double value)
-{
-    char digits[32];
-    const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
-    SHVR_CHECK(error == std::errc());
-    return {digits, end};
-}
-
-std::string digits_of(const glm::dvec3& value)
-{
-    return digits_of(value.x) + " " + digits_of(value.y) + " " + digits_of(value.z);
-}
-
-std::string digits_of(const Size3& value)
-{
-    return sentence(value.x, " ", value.y, " ", value.z);
 }
 
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes)

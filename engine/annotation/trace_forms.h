@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/annotation/trace_file.h"
+#include "engine/volume/header_text.h"
 
 namespace shvr {
 
@@ -49,11 +50,7 @@ private:
 void read_trace_text(TraceReader& reader, std::string_view text);
 void read_trace_swc(TraceReader& reader, std::string_view text);
 void read_trace_graphml(TraceReader& reader, std::string_view text);
-
-/// The shortest digits that are read back as the same number.
-std::string digits_of(double value);
-std::string digits_of(const glm::dvec3& value);  ///< with spaces between
-std::string digits_of(const Size3& value);
+void read_trace_rsml(TraceReader& reader, std::string_view text);
 
 /// A trace as trees: every node once, parents before children.
 struct TraceTrees {

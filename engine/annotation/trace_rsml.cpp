@@ -54,6 +54,9 @@ void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<ui
     pugi::xml_node function = root.append_child("functions").append_child("function");
     function.append_attribute("name") = "diameter";
     function.append_attribute("domain") = "polyline";
+    pugi::xml_node groups = function.parent().append_child("function");
+    groups.append_attribute("name") = "group";
+    groups.append_attribute("domain") = "polyline";
     for (const uint32_t number : nodes) {
         const TraceNode& node = trace.node(number);
         const char* const names[] = {"x", "y", "z"};
@@ -61,6 +64,7 @@ void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<ui
         for (int axis = 0; axis < 3; ++axis)
             point.append_attribute(names[axis]) = digits_of(node.position[axis] / pixel).c_str();
         function.append_child("sample").append_attribute("value") = digits_of(2.0 * node.radius / pixel).c_str();
+        groups.append_child("sample").append_attribute("value") = int{node.group};
     }
 }
 

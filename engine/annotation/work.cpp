@@ -8,8 +8,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/annotation/mask_file.h"
+#include "engine/annotation/mask_export.h"
 #include "engine/annotation/mask_image.h"
+#include "engine/annotation/mask_import.h"
 #include "engine/annotation/offset_file.h"
 #include "engine/base/atomic_writer.h"
 
@@ -169,11 +170,12 @@ SavedFiles Work::digests() const
 void Work::load_files()
 {
     if (is_there(files_.mask)) {
+        // A mask of another size is of another image as well, and the size says more.
+        const std::vector<MaskBrickChange> changes = import_mask(files_.mask, space_of(files_.volume));
         check_mask_image(files_.mask, files_.volume_hash);
-        for (const MaskBrickChange& change : load_mask(files_.mask, size_))
-            document_.mask.apply(change, Direction::forwards);
+        for (const MaskBrickChange& change : changes) document_.mask.apply(change, Direction::forwards);
     }
-    if (is_there(files_.trace)) document_.trace = load_trace(files_.trace, files_.space).trace;
+    if (is_there(files_.trace)) document_.trace = load_trace(files_.trace, space_of(files_.volume)).trace;
     if (is_there(files_.density)) document_.density = load_offsets(files_.density, size_, type_);
     for (const fs::path& path : {files_.mask, files_.trace, files_.density})
         if (is_there(path)) loaded_[path] = fs::last_write_time(path);
@@ -393,7 +395,7 @@ std::vector<fs::path> Work::save()
     }
     std::vector<fs::path> written;
     if (!files_.mask.empty()) {
-        save_mask(files_.mask, document_.mask);
+        save_mask_as(files_.mask, document_.mask, files_.volume, {.painted_on = files_.volume_hash});
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }
@@ -402,7 +404,7 @@ std::vector<fs::path> Work::save()
         return is_there(path) ? is_touched : has_any;
     };
     if (is_to_write(touched_.trace, has_trace, files_.trace)) {
-        save_trace(files_.trace, document_.trace, files_.space);
+        save_trace(files_.trace, document_.trace, space_of(files_.volume));
         written.push_back(files_.trace);
     }
     if (is_to_write(touched_.density, has_offsets, files_.density)) {

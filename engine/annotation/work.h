@@ -24,7 +24,7 @@ struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: what is done is in memory alone
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
-    TraceSpace space{};
+    VolumeInfo volume{};                               ///< what is annotated
 };
 
 class Work {

@@ -66,6 +66,28 @@ void AtomicWriter::append(std::span<const std::byte> content)
     }
 }
 
+void AtomicWriter::write_at(int64_t offset, std::span<const std::byte> content)
+{
+    while (!content.empty()) {
+        const ssize_t count = ::pwrite(descriptor_.number(), content.data(), content.size(), offset);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) refuse(count < 0 ? errno : ENOSPC);
+        content = content.subspan(static_cast<size_t>(count));
+        offset += count;
+    }
+}
+
+void AtomicWriter::read_back(int64_t offset, std::span<std::byte> content) const
+{
+    while (!content.empty()) {
+        const ssize_t count = ::pread(descriptor_.number(), content.data(), content.size(), offset);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) refuse(count < 0 ? errno : EIO);
+        content = content.subspan(static_cast<size_t>(count));
+        offset += count;
+    }
+}
+
 void AtomicWriter::commit()
 {
     // File systems without permissions refuse this, and then there are none to keep.
@@ -88,7 +110,7 @@ FileDescriptor AtomicWriter::create()
     static std::atomic<unsigned> count = 0;
     while (true) {
         temporary_ = target_.parent_path() / sentence(".shvr-", ::getpid(), "-", count++, ".tmp");
-        FileDescriptor descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        FileDescriptor descriptor(::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (descriptor) return descriptor;
         if (errno != EEXIST && errno != EINTR) refuse(errno);
     }

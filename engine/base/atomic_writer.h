@@ -6,6 +6,7 @@
 
 #include <sys/types.h>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -26,6 +27,10 @@ public:
     AtomicWriter& operator=(const AtomicWriter&) = delete;
 
     void append(std::span<const std::byte> content);
+    /// For formats that go back and change what they wrote. Not together with `append`.
+    void write_at(int64_t offset, std::span<const std::byte> content);
+    /// Fails where not so much was written.
+    void read_back(int64_t offset, std::span<std::byte> content) const;
     /// Syncs, renames, and syncs the folder, so that the new file survives a power cut. Keeps the old one's permissions.
     void commit();
 

@@ -102,7 +102,7 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume)
             .trace = session.trace_path,
             .density = session.density_path,
             .volume_hash = session.volume_hash,
-            .space = space_of(volume)};
+            .volume = volume};
 }
 
 Annotator::Annotator(Renderer& renderer)

@@ -55,7 +55,10 @@ std::unique_ptr<VolumeSource> open_source(const Session& session)
     return open_volume(session.volume_path, session.open_options);
 }
 
-OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
+namespace {
+
+/// Without what is found in the voxels.
+std::pair<nlohmann::json, OpenedSession> open_unmeasured(const fs::path& path, const std::vector<std::string>& settings)
 {
     const fs::path session_file = session_file_of(path);
     const fs::path file = session_file.empty() ? path : session_file;
@@ -66,6 +69,19 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
     if (!session_file.empty()) opened.session.journal_path = journal_beside(session_file);
     opened.source = open_source(opened.session);
+    return {std::move(document), std::move(opened)};
+}
+
+}  // namespace
+
+std::shared_ptr<const VolumeSource> open_session_volume(const fs::path& path, const std::vector<std::string>& settings)
+{
+    return open_unmeasured(path, settings).second.source;
+}
+
+OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
+{
+    auto [document, opened] = open_unmeasured(path, settings);
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed);
     opened.session.volume_hash = hashed.hash();

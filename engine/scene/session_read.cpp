@@ -382,7 +382,7 @@ void read_annotation(const JsonNode& node, const std::filesystem::path& folder, 
         session.trace_path.replace_extension(".graphml");
     }
     if (!session.trace_path.empty() && !is_trace_file(session.trace_path))
-        node["trace"].refuse("a path that ends in .graphml, .txt or .swc");
+        node["trace"].refuse("a path that ends in .graphml, .txt, .swc or .rsml");
     session.density_path = read_path(node["density"], folder);
 }
 

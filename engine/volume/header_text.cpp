@@ -133,6 +133,24 @@ std::optional<double> number_of(std::string_view word)
     return parsed<double>(word);
 }
 
+std::string digits_of(double value)
+{
+    char digits[32];
+    const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
+    SHVR_CHECK(error == std::errc());
+    return {digits, end};
+}
+
+std::string digits_of(const glm::dvec3& value)
+{
+    return digits_of(value.x) + " " + digits_of(value.y) + " " + digits_of(value.z);
+}
+
+std::string digits_of(const Size3& value)
+{
+    return sentence(value.x, " ", value.y, " ", value.z);
+}
+
 std::string plain_unit(std::string_view unit)
 {
     const std::string_view bare = trimmed(unit);

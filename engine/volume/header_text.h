@@ -35,6 +35,11 @@ std::string_view take_line(std::string_view& rest);
 std::optional<int64_t> whole_of(std::string_view word);
 std::optional<double> number_of(std::string_view word);  ///< may be NaN or infinite
 
+/// The shortest digits that are read back as the same number.
+std::string digits_of(double value);
+std::string digits_of(const glm::dvec3& value);  ///< with spaces between
+std::string digits_of(const Size3& value);
+
 /// "micron", "µm", "micrometer" -> "um"; what is unknown stays as it is, but for control characters, and is cut at 60.
 std::string plain_unit(std::string_view unit);
 

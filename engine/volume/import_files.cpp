@@ -6,8 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/atomic_file.h"
+#include "engine/base/error.h"
 #include "engine/volume/import_pyramid.h"
 #include "engine/volume/ome_zarr.h"
+#include "engine/volume/project.h"
+#include "engine/volume/zarr_json.h"
 
 namespace shvr {
 namespace {
@@ -37,6 +41,33 @@ std::string signature_of(const fs::path& path)
     if (::stat(path.c_str(), &status) != 0) return {};
     return sentence(path.filename().string(), " ", status.st_size, " ", status.st_mtim.tv_sec, ".",
                     status.st_mtim.tv_nsec);
+}
+
+/// https://ngff.openmicroscopy.org/0.4/#label-md
+void describe_labels(const LabelImage& labels, Json& attributes)
+{
+    Json& label = attributes["image-label"];
+    Json colors = Json::array(), properties = Json::array();
+    for (const LabelImage::Color& color : labels.colors) {
+        colors.push_back({{"label-value", color.value}, {"rgba", color.rgba}});
+        if (!color.name.empty()) properties.push_back({{"label-value", color.value}, {"name", color.name}});
+    }
+    if (!colors.empty()) label["colors"] = colors;
+    if (!properties.empty()) label["properties"] = properties;
+    if (!labels.source.empty()) label["source"] = {{"image", labels.source}};
+    if (!labels.painted_on.empty()) attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
+}
+
+/// The attributes in IMAGE/labels/.zattrs; empty where there is no such file.
+Json listed_labels(const fs::path& folder)
+{
+    std::error_code ignored;
+    const fs::path file = folder / ".zattrs";
+    if (!fs::exists(file, ignored)) return Json::object();
+    const nlohmann::json attributes = read_json_object(file, LARGEST_ZARR_ATTRIBUTES);
+    const auto names = attributes.find("labels");
+    if (names != attributes.end() && !names->is_array()) refuse_json(file, "labels", *names, "a list of names");
+    return attributes;
 }
 
 /// The file and what bears its name beside it (headers lead to other files), or what the folder holds.
@@ -73,7 +104,8 @@ std::string import_group()
     return Json({{"zarr_format", 2}}).dump(4) + "\n";
 }
 
-std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how)
+std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how,
+                              const LabelImage* labels)
 {
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
@@ -98,7 +130,48 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
                                    " of the 2 x 2 x 2 voxels of the level before that there are")}}}};
     Json attributes = {{"multiscales", Json::array({multiscale})}};
     if (how == Halving::label) attributes["image-label"] = {{"version", "0.4"}};
+    if (labels != nullptr) describe_labels(*labels, attributes);
     return attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+fs::path label_image_target(const fs::path& folder)
+{
+    fs::path target = fs::absolute(folder).lexically_normal();
+    if (!target.has_filename()) target = target.parent_path();
+    std::error_code error;
+    if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
+        const fs::path file = target / ".zattrs";
+        const bool is_label_image = fs::exists(file, error) && !fs::exists(target / PROJECT_RECORD, error) &&
+                                    read_json_object(file, LARGEST_ZARR_ATTRIBUTES).contains("image-label");
+        if (!is_label_image)
+            fail(target.string(), ": is there already and is no label image; expected a new name, or one to replace");
+    }
+    if (belongs_to_image(target)) static_cast<void>(listed_labels(target.parent_path()));
+    fs::create_directories(target.parent_path(), error);
+    if (error) fail(target.parent_path().string(), ": cannot be made: ", error.message());
+    return target;
+}
+
+bool belongs_to_image(const fs::path& target)
+{
+    const fs::path labels = target.parent_path();
+    std::error_code ignored;
+    return labels.filename() == "labels" && fs::exists(labels.parent_path() / ".zattrs", ignored);
+}
+
+void list_label_image(const fs::path& target)
+{
+    const fs::path folder = target.parent_path();
+    Json attributes = listed_labels(folder);
+    Json& names = attributes["labels"];
+    const std::string name = target.filename().string();
+    if (names.is_null()) names = Json::array();
+    if (std::ranges::find(names, Json(name)) != names.end()) return;
+    names.push_back(name);
+    const std::string group = import_group();
+    write_file_atomically(folder / ".zgroup", std::as_bytes(std::span(group)));
+    const std::string text = attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    write_file_atomically(folder / ".zattrs", std::as_bytes(std::span(text)));
 }
 
 std::string import_session()

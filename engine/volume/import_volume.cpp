@@ -56,7 +56,7 @@ public:
           options_(options),
           preparation_(make_preparation(source, options.preparation)),
           info_(checked(preparation_->info())),
-          identity_(import_identity(source, origin_, options)),
+          identity_(options.label_image ? std::string() : import_identity(source, origin_, options)),
           folder_(project, options.overwrites),
           threads_(thread_count(options.threads)),
           pool_(
@@ -67,6 +67,7 @@ public:
     }
 
     const fs::path& folder() const { return folder_.path(); }
+    void abandon() { folder_.abandon(); }
 
     ImportReport run()
     {
@@ -96,7 +97,8 @@ public:
             if (step % bands == bands - 1) finish_slab(step / bands, slabs);
         }
         finish_levels();
-        write_knowledge();
+        write_attributes();
+        if (!options_.label_image) write_knowledge();
         finish_folder();
         return report_;
     }
@@ -157,7 +159,9 @@ private:
             pyramid_->clear_layer(level);
         }
         slabs_done_ = slab + 1;
-        if (slabs_done_ == slabs || seconds_since(state_written_) < STATE_INTERVAL * state_seconds_) return;
+        if (slabs_done_ == slabs || options_.label_image ||
+            seconds_since(state_written_) < STATE_INTERVAL * state_seconds_)
+            return;
         const Clock::time_point begin = Clock::now();
         folder_.sync();
         write_state();
@@ -203,7 +207,8 @@ private:
         report_.warnings = warnings;
         std::error_code ignored;
         const bool is_begun = fs::exists(folder_.state(), ignored);
-        if (is_begun) {
+        // Labels are made of what changes without a trace in any file.
+        if (is_begun && !options_.label_image) {
             folder_.clear_temporary();
             try {
                 StateReader state(folder_.state());
@@ -250,10 +255,15 @@ private:
         }
     }
 
-    void write_knowledge()
+    void write_attributes()
     {
         write_text(".zgroup", import_group());
-        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels(), options_.halving));
+        const LabelImage* labels = options_.label_image ? &*options_.label_image : nullptr;
+        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels(), options_.halving, labels));
+    }
+
+    void write_knowledge()
+    {
         for (int level = 0; level < pyramid_->levels(); ++level) {
             write(ranges_path({}, level), to_bytes({.kind = "ranges",
                                                     .level = level,
@@ -361,6 +371,33 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     } catch (const Error& error) {
         fail(error.what(), KEPT);
     }
+}
+
+ImportReport export_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
+                                const ImportOptions& options)
+{
+    check_labels(labels.info(), {});
+    const fs::path target = label_image_target(folder);
+    LabelImage described = image;
+    const bool belongs = belongs_to_image(target);
+    if (belongs) described.source = "../../";
+    ImportOptions wanted{.halving = Halving::label,
+                         .overwrites = true,
+                         .label_image = described,
+                         .threads = options.threads,
+                         .compressor = options.compressor,
+                         .progress = options.progress,
+                         .cancel = options.cancel};
+    Import job(labels, target, target, wanted);
+    ImportReport report;
+    try {
+        report = job.run();
+    } catch (...) {
+        job.abandon();
+        throw;
+    }
+    if (belongs) list_label_image(target);
+    return report;
 }
 
 }  // namespace shvr

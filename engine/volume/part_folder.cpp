@@ -140,12 +140,20 @@ void PartFolder::finish()
     part_ = target_;
     std::error_code ignored;  // it does no harm there
     fs::remove(state(), ignored);
+    fs::remove(state().parent_path(), ignored);  // where it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
     if (parent && ::fsync(parent.number()) != 0 && errno != EINVAL && errno != EACCES) {
         fail(target_.string(),
              ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
     }
+}
+
+void PartFolder::abandon()
+{
+    if (part_ == target_) return;
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
 }
 
 void write_part_file(const fs::path& path, std::span<const std::byte> content)

@@ -34,6 +34,8 @@ public:
     /// Puts the folder in its place, in exchange for what was there, and takes the state away. The folder is the target
     /// then.
     void finish();
+    /// Takes away what was begun, as far as that can be.
+    void abandon();
 
 private:
     void refuse_target() const;

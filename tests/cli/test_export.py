@@ -5,6 +5,7 @@ import struct
 import unittest
 
 from harness import CliTest, Volume
+from test_label import read_by_zarr
 
 KEYS = ["written", "voxels_by_group", "nodes", "internodes", "length_um_by_group"]
 
@@ -48,7 +49,7 @@ class Export(CliTest):
 
     def test_masks_are_the_saved_one_and_keep_spacing_and_unit(self):
         saved = (self.folder / "paint.mask").read_bytes()
-        for name in ["a.mask", "a.nrrd", "a.tif"]:
+        for name in ["a.mask", "a.nrrd", "a.tif", "a.zarr"]:
             with self.subTest(name=name):
                 path = self.folder / name
                 self.assertEqual(self.export("--mask", path)["written"], [str(path)])
@@ -73,7 +74,7 @@ class Export(CliTest):
 
     def test_every_form_of_the_trace_that_is_read_gives_the_same_trace(self):
         self.export("--trace", self.folder / "first.txt")
-        for name in ["a.txt", "a.swc", "a.graphml"]:
+        for name in ["a.txt", "a.swc", "a.graphml", "a.rsml"]:
             with self.subTest(name=name):
                 self.export("--trace", self.folder / name)
                 other = self.write_session(
@@ -136,8 +137,106 @@ class Export(CliTest):
         result = self.check_json("export", self.folder / "project", "--trace", self.folder / "p.swc")
         self.assertEqual((result["nodes"], result["internodes"]), (2, 1))
 
+    def test_masks_of_every_form_are_read_back(self):
+        saved = (self.folder / "paint.mask").read_bytes()
+        for name in ["a.nrrd", "a.tif", "a.zarr"]:
+            with self.subTest(name=name):
+                self.export("--mask", self.folder / name)
+                other = self.write_session("other.json", annotation={"mask": name}, volume={
+                    "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
+                self.check("export", other, "--mask", self.folder / "b.mask")
+                self.assertEqual((self.folder / "b.mask").read_bytes(), saved)
+                # What annotate paints on top is saved in the same form.
+                script = self.write_script("more.jsonl", [
+                    {"op": "paint", "brush": "fill", "region": "box", "group": 7, "threshold": 0, "radius": 2,
+                     "path": [[12, 12, 12]]}, {"op": "save"}])
+                self.check("annotate", other, "--script", script)
+                self.check("export", other, "--mask", self.folder / "b.mask")
+                painted = (self.folder / "b.mask").read_bytes()
+                self.assertEqual(painted.count(7), 16)
+                self.assertEqual([a for a, b in zip(painted, saved) if a != b], [7] * 16)
+
+    def test_masks_of_other_volumes_are_refused_with_both_named(self):
+        for name in ["a.nrrd", "a.tif", "a.zarr"]:
+            self.export("--mask", self.folder / name)
+            for size, spacing, unit, says in [
+                    ([24, 20, 41], self.SPACING, "mm", ["24 20 40", "24 20 41"]),
+                    (self.SIZE, [0.5, 1, 2.5], "mm", ["0.5 1 2 mm", "0.5 1 2.5 mm"]),
+                    (self.SIZE, self.SPACING, "um", ["0.5 1 2 mm", "0.5 1 2 um"])]:
+                with self.subTest(name=name, size=size, spacing=spacing, unit=unit):
+                    other = self.write_session("other.json", annotation={"mask": name}, volume={
+                        "procedural": "constant", "size": size, "spacing": spacing, "unit": unit})
+                    self.check_refused("export", other, "--mask", self.folder / "b.mask", says=says)
+            # The same size of a voxel in another unit.
+            other = self.write_session("other.json", annotation={"mask": name}, volume={
+                "procedural": "constant", "size": self.SIZE, "spacing": [500, 1000, 2000], "unit": "um"})
+            self.check("export", other, "--mask", self.folder / "b.mask")
+        wide = Volume(self.SIZE, [0] * (24 * 20 * 40), voxel_type="uint16").write(self.folder, "wide")
+        other = self.write_session("other.json", annotation={"mask": wide.name}, volume={
+            "procedural": "constant", "size": self.SIZE})
+        self.check_refused("export", other, "--mask", self.folder / "b.mask", says=["uint16", "uint8"])
+
+    def test_labels_are_read_by_python_zarr_with_colours_and_source(self):
+        saved = (self.folder / "paint.mask").read_bytes()
+        self.session = self.write_session(
+            volume={"procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"},
+            groups={"3": {"name": "vessel", "color": "#ff8000", "opacity": 0.5}})
+        self.export("--mask", self.folder / "a.zarr")
+        found = read_by_zarr(self, self.folder / "a.zarr", self.folder / "bare")
+        self.assertEqual((self.folder / "bare").read_bytes(), saved)
+        self.assertEqual(found["type"], "uint8")
+        self.assertEqual(found["units"], ["millimeter"] * 3)
+        self.assertEqual(found["scales"][0], [[2, 1, 0.5], [0, 0, 0]])
+        self.assertEqual(found["label"]["colors"], [{"label-value": 3, "rgba": [255, 128, 0, 128]}])
+        self.assertEqual(found["label"]["properties"], [{"label-value": 3, "name": "vessel"}])
+
+    def test_a_project_takes_its_mask_as_labels_and_knows_it_again(self):
+        for name, seed in [("project", 1), ("other", 2)]:
+            header = Volume.noise((20, 12, 9), seed=seed).write(self.folder, name + "-volume")
+            self.check("import", header, self.folder / name)
+        script = self.write_script("script.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "box", "group": 2, "threshold": 100, "radius": 5,
+             "path": [[8, 6, 4]]}, {"op": "save"}])
+        project = self.folder / "project"
+        self.check("annotate", project, "--script", script)
+        result = self.check_json("export", project, "--labels")
+        labels = project / "labels" / "mask"
+        self.assertEqual(result["written"], [str(labels)])
+        self.assertEqual((project / "labels" / ".zattrs").read_text().split(), '{ "labels": [ "mask" ] }'.split())
+        found = read_by_zarr(self, labels, self.folder / "bare")
+        self.assertEqual((self.folder / "bare").read_bytes(), (project / "shvr" / "paint.mask").read_bytes())
+        self.assertEqual(found["label"]["source"], {"image": "../../"})
+        self.assertTrue(found["shvr"]["image"].startswith("xxh3-128:"))
+        # Read back by its own volume; refused by another one of its size.
+        again = self.check_json("export", project, "--set", f'annotation.mask="{labels}"')
+        self.assertEqual(again["voxels_by_group"], result["voxels_by_group"])
+        self.check_refused("export", self.folder / "other", "--set", f'annotation.mask="{labels}"',
+                           says=["painted on other voxels", found["shvr"]["image"]])
+        self.check_refused("export", self.session, "--labels", says=["is no project folder"])
+
+    def test_offsets_are_floats_for_other_programs(self):
+        self.session = self.write_session(
+            volume={"procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"},
+            annotation={"mask": "paint.mask", "density": "paint.offset"})
+        script = self.write_script("density.jsonl", [
+            {"op": "density", "brush": "fill", "region": "box", "threshold": 0, "radius": 2, "offset": -40,
+             "path": [[12, 12, 12]]}, {"op": "save"}])
+        self.check("annotate", self.session, "--script", script)
+        saved = (self.folder / "paint.offset").read_bytes()
+        offsets = struct.unpack(f"<{len(saved) // 2}h", saved)
+        self.assertEqual(set(offsets), {0, -40})
+        for name in ["a.offset", "a.nrrd", "a.tif"]:
+            self.assertEqual(self.export("--offset", self.folder / name)["written"], [str(self.folder / name)])
+        self.assertEqual((self.folder / "a.offset").read_bytes(), saved)
+        self.assertTrue((self.folder / "a.nrrd").read_bytes().endswith(struct.pack(f"<{len(offsets)}f", *offsets)))
+        for name in ["a.nrrd", "a.tif"]:
+            info = self.check_json("info", self.folder / name)
+            self.assertEqual((info["type"], info["size"], info["unit"]), ("float32", self.SIZE, "mm"))
+            self.assertEqual((info["min"], info["max"]), (-40, 0))
+            self.assertAlmostEqual(info["mean"], sum(offsets) / len(offsets), places=6)
+
     def test_wrong_usage_writes_nothing(self):
-        for option, name in [("--mask", "a.png"), ("--trace", "a.obj"), ("--mesh", "a.swc"), ("--metrics", "a.txt")]:
+        for option, name in [("--mask", "a.png"), ("--offset", "a.mask"), ("--trace", "a.obj"), ("--mesh", "a.swc"), ("--metrics", "a.txt")]:
             with self.subTest(option=option):
                 stderr = self.export("--trace", self.folder / "b.txt", option, self.folder / name, status=2) \
                     if option != "--trace" else self.export(option, self.folder / name, status=2)

@@ -16,7 +16,7 @@ inline WorkFiles files_in(const std::filesystem::path& folder)
             .trace = folder / "a.graphml",
             .density = folder / "a.offset",
             .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
-            .space = {ANNOTATED_SIZE, {1.0, 1.0, 1.5}, "um"}};
+            .volume = annotated_volume()};
 }
 
 /// What opening says goes to `said`.

@@ -482,6 +482,10 @@ def make_text():
         seed("mask", "x".join(map(str, sides)), bytes(side - 1 for side in sides) +
              bytes((i // 7 % 3) for i in range(voxels)))
     seed("mask", "claims_size", bytes([63, 63, 63]) + b"\1" * 60)
+    for number, letter in enumerate("hhiiiiff"):
+        values = [0, 1, -1, 100, -100, 0, 0, 5] * 3
+        seed("offset", f"type_{number}", bytes([4 - 1, 3 - 1, 2 - 1, number]) + struct.pack(f"<24{letter}", *values))
+    seed("offset", "claims_size", bytes([63, 63, 63, 7]) + b"\1" * 60)
 
 
 def png(kind, depth, width=3, height=2, lines=None, extra=b"", claimed=None):
@@ -517,6 +521,12 @@ def make_trace():
     seed("trace", "star.swc", b"\2# unit um\n# size 9 8 7\n# spacing 1 0.5 2\n# SCALE 1 1 1\n"
          b"1 7 1 2 3 1.5 -1\n2 7 1 2 4 1.5 1\n3 8 1 3 3 1 1\n4 0 0 2 3 0 1\n9 1 5 5 5 2 -1\n")
     seed("trace", "ring.swc", b"\2" + b"1 1 0 0 0 1 3\n2 1 1 0 0 1 1\n3 1 1 1 0 1 2\n")
+    seed("trace", "branches.rsml", b"\3<rsml><metadata><unit>um</unit><resolution>2</resolution></metadata><scene><plant>"
+         b"<root ID='1'><properties><group>3</group></properties><geometry><polyline><point x='1' y='2' z='3'/>"
+         b"<point x='2' y='2'/></polyline></geometry><functions><function name='diameter' domain='polyline'>"
+         b"<sample value='4'/><sample>2</sample></function></functions><root><geometry><polyline><point x='2' y='2'/>"
+         b"<point x='2' y='5'/></polyline></geometry></root><root><geometry><polyline><point x='9' y='9'/></polyline>"
+         b"</geometry></root></root></plant></scene></rsml>")
     seed("trace", "numbers.graphml", graph(node("n4294967295", 1), data(next_node=4294967296)))
 
 

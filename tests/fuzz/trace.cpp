@@ -10,10 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     using namespace shvr;
     using namespace shvr::fuzz;
     if (size < 1) return 0;
-    const char* const names[] = {"a.graphml", "a.txt", "a.swc"};
+    const char* const names[] = {"a.graphml", "a.txt", "a.swc", "a.rsml"};
     const InputFolder& folder = input_folder();
     folder.clear();
-    const auto file = folder.write(names[data[0] % 3], text_of({data + 1, size - 1}));
+    const auto file = folder.write(names[data[0] % 4], text_of({data + 1, size - 1}));
     accepts([&] {
         const TraceFile opened = load_trace(file, {});
         const TraceGraph& trace = opened.trace;
@@ -28,6 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         const Topology topology = topology_of(trace);
         expect(topology_of(tree) == Topology{topology.components, 0, 0}, "a trace whose trees SWC does not keep");
         save_trace(folder.path() / "b.rsml", trace, space, Loops::break_open);
+        const TraceGraph roots = load_trace(folder.path() / "b.rsml", space).trace;
+        expect(roots.nodes().size() == tree.nodes().size() && roots.internodes().size() == tree.internodes().size(),
+               "a trace whose trees RSML does not keep");
         size_t internodes = 0;
         for (const SegmentMeasures& segment : measure(trace).segments) internodes += segment.internodes;
         expect(internodes == trace.internodes().size(), "an internode that belongs to no segment, or to two");

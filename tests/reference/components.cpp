@@ -123,4 +123,29 @@ std::vector<uint32_t> speckle_words(const BrushRegion& region, const OpenVoxel& 
     return selected.words();
 }
 
+std::vector<uint32_t> component_labels(const Size3& size, const OpenVoxel& open, int connectivity)
+{
+    const std::vector<Size3> steps = neighbour_steps(connectivity);
+    const auto index = [&](const Size3& at) { return size_t(at.x + size.x * (at.y + size.y * at.z)); };
+    std::vector<uint32_t> labels(size_t(size.x * size.y * size.z));
+    uint32_t components = 0;
+    for (int64_t z = 0; z < size.z; ++z)
+        for (int64_t y = 0; y < size.y; ++y)
+            for (int64_t x = 0; x < size.x; ++x) {
+                if (labels[index({x, y, z})] != 0 || !open({x, y, z})) continue;
+                std::vector<Size3> queue{{x, y, z}};
+                labels[index(queue[0])] = ++components;
+                for (size_t i = 0; i < queue.size(); ++i)
+                    for (const Size3& step : steps) {
+                        const Size3 next = queue[i] + step;
+                        const bool is_inside =
+                            glm::all(glm::greaterThanEqual(next, Size3(0))) && glm::all(glm::lessThan(next, size));
+                        if (!is_inside || labels[index(next)] != 0 || !open(next)) continue;
+                        labels[index(next)] = components;
+                        queue.push_back(next);
+                    }
+            }
+    return labels;
+}
+
 }  // namespace shvr::reference

@@ -31,6 +31,17 @@ uint64_t hash_of_bricks(const Field& field, uint64_t hash)
 
 }  // namespace
 
+VolumeInfo annotated_volume()
+{
+    VolumeInfo volume;
+    volume.name = "annotated";
+    volume.size = ANNOTATED_SIZE;
+    volume.type = ANNOTATED_TYPE;
+    volume.spacing = {1.0, 1.0, 1.5};
+    volume.unit = "um";
+    return volume;
+}
+
 Document unannotated()
 {
     return {.mask = Mask(ANNOTATED_SIZE), .trace = {}, .density = DensityField(ANNOTATED_SIZE, ANNOTATED_TYPE)};

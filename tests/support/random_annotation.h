@@ -12,6 +12,8 @@ namespace shvr::test {
 inline constexpr Size3 ANNOTATED_SIZE(45, 40, 35);  // no multiple of a brick's side
 inline constexpr VoxelType ANNOTATED_TYPE = VoxelType::int16;
 
+/// What is annotated.
+VolumeInfo annotated_volume();
 Document unannotated();
 
 /// Differs (but for one chance in 2^64) where any group, offset, node, internode or size differs, or what exists.

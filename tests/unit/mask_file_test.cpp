@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/annotation/mask_source.h"
 #include "engine/base/file.h"
 #include "tests/unit/volume_files.h"
 
@@ -128,4 +129,30 @@ TEST_CASE("saving replaces the old file, whose permissions stay")
     CHECK(read_text(path, 1000) == std::string(240, '\0'));
     CHECK(std::filesystem::status(path).permissions() == std::filesystem::perms(0640));
     CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("a mask as a volume holds the same voxels, in any box, and makes the same records again")
+{
+    const TemporaryFolder folder;
+    // The last one's slices are too large for a layer of bricks at once.
+    for (const Size3& size :
+         {Size3(1, 1, 1), Size3(32, 32, 32), Size3(70, 45, 40), Size3(31, 33, 1), Size3(2500, 900, 2)}) {
+        CAPTURE(size.x);
+        const std::string groups = random_groups(size, 7);
+        const auto path = folder.write("a.mask", groups);
+        const Mask mask = loaded(path, size);
+        const MaskSource source(mask, {.size = size});
+        std::string voxels(groups.size(), '?');
+        source.read({Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
+        CHECK(voxels == groups);
+        const VoxelBox box{size / int64_t{3}, size - size / int64_t{4}};
+        std::string part(size_t(box.size().x * box.size().y * box.size().z), '?'), expected;
+        source.read(box, std::as_writable_bytes(std::span(part)));
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                expected += groups.substr(size_t(box.lower.x + size.x * (y + size.y * z)), size_t(box.size().x));
+        CHECK(part == expected);
+        const std::vector<MaskBrickChange> again = mask_changes(source, "a"), before = load_mask(path, size);
+        CHECK((again == before));
+    }
 }

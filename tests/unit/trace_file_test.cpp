@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 #include <set>
 
@@ -212,6 +213,94 @@ TEST_CASE("RSML: the longest way is the first axis, branches are roots below it,
         contains(side_text, "<polyline><point x=\"2\" y=\"0\" z=\"0\" /><point x=\"2\" y=\"3\" z=\"0\" /></polyline>"));
     CHECK(contains(main_text, "<sample value=\"4\" /><sample value=\"2\" /></function>"));  // 0.5 um is a pixel
     CHECK(side_text.ends_with("</root></root></plant></scene></rsml>"));                    // one in the other
+}
+
+TEST_CASE("RSML is read back: trees, places, radii and groups of nodes")
+{
+    const TemporaryFolder folder;
+    for (uint32_t seed = 0; seed < 30; ++seed) {
+        CAPTURE(seed);
+        const TraceGraph trace = random_trace(seed, false);
+        const auto path = folder.path / "a.rsml";
+        const std::vector<std::string> notes = save_trace(path, trace, SPACE, Loops::break_open);
+        const TraceGraph read = load_trace(path, SPACE).trace;
+        REQUIRE(read.nodes().size() == trace.nodes().size());
+        REQUIRE(read.internodes().size() == trace.internodes().size() - notes.size());
+        // Numbers are new; places tell which node is which.
+        std::map<uint32_t, uint32_t> old_of;
+        for (const auto& [number, node] : read.nodes())
+            for (const auto& [old, before] : trace.nodes()) {
+                if (std::abs(node.position.x - before.position.x) > 1e-9) continue;
+                old_of[number] = old;
+                CHECK(node.position.y == doctest::Approx(before.position.y));
+                CHECK(node.position.z == doctest::Approx(before.position.z));
+                CHECK(node.radius == doctest::Approx(before.radius));
+                CHECK(node.group == before.group);
+            }
+        CHECK(old_of.size() == read.nodes().size());
+        for (const auto& [number, internode] : read.internodes())
+            CHECK(trace.internode_between(old_of.at(internode.a), old_of.at(internode.b)).has_value());
+    }
+}
+
+TEST_CASE("RSML of other programs is read, whatever else is in it")
+{
+    const TemporaryFolder folder;
+    const auto path = folder.write("a.rsml", R"(<?xml version="1.0" encoding="UTF-8"?>
+<rsml xmlns:po="http://www.plantontology.org/xml-dtd/po.dtd"><metadata><version>1</version><unit>micron</unit>
+<resolution>4</resolution><software>smartroot</software><image><name>x.tif</name></image></metadata>
+<scene><plant ID="p" label="oat"><annotations/><root ID="1" po:accession="PO:0020127"><properties><angle>3</angle>
+</properties><geometry><rootnavspline/><polyline><point x="4" y="8"/><point x="8" y="8" time="2"/><point x="12" y="8"/>
+</polyline></geometry><functions><function name="orientation" domain="polyline"><sample>1</sample></function>
+<function name="diameter" domain="length"><sample>9</sample></function>
+<function name="diameter" domain="polyline"><sample>8</sample><sample value="4"/><sample> 2 </sample></function></functions>
+<root ID="1.1"><geometry><polyline><point x="8" y="8"/><point x="8" y="12"/></polyline></geometry></root>
+<root ID="1.2"><geometry><polyline><point x="12" y="12"/><point x="12" y="16"/></polyline></geometry></root>
+</root></plant></scene></rsml>)");
+    const TraceFile read = load_trace(path, SPACE);
+    const TraceGraph expected = trace_of({{{1, 2, 0}, 1, 1},
+                                          {{2, 2, 0}, 0.5, 1},
+                                          {{3, 2, 0}, 0.25, 1},
+                                          {{2, 3, 0}, 0.25, 1},  // begins at its parent's node
+                                          {{3, 3, 0}, 0.25, 1},  // begins beside it
+                                          {{3, 4, 0}, 0.25, 1}},
+                                         {{0, 1, 1}, {1, 2, 1}, {1, 3, 1}, {2, 4, 1}, {4, 5, 1}});
+    CHECK((shape_of(read.trace) == shape_of(expected)));
+    CHECK(!read.space);
+}
+
+TEST_CASE("RSML that is none is refused in words")
+{
+    const TemporaryFolder folder;
+    const auto told = [&](const std::string& text) {
+        const auto path = folder.write("a.rsml", text);
+        const std::string error = error_of([&] { load_trace(path, {}); });
+        CHECK(contains(error, "a.rsml"));
+        return error;
+    };
+    const auto root = [](const std::string& inside) {
+        return "<rsml><metadata/><scene><plant><root ID='7'>" + inside + "</root></plant></scene></rsml>";
+    };
+    CHECK(contains(told(""), "cannot be read as RSML"));
+    CHECK(contains(told("<graphml/>"), "it has no element rsml"));
+    CHECK(contains(told("<rsml/>"), "has no element scene"));
+    CHECK(contains(told(root("")), "root '7': has no geometry with a polyline of points"));
+    CHECK(contains(told(root("<geometry><polyline><point x='1'/></polyline></geometry>")), "root '7': y is ''"));
+    CHECK(contains(told(root("<geometry><polyline><point x='nan' y='1'/></polyline></geometry>")), "x is 'nan'"));
+    CHECK(contains(told(root("<properties><group>256</group></properties><geometry><polyline><point x='1' y='1'/>"
+                             "</polyline></geometry>")),
+                   "group is '256'"));
+    for (const char* resolution : {"0", "-1", "inf", "x", "1e-300"})
+        CHECK(contains(
+            told("<rsml><metadata><resolution>" + std::string(resolution) + "</resolution></metadata><scene/></rsml>"),
+            "metadata: resolution is '" + std::string(resolution) + "'"));
+    const auto path = folder.write("a.rsml", "<rsml><metadata><unit>cm</unit></metadata><scene/></rsml>");
+    CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit 'cm'; expected 'um'"));
+    // Nested as deep as a file can be.
+    std::string deep = "<rsml><scene><plant>", end;
+    for (int i = 0; i < 100'000; ++i) deep += "<root><geometry><polyline><point x='1' y='1'/></polyline></geometry>";
+    for (int i = 0; i < 100'000; ++i) end += "</root>";
+    CHECK(load_trace(folder.write("a.rsml", deep + end + "</plant></scene></rsml>"), {}).trace.nodes().size() == 1);
 }
 
 TEST_CASE("a trace of another volume is refused with both named")

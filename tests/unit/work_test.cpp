@@ -27,7 +27,7 @@ public:
                 .trace = path / "a.graphml",
                 .density = path / "a.offset",
                 .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
-                .space = {ANNOTATED_SIZE, {1.0, 1.0, 1.5}, "um"}};
+                .volume = annotated_volume()};
     }
     /// A work as it was left; what opening said goes to `said`.
     std::unique_ptr<Work> open(Work::Start start = Work::Start::as_left) const

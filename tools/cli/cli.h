@@ -68,6 +68,7 @@ void add_render(CLI::App& program);
 void add_annotate(CLI::App& program);
 void add_export(CLI::App& program);
 void add_evaluate(CLI::App& program);
+void add_label(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);

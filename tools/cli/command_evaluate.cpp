@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "engine/annotation/mask_file.h"
+#include "engine/annotation/mask_source.h"
 #include "engine/annotation/measures.h"
 #include "engine/annotation/trace_score.h"
 #include "tools/cli/cli.h"
@@ -24,37 +25,6 @@ bool is_bare_mask(const std::filesystem::path& path)
     return path.extension() == ".mask";
 }
 
-/// Of a file that says itself how large it is.
-Mask mask_of(const VolumeSource& source, const std::string& path)
-{
-    const VolumeInfo& info = source.info();
-    if (info.type != VoxelType::uint8)
-        fail(path, ": holds voxels of type ", name_of(info.type), "; expected uint8, colour groups");
-    Mask mask(info.size);
-    const glm::i64vec3 counts = mask.brick_counts();
-    constexpr int64_t SIDE = gpu::BRICK_SIZE;
-    std::vector<uint8_t> voxels;
-    for (int64_t brick = 0; brick < counts.x * counts.y * counts.z; ++brick) {
-        const Size3 first = SIDE * Size3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
-        const VoxelBox box{first, glm::min(first + SIDE, info.size)};
-        voxels.resize(size_t(box.size().x * box.size().y * box.size().z));
-        source.read(box, std::as_writable_bytes(std::span(voxels)));
-        MaskBrickChange change{brick, {}};
-        for (size_t i = 0; i < voxels.size(); ++i) {
-            const auto at = int64_t(i);
-            const auto place = uint16_t(at % box.size().x + SIDE * (at / box.size().x % box.size().y +
-                                                                    SIDE * (at / (box.size().x * box.size().y))));
-            if (voxels[i] == 0) continue;
-            if (!change.runs.empty() && change.runs.back().last + 1 == place && change.runs.back().after == voxels[i])
-                change.runs.back().last = place;
-            else
-                change.runs.push_back({place, place, 0, voxels[i]});
-        }
-        if (!change.runs.empty()) mask.apply(change, Direction::forwards);
-    }
-    return mask;
-}
-
 Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
 {
     if (!is_bare_mask(path)) {
@@ -62,7 +32,9 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
         if (space && source->info().size != space->size)
             fail(path, ": has ", source->info().size.x, " x ", source->info().size.y, " x ", source->info().size.z,
                  " voxels; expected ", space->size.x, " x ", space->size.y, " x ", space->size.z);
-        return mask_of(*source, path);
+        Mask mask(source->info().size);
+        for (const MaskBrickChange& change : mask_changes(*source, path)) mask.apply(change, Direction::forwards);
+        return mask;
     }
     if (!space)
         throw UsageError(
@@ -201,7 +173,7 @@ void add_evaluate(CLI::App& program)
     CLI::App* command = program.add_subcommand("evaluate", "Measures how well an annotation agrees with the truth");
     command->add_option("--truth-mask", options->truth_mask, "The true mask (.mask, or a volume of uint8)")->required();
     command->add_option("--mask", options->mask, "The mask to evaluate");
-    command->add_option("--truth-trace", options->truth_trace, "The true trace (.graphml, .txt, .swc)");
+    command->add_option("--truth-trace", options->truth_trace, "The true trace (.graphml, .txt, .swc, .rsml)");
     command->add_option("--trace", options->trace, "The trace to evaluate");
     command->add_option("--volume", options->volume,
                         "Volume, project or session that all are of: size, spacing and unit where no file states them");

@@ -1,10 +1,16 @@
 // shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
 
-#include "engine/annotation/mask_export.h"
-#include "engine/annotation/mask_file.h"
+#include <algorithm>
+#include <cmath>
+
+#include "engine/annotation/mask_image.h"
+#include "engine/annotation/mask_import.h"
 #include "engine/annotation/measures.h"
+#include "engine/annotation/offset_export.h"
+#include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_mesh.h"
 #include "engine/base/atomic_file.h"
+#include "engine/base/image.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -13,8 +19,8 @@ namespace {
 
 struct Options {
     Common common;
-    std::string project, mask, trace, mesh, metrics;
-    bool break_loops = false;
+    std::string project, mask, offset, trace, mesh, metrics;
+    bool break_loops = false, labels = false;
 };
 
 void check_extension(const char* option, const std::string& path, const std::vector<std::string>& known)
@@ -26,6 +32,42 @@ void check_extension(const char* option, const std::string& path, const std::vec
         all += (all.empty() ? "" : ", ") + extension;
     }
     throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
+}
+
+uint8_t byte_of(double share)
+{
+    return uint8_t(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+}
+
+/// The looks of the groups that are painted or set up.
+LabelImage label_image_of(const Session& session, const Mask& mask)
+{
+    LabelImage image{.painted_on = session.volume_hash};
+    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group) {
+        if (voxels[size_t(group)] == 0 && !session.groups.contains(uint8_t(group))) continue;
+        const ColorGroup look = group_of(session.groups, uint8_t(group));
+        const auto channel = [&](int index) { return byte_of(srgb_encode(std::clamp(look.color[index], 0.0, 1.0))); };
+        image.colors.push_back({group, {channel(0), channel(1), channel(2), byte_of(look.opacity)}, look.name});
+    }
+    return image;
+}
+
+void check_mask_name(const std::string& path)
+{
+    if (!path.empty() && !is_mask_export(path))
+        throw UsageError(sentence("--mask is '", path, "'; expected a name that ends in one of: .mask, .nrrd, .tif, ",
+                                  ".tiff, .zarr, or PROJECT/labels/NAME"));
+}
+
+/// PROJECT/labels/mask; nothing where it is not asked for.
+std::string project_labels(const Options& options)
+{
+    if (!options.labels) return {};
+    const std::filesystem::path project = options.project;
+    if (!std::filesystem::exists(project / ".zattrs"))
+        fail(options.project, ": is no project folder; expected one, to write --labels into, or --mask with a name");
+    return (project / "labels" / "mask").string();
 }
 
 /// Fails where a trace is asked for, and there is none.
@@ -72,15 +114,17 @@ Json to_json(const std::vector<std::string>& written, const Mask& mask, const Tr
 
 void run(const Options& options)
 {
-    check_extension("--mask", options.mask, {".mask", ".nrrd", ".tif", ".tiff"});
+    check_mask_name(options.mask);
+    check_extension("--offset", options.offset, {".offset", ".nrrd", ".tif", ".tiff"});
     check_extension("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_extension("--mesh", options.mesh, {".obj", ".ply"});
     check_extension("--metrics", options.metrics, {".csv"});
     const OpenedSession opened = open_session(options.project, options.common.settings);
     warn(opened.source->info().warnings, options.common);
-    const TraceSpace space = space_of(opened.source->info());
-    Work work(space.size, opened.source->info().type);
-    warn(work.open(work_files(opened.session, opened.source->info())), options.common);
+    const VolumeInfo& volume = opened.source->info();
+    const TraceSpace space = space_of(volume);
+    Work work(volume.size, volume.type);
+    warn(work.open(work_files(opened.session, volume)), options.common);
     const Mask& mask = work.document().mask;
     const TraceGraph& trace = work.document().trace;
     if (!options.trace.empty() || !options.mesh.empty()) expect_trace(opened.session, trace);
@@ -95,9 +139,14 @@ void run(const Options& options)
         warn(left_out, options.common);
         wrote(options.trace);
     }
-    if (!options.mask.empty()) {
-        export_mask(options.mask, mask, space);
-        wrote(options.mask);
+    for (const std::string& path : {options.mask, project_labels(options)}) {
+        if (path.empty()) continue;
+        export_mask(path, mask, volume, label_image_of(opened.session, mask));
+        wrote(path);
+    }
+    if (!options.offset.empty()) {
+        export_offsets(options.offset, work.document().density, volume);
+        wrote(options.offset);
     }
     if (!options.mesh.empty()) {
         save_trace_mesh(options.mesh, trace, space);
@@ -116,9 +165,11 @@ void run(const Options& options)
 void add_export(CLI::App& program)
 {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("export", "Writes mask, trace and measures for other programs");
+    CLI::App* command = program.add_subcommand("export", "Writes mask, offsets, trace and measures for other programs");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
-    command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif)");
+    command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
+    command->add_flag("--labels", options->labels, "The painted voxels as OME-Zarr labels in the project, labels/mask");
+    command->add_option("--offset", options->offset, "The density offsets (.offset, .nrrd, .tif)");
     command->add_option("--trace", options->trace, "Nodes and internodes (.graphml, .txt, .swc, .rsml)");
     command->add_flag("--break-loops", options->break_loops,
                       "Open each loop where its last internode closed it, for .swc and .rsml, which hold trees");

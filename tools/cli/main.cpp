@@ -21,6 +21,7 @@ int run(int argc, char** argv)
     shvr::cli::add_annotate(program);
     shvr::cli::add_export(program);
     shvr::cli::add_evaluate(program);
+    shvr::cli::add_label(program);
     shvr::cli::add_compare(program);
     shvr::cli::add_profile(program);
     shvr::cli::add_phantom(program);

@@ -1,0 +1,96 @@
+#pragma once
+// Sets of provisional labels, joined as a scan finds that they belong together: union-find with path halving (Tarjan and
+// van Leeuwen 1984) in arrays, where the smallest label of a set stands for it, as in Wu, Otoo and Suzuki 2009. So a label
+// is never smaller than the one it leads to, and one ascending pass resolves all.
+//
+// Labels lie in blocks that never move: adding them copies nothing, forests are appended to each other at no cost, and the
+// memory is what `bytes` says. One thread at a time.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace shvr {
+
+class LabelForest {
+public:
+    static constexpr uint32_t BLOCK = uint32_t{1} << 14;
+    /// Labels that there can be.
+    static constexpr uint64_t MOST = uint64_t{1} << 32;
+
+    /// A set of its own. The caller sees to it that there are no more than MOST.
+    uint32_t add()
+    {
+        if (next_ % BLOCK == 0) add_block();
+        const auto label = static_cast<uint32_t>(next_++);
+        parent(label) = label;
+        return label;
+    }
+    /// Labels so far, those that `append` skipped included; their voxels are 0.
+    uint64_t size() const { return next_; }
+
+    uint32_t root_of(uint32_t label)
+    {
+        while (parent(label) != label) label = parent(label) = parent(parent(label));
+        return label;
+    }
+    /// Returns the label that stands for both.
+    uint32_t join(uint32_t a, uint32_t b)
+    {
+        a = root_of(a);
+        b = root_of(b);
+        if (a == b) return a;
+        if (a > b) std::swap(a, b);
+        parent(b) = a;
+        return a;
+    }
+
+    /// While there is work to do: what a label leads to. Afterwards: whatever the caller made of it.
+    uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
+    uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
+    /// Of the label's own runs.
+    int64_t& voxels(uint32_t label) { return counts_[label / BLOCK]->at(label % BLOCK); }
+
+    /// The other's labels become labels of this forest, higher by the result.
+    uint64_t append(LabelForest&& other)
+    {
+        const uint64_t base = blocks_.size() * uint64_t{BLOCK};
+        for (auto& block : other.blocks_) {
+            for (uint32_t& parent : block->parents) parent += static_cast<uint32_t>(base);
+            blocks_.push_back(std::move(block));
+        }
+        for (auto& counts : other.counts_) counts_.push_back(std::move(counts));
+        next_ = base + other.next_;
+        other = LabelForest();
+        return base;
+    }
+
+    /// Counts are not asked for any more.
+    void drop_counts() { counts_ = std::vector<std::unique_ptr<Counts>>(); }
+
+    int64_t bytes() const
+    {
+        return static_cast<int64_t>(blocks_.size() * (sizeof(Block) + sizeof(void*)) +
+                                    counts_.size() * (sizeof(Counts) + sizeof(void*)));
+    }
+
+private:
+    struct Block {
+        std::array<uint32_t, BLOCK> parents{};
+    };
+    using Counts = std::array<int64_t, BLOCK>;
+
+    void add_block()
+    {
+        blocks_.push_back(std::make_unique<Block>());
+        counts_.push_back(std::make_unique<Counts>());
+    }
+
+    std::vector<std::unique_ptr<Block>> blocks_;
+    std::vector<std::unique_ptr<Counts>> counts_;
+    uint64_t next_ = 0;
+};
+
+}  // namespace shvr

@@ -1,0 +1,52 @@
+#pragma once
+// Voxels at or above a threshold, as one bit each, a row at a time; and the runs of such voxels. Any thread.
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+/// Words of 64 bits that a row of so many voxels takes.
+inline int64_t words_of_row(int64_t voxels)
+{
+    return (voxels + 63) / 64;
+}
+
+class ThresholdBits {
+public:
+    /// In intensity units, as the voxels are; +-infinity is a threshold like any other, NaN is none (SHVR_CHECK).
+    ThresholdBits(VoxelType type, double threshold);
+
+    VoxelType type() const { return type_; }
+    /// Whether voxels within the range can be at or above the threshold.
+    bool reaches(const ValueRange& range) const { return range.lower <= range.upper && range.upper >= threshold_; }
+
+    /// Bit b of word w is voxel 64 w + b: 1 where it is at or above the threshold, which NaN never is; 0 beyond the row.
+    /// `voxels` has native byte order and is aligned as its type wants it.
+    void convert(std::span<const std::byte> voxels, std::span<uint64_t> words) const;
+
+private:
+    VoxelType type_;
+    double threshold_;
+};
+
+/// Appends, for each run of set bits, the first voxel and the one after the last. Bits beyond `voxels` are 0.
+inline void append_run_ends(std::span<const uint64_t> words, int64_t voxels, std::vector<uint32_t>& ends)
+{
+    uint64_t before = 0;
+    for (size_t word = 0; word < words.size(); ++word) {
+        const uint64_t bits = words[word];
+        // Set where a bit differs from the one before it.
+        uint64_t edges = bits ^ (bits << 1 | before);
+        before = bits >> 63;
+        for (; edges != 0; edges &= edges - 1)
+            ends.push_back(static_cast<uint32_t>(64 * word) + static_cast<uint32_t>(std::countr_zero(edges)));
+    }
+    if (before != 0) ends.push_back(static_cast<uint32_t>(voxels));
+}
+
+}  // namespace shvr
