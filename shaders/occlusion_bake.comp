@@ -7,10 +7,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "leap.h"
-#include "occlusion.h"
+#include "occlusion_bake.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
-layout(binding = 0, scalar) readonly buffer Params { OcclusionParams data; } params_block;
+layout(binding = 0, scalar) readonly buffer Params { OcclusionBakeParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Jobs { OcclusionJob list[]; } jobs;
 layout(binding = 2, scalar) readonly buffer Around { uint entries[]; } bricks_around;
 #ifdef FILTERED
@@ -18,107 +18,88 @@ layout(binding = 3) uniform sampler3D atlas;
 #else
 layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
-layout(binding = 4, r8ui) uniform readonly uimage3D cells_1;
-layout(binding = 5, r8ui) uniform readonly uimage3D cells_2;
-layout(binding = 6, r8ui) uniform readonly uimage3D cells_4;
+layout(binding = 4, r32ui) uniform readonly uimage3D near;
+layout(binding = 5, r8ui) uniform readonly uimage3D around_2;
+layout(binding = 6, r8ui) uniform readonly uimage3D around_4;
 layout(binding = 7, r8ui) uniform writeonly uimage3D values;
-layout(binding = 8, scalar) readonly buffer Directions { vec4 list[]; } directions;
-layout(binding = 9, scalar) readonly buffer Taps { OcclusionTap list[]; } taps;
-// What a tap's stretch leaves of the light, by the code it meets: made in double, and no power in the innermost loop.
-layout(binding = 10, scalar) readonly buffer Passed { float by_code[]; } passed;
 #ifdef PAGED
-layout(binding = 11, r8ui) uniform readonly uimage3D cell_leap;
+layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 #else
-layout(binding = 11, r32ui) uniform readonly uimage3D leap;
+layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
 
+#include "occlusion_around.glsl"
 #include "voxel_code.glsl"
 
-shared uint around[OCCLUSION_AROUND];
-shared uint blocks[64];
-shared uint block_count;
+const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
+shared uint cells[CELLS_OF_ONE];
+shared uint cell_count;
 
-uint entry_at(uint reach, ivec3 brick_offset)
+// In or beside which anything shows. With `grow` alone beside counts: voxels as far as one.
+bool any_cell_is_occupied(const OcclusionBakeParams params, const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
-    const uint side = 2u * reach + 1u;
-    return around[grid_index(uvec3(brick_offset + int(reach)), uvec3(side))];
-}
-
-// In cells of the brick; those of its neighbours lie beside.
-bool cell_is_occupied(const OcclusionParams params, const OcclusionJob job, ivec3 cell)
-{
-#ifdef PAGED
-    const uint entry = entry_at(params.reach, cell >> 3);
-    const ivec3 in_brick = int(BRICK_CELLS) * ivec3(job.brick) + cell >> int(entry >> OCCLUSION_LEVEL_SHIFT) & 7;
-    return entry != 0u && imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(entry)) + in_brick).x == 0u;
-#else
-    const ivec3 at = int(BRICK_CELLS) * ivec3(job.brick) + cell;
-    if (any(lessThan(at, ivec3(0))) || any(greaterThanEqual(at, ivec3(params.cell_counts)))) return false;
-    return imageLoad(leap, at).x >> LEAP_DISTANCE_SHIFT == 0u;
-#endif
-}
-
-// `cells`: how many a side hold the voxels, as long as `grow` is 0.
-bool any_cell_is_occupied(const OcclusionParams params, const OcclusionJob job, ivec3 first_voxel, int cells)
-{
-    const int grow = int(params.grow), side = cells + grow * cells;   // the same for all lanes: they stay together
-    const ivec3 first = first_voxel - grow >> 2, last = first_voxel + 4 * (cells - 1) + (cells > 1 ? 3 : 0) + grow >> 2;
+    const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes: they stay together
+    const ivec3 first = first_voxel - grow >> 2, last = last_voxel + grow >> 2;
     bool found = false;
     for (int i = 0; i < side * side * side; ++i) {
         const ivec3 cell = min(first + ivec3(i % side, i / side % side, i / (side * side)), last);
-        found = cell_is_occupied(params, job, cell) || found;
+        found = cell_is_occupied(params.reach, params.cell_counts, job, cell) || found;
     }
     return found;
 }
 
-// Where a voxel, in voxels from the brick's corner, lies in the images of cells of `side` voxels.
-ivec3 cell_texel(const OcclusionParams params, const OcclusionJob job, ivec3 voxel, uint shift)
-{
-    const uint entry = entry_at(params.reach, voxel >> 5);
-#ifdef PAGED
-    const ivec3 in_brick = int(BRICK_SIZE) * ivec3(job.brick) + voxel >> int(entry >> OCCLUSION_LEVEL_SHIFT) & 31;
-#else
-    const ivec3 in_brick = voxel & 31;
-#endif
-    return ivec3((BRICK_SIZE >> shift) * unpack_slot(entry)) + (in_brick >> int(shift));
-}
-
 struct Ray {
-    vec3 origin;
+    vec3 origin;   // voxels from the brick's corner
     vec3 direction;
     vec3 lift;
 };
 
-ivec3 voxel_at(const Ray ray, uint tap)
+vec3 place_of(const Ray ray, const OcclusionTap tap)
 {
-    return ivec3(floor(ray.origin + taps.list[tap].distance * ray.direction + taps.list[tap].lift * ray.lift));
+    return ray.origin + tap.distance * ray.direction + tap.lift * ray.lift;
 }
 
 // x: light that is left; y: what came in.
-vec2 after(vec2 light, uint tap, uint code)
+vec2 after(vec2 light, const OcclusionTap tap, float opacity)
 {
-    const float left = passed.by_code[tap * 256u + code];
-    return vec2(light.x * left, light.y + light.x * taps.list[tap].stretch * (0.5 + 0.5 * left));
+    const float left = 1.0 - opacity;
+    return vec2(light.x * left, light.y + light.x * tap.stretch * (0.5 + 0.5 * left));
 }
 
-float along(const OcclusionParams params, const OcclusionJob job, const Ray ray, ivec3 voxel)
+float opacity_of(uint code)
 {
+    return float(code * code) * (1.0 / 65025.0);
+}
+
+// No buffer is read here and nothing depends on a count: SIMD devices would do it lane by lane.
+float along(const OcclusionBakeParams params, const Ray ray, ivec3 voxel)
+{
+    const int behind = int(gl_WorkGroupID.x);
+    const ivec3 aprons = ivec3(OCCLUSION_NEAR_APRON, params.aprons[0], params.aprons[1]);
+    const ivec3 beyond = (ivec3(BRICK_SIZE, BRICK_SIZE >> 1u, BRICK_SIZE >> 2u) + 2 * aprons) * behind;
     vec2 light = vec2(1.0, params.first);
-    uint tap = 0u;
-    for (; tap < params.taps_end[0]; ++tap) {
-        const ivec3 at = voxel_at(ray, tap);
-        const uint code = imageLoad(cells_1, cell_texel(params, job, at, 0u)).x;
-        light = after(light, tap, at == voxel ? 0u : code);   // where voxels are long, a step may not leave one
+    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
+        const OcclusionTap tap = params.taps[i];
+        const ivec3 half_voxel = ivec3(floor(2.0 * place_of(ray, tap))), at = half_voxel >> 1, half_of = half_voxel & 1;
+        const uint packed = imageLoad(near, at + aprons.x + ivec3(0, 0, beyond.x)).x;
+        const float opacity = near_opacity(packed, uint(half_of.x | half_of.y << 1 | half_of.z << 2));
+        light = after(light, tap, at == voxel ? 0.0 : opacity);   // where voxels are long, a step may not leave one
     }
-    for (; tap < params.taps_end[1]; ++tap)
-        light = after(light, tap, imageLoad(cells_2, cell_texel(params, job, voxel_at(ray, tap), 1u)).x);
-    for (; tap < params.taps_end[2]; ++tap)
-        light = after(light, tap, imageLoad(cells_4, cell_texel(params, job, voxel_at(ray, tap), 2u)).x);
+    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
+        const OcclusionTap tap = params.taps[OCCLUSION_TAPS_EACH + i];
+        const ivec3 at = ivec3(floor(0.5 * place_of(ray, tap))) + aprons.y + ivec3(0, 0, beyond.y);
+        light = after(light, tap, opacity_of(imageLoad(around_2, at).x));
+    }
+    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
+        const OcclusionTap tap = params.taps[2u * OCCLUSION_TAPS_EACH + i];
+        const ivec3 at = ivec3(floor(0.25 * place_of(ray, tap))) + aprons.z + ivec3(0, 0, beyond.z);
+        light = after(light, tap, opacity_of(imageLoad(around_4, at).x));
+    }
     return light.y;
 }
 
 // To the voxel, and to where other bricks keep a copy of it. An apron that no brick of this level writes repeats its edge.
-void store(const OcclusionParams params, const OcclusionJob job, ivec3 voxel, uint value)
+void store(const OcclusionBakeParams params, const OcclusionJob job, ivec3 voxel, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
     const uint copies = side == ivec3(0) ? 1u : 8u;
@@ -133,24 +114,25 @@ void store(const OcclusionParams params, const OcclusionJob job, ivec3 voxel, ui
 
 void main()
 {
-    const OcclusionParams params = params_block.data;
+    const OcclusionBakeParams params = params_block.data;
     const OcclusionJob job = jobs.list[gl_WorkGroupID.x];
-    const uint lane = gl_LocalInvocationIndex, side = 2u * params.reach + 1u;
-    for (uint i = lane; i < side * side * side; i += 64u) around[i] = bricks_around.entries[job.around + i];
-    if (lane == 0u) block_count = 0u;
+    const uint lane = gl_LocalInvocationIndex;
+    load_around(job, params.reach);
+    if (lane == 0u) cell_count = 0u;
     barrier();
     // Skipped by trip counts, never by branches: SIMD devices run those masked.
-    const ivec3 own_block = 8 * ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
-    const bool is_mine = lane % OCCLUSION_SPLIT == gl_WorkGroupID.z;
-    if (is_mine && any_cell_is_occupied(params, job, own_block, 2)) blocks[atomicAdd(block_count, 1u)] = lane;
+    for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
+        const uint cell = i * OCCLUSION_SPLIT + gl_WorkGroupID.z;
+        const ivec3 first = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u);
+        if (any_cell_is_occupied(params, job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
+    }
     barrier();
 
-    const uint turns = 8u * block_count;
+    const uint turns = cell_count;
     for (uint turn = 0u; turn < turns; ++turn) {
-        const uint block = blocks[turn >> 3u];
-        const ivec3 voxel = 8 * ivec3(block & 3u, block >> 2u & 3u, block >> 4u) +
-                            ivec3(gl_LocalInvocationID.xy, turn & 7u);
-        const uint rays = any_cell_is_occupied(params, job, voxel, 1) ? params.rays : 0u;
+        const uint cell = cells[turn];
+        const ivec3 voxel = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) + ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
+        const uint rays = any_cell_is_occupied(params, job, voxel, voxel) ? params.rays : 0u;
 
         const ivec3 texel = ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;
         const vec3 slope = 0.5 * params.inverse_spacing *
@@ -166,12 +148,18 @@ void main()
         Ray ray;
         ray.origin = vec3(voxel) + 0.5;
         ray.lift = surface * normal * params.inverse_spacing;
+        vec2 turned = vec2(1.0, 0.0);
+        const float apart = 2.0 / float(params.rays);
         for (uint k = 0u; k < rays; ++k) {
+            // Spherical Fibonacci points (Gonzalez 2010).
+            const float height = 1.0 - apart * (float(k) + 0.5);
+            const vec3 direction = vec3(sqrt(1.0 - height * height) * turned, height);
+            turned = vec2(turned.x * params.turn_cos - turned.y * params.turn_sin,
+                          turned.x * params.turn_sin + turned.y * params.turn_cos);
             // Rays from behind the surface come from before it; the weaker the surface, the fewer do.
-            const vec3 direction = directions.list[k].xyz;
             const vec3 ahead = dot(direction, normal) < surface - 1.0 ? -direction : direction;
             ray.direction = ahead * params.inverse_spacing;
-            sum += along(params, job, ray, voxel);
+            sum += along(params, ray, voxel);
         }
         const float value = sum / (params.radius * float(params.rays));
         if (rays > 0u) store(params, job, voxel, uint(255.0 * min(value, 1.0) + 0.5));

@@ -1,4 +1,4 @@
-// One brick per workgroup: what stops light in it, at three sizes (occlusion.h).
+// One brick per workgroup: what stops light in it, at two sizes (occlusion.h).
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,46 +14,16 @@ layout(binding = 3) uniform sampler3D atlas;
 #else
 layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
-layout(binding = 4, r8ui) uniform writeonly uimage3D cells_1;
-layout(binding = 5, r8ui) uniform writeonly uimage3D cells_2;
-layout(binding = 6, r8ui) uniform writeonly uimage3D cells_4;
-#ifdef MASKED
-layout(binding = 7, r8ui) uniform readonly uimage3D mask;
-layout(binding = 8, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
-layout(binding = 9, scalar) readonly buffer GroupOpacities { float values[]; } group_opacities;
-
-#ifdef PAGED
-#define MASK_TABLE_HASHED
-#endif
-#include "mask.glsl"
-#endif
+layout(binding = 4, r8ui) uniform writeonly uimage3D cells_2;
+layout(binding = 5, r8ui) uniform writeonly uimage3D cells_4;
+#include "occlusion_opacity.glsl"
 #include "voxel_code.glsl"
-
-float opacity_of(const OcclusionCellsParams params, float code)
-{
-    const float last = float(params.table_entries - 1u);
-    const float at = clamp((code - params.table_lower) * params.table_scale, 0.0, last);
-    const uint entry = uint(min(at, last - 1.0));
-    const float opacity = mix(opacities.values[entry], opacities.values[entry + 1u], at - float(entry));
-    return code >= params.table_lower && code <= params.table_upper ? opacity : 0.0;
-}
 
 float opacity_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)
 {
-    float opacity = opacity_of(params, code_at(ivec3(slot_origin(job.slot) + BRICK_APRON + voxel)));
-    const float side = float(1u << params.level);
-    const vec3 centre = side * (vec3(job.brick * BRICK_SIZE + voxel) + 0.5);
-    const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
-#ifdef MASKED
-    // Held inside: what is outside stops nothing, whatever is found here.
-    const uvec3 painted = min(uvec3(centre), BRICK_SIZE * params.brick_counts - 1u);
-    const uint slot = mask_slot_of(painted / BRICK_SIZE, params.brick_counts);
-    if (slot != 0u) {
-        const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + painted % BRICK_SIZE)).x;
-        opacity = group != 0u ? group_opacities.values[group] : opacity;
-    }
-#endif
-    return inside ? opacity : 0.0;
+    const float opacity = opacity_of(params, code_at(ivec3(slot_origin(job.slot) + BRICK_APRON + voxel)));
+    const float held = opacity_held(params, float(1u << params.level) * (vec3(job.brick * BRICK_SIZE + voxel) + 0.5));
+    return held < 0.0 ? opacity : held;
 }
 
 uvec4 code_of(float opacity)
@@ -80,7 +50,6 @@ void main()
             for (uint corner = 0u; corner < 8u; ++corner) {
                 const uvec3 voxel = 2u * half_block + corner_of_cube(corner);
                 const float one = opacity_at(params, job, voxel);
-                imageStore(cells_1, ivec3(BRICK_SIZE * slot + voxel), code_of(one));
                 const float two = one * (2.0 - one);   // 1 - (1 - a)^2
                 sum_2 += two;
                 sum_4 += two * (2.0 - two);

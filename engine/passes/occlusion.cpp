@@ -11,13 +11,21 @@ namespace {
 /// Half a voxel more than what keeps a ray that grazes a plane out of it: real edges are a voxel or two wide.
 constexpr double LIFT = 1.5;
 constexpr double LIFT_OF_LARGE_CELLS = 0.5;  ///< per voxel of their side beyond the first
-constexpr double NO_SHADOW = 0.5;            ///< units: to the voxel's own border
 
-/// For a radius of 16: 1, 2 | 3.5, 5.5 | 8.5, 12.5, 15.25. Stretches of one, two and four units, as the cells have.
-constexpr double STRETCHES[] = {1, 1, 2, 2, 4, 4, 4};
-constexpr uint32_t SIZES[] = {0, 0, 1, 1, 2, 2, 2};  ///< log2 of the cell's side
-constexpr double PATTERN_RADIUS = 16.0;
-static_assert(std::size(STRETCHES) == gpu::OCCLUSION_MOST_TAPS);
+/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four, whose
+/// stretches grow with larger radii. Smaller ones have fewer looks.
+constexpr double NEAR_STRETCH = 0.875;
+constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border, for rays along its edges and those across
+constexpr uint32_t NEAR_TAPS = 2;
+constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
+constexpr uint32_t FAR_SIZES[] = {0, 0, 1, 1};
+constexpr uint32_t MOST_APRON = 14;     ///< in cells of any size, for the largest radius
+constexpr double MOST_STRETCHED = 1.2;  ///< before there is one look more
+static_assert(NEAR_TAPS + std::size(FAR_STRETCHES) == gpu::OCCLUSION_MOST_TAPS);
+static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::OCCLUSION_NEAR_APRON);
+
+/// From one direction to the next: the golden angle.
+const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 std::string variant(const char* kernel, const VolumeBinding& volume)
 {
@@ -26,37 +34,55 @@ std::string variant(const char* kernel, const VolumeBinding& volume)
 
 }  // namespace
 
+ResourceDesc occlusion_near_desc()
+{
+    constexpr uint32_t SIDE = gpu::OCCLUSION_NEAR_SIDE;
+    return image_desc(Format::r32_uint, {SIDE, SIDE, SIDE * gpu::OCCLUSION_SLICE});
+}
+
+ResourceDesc occlusion_around_desc(uint32_t size)
+{
+    const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MOST_APRON;
+    return image_desc(Format::r8_uint, {side, side, side * gpu::OCCLUSION_SLICE});
+}
+
 OcclusionTaps occlusion_taps(double radius)
 {
     OcclusionTaps result{.radius = radius, .first = radius < 1.0 ? radius : NO_SHADOW};
-    const double scale = std::max(1.0, radius / PATTERN_RADIUS);
+    if (radius < 1.0) return result;
     double begin = result.first;
-    for (size_t i = 0; radius >= 1.0 && i < std::size(STRETCHES) && begin < radius; ++i) {
-        double end = i == 0 ? scale + NO_SHADOW : begin + scale * STRETCHES[i];
-        // The last one takes the rest, and what would be too short for one of its own.
-        if (end + 0.25 > radius || i + 1 == std::size(STRETCHES)) end = radius;
-        const double cell = double(1u << SIZES[i]), stretch = end - begin;
-        result.taps.push_back({.distance = float(std::max(0.5 * (begin + end), 1.0)),
-                               .lift = float(LIFT + LIFT_OF_LARGE_CELLS * (cell - 1.0)),
-                               .stretch = float(stretch)});
-        for (uint32_t size = SIZES[i]; size < gpu::OCCLUSION_SIZES; ++size)
-            result.end[size] = uint32_t(result.taps.size());
-        for (int code = 0; code < 256; ++code) {
-            const double opacity = double(code * code) / (255.0 * 255.0);
-            result.passed.push_back(opacity < 1.0 ? float(std::exp(stretch / cell * std::log1p(-opacity))) : 0.0f);
-        }
-        begin = end;
+    const auto add = [&](double stretch, double lift) {
+        const double middle = begin + 0.5 * stretch;
+        result.taps.push_back({float(std::max(middle, 1.0)), float(lift), float(stretch)});
+        begin += stretch;
+    };
+    result.near_stretch = std::min(NEAR_STRETCH, (radius - begin) / NEAR_TAPS);
+    for (uint32_t i = 0; i < NEAR_TAPS; ++i) add(result.near_stretch, LIFT);
+    result.end.fill(NEAR_TAPS);
+    const double rest = radius - begin;
+    double covered = 0.0;
+    size_t count = 0;
+    while (rest > 1e-6 && count < std::size(FAR_STRETCHES) && rest > MOST_STRETCHED * covered)
+        covered += FAR_STRETCHES[count++];
+    if (count > 0) result.exponent = rest / covered;
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t size = FAR_SIZES[i];
+        const double cell = 2 << size;
+        add(result.exponent * FAR_STRETCHES[i], LIFT + LIFT_OF_LARGE_CELLS * (cell - 1.0));
+        for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
+        const gpu::OcclusionTap& tap = result.taps.back();
+        result.aprons[size] = uint32_t(std::ceil((double(tap.distance) + double(tap.lift)) / cell));
+        SHVR_CHECK(result.aprons[size] <= MOST_APRON);
     }
     return result;
 }
 
-std::vector<glm::vec4> occlusion_directions(uint32_t count)
+std::vector<glm::dvec3> occlusion_directions(uint32_t count)
 {
-    std::vector<glm::vec4> directions;
-    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    std::vector<glm::dvec3> directions;
     for (uint32_t k = 0; k < count; ++k) {
         const double z = 1.0 - (2.0 * k + 1.0) / count, r = std::sqrt(1.0 - z * z);
-        directions.emplace_back(r * std::cos(turn * k), r * std::sin(turn * k), z, 0.0);
+        directions.emplace_back(r * std::cos(TURN * k), r * std::sin(TURN * k), z);
     }
     return directions;
 }
@@ -81,60 +107,116 @@ void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<c
     if (!with_empty) return;
     const Resource zeros = filled(0);
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
-        occlusion.cells[size] =
-            graph.copy_to_image(zeros, occlusion.cells[size], {{0, glm::uvec3(0), glm::uvec3(gpu::BRICK_SIZE >> size)}},
-                                "clear occlusion cells");
+        occlusion.cells[size] = graph.copy_to_image(zeros, occlusion.cells[size],
+                                                    {{0, glm::uvec3(0), glm::uvec3(gpu::BRICK_SIZE >> (size + 1))}},
+                                                    "clear occlusion cells");
 }
+
+namespace {
+
+void bind_opacities(Pass& pass, const OcclusionCellsInput& input)
+{
+    if (input.mask) {
+        pass.read("mask", input.mask->mask);
+        pass.read("mask_table", input.mask->mask_table);
+        pass.block("group_opacities", std::span<const float>(input.group_opacities));
+    }
+    pass.block("opacities", std::span<const float>(input.opacities));
+}
+
+gpu::OcclusionCellsParams params_of(const OcclusionCellsInput& input)
+{
+    gpu::OcclusionCellsParams params = input.params;
+    if (input.mask) params.mask_slots = input.mask->slots;
+    return params;
+}
+
+void bind_leap(Pass& pass, const VolumeBinding& volume)
+{
+    if (volume.pages)
+        pass.read("cell_leap", volume.pages->cell_leap);
+    else
+        pass.read("leap", volume.leap);
+}
+
+constexpr const char* CELL_NAMES[] = {"cells_2", "cells_4"};
+constexpr const char* AROUND_NAMES[] = {"around_2", "around_4"};
+
+void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBinding& occlusion,
+            OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
+            std::span<const uint32_t> around)
+{
+    constexpr uint32_t SIDE = gpu::OCCLUSION_NEAR_SIDE;
+    const Resource zeros = graph.fill(graph.create("occlusion start", buffer_desc(uint64_t{4} * SIDE * SIDE * SIDE)), 0,
+                                      "start occlusion");
+    std::vector<ImageRegion> regions;
+    for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, SIDE * i}, glm::uvec3(SIDE)});
+    scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
+    Pass pass =
+        graph.compute(variant("occlusion_gather", volume) + (input.near.mask ? "_masked" : ""), "occlusion_gather");
+    gpu::OcclusionGatherParams params{.voxels = params_of(input.near),
+                                      .cell_counts = volume.cell_counts,
+                                      .reach = occlusion_reach(input.taps.radius),
+                                      .aprons = {},
+                                      .exponent = float(input.taps.exponent)};
+    std::ranges::copy(input.taps.aprons, params.aprons);
+    pass.block("params_block", std::span<const gpu::OcclusionGatherParams>(&params, 1));
+    pass.block("jobs", jobs);
+    pass.block("bricks_around", around);
+    bind_opacities(pass, input.near);
+    pass.read("atlas", volume.atlas);
+    bind_leap(pass, volume);
+    pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
+    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+        pass.read(CELL_NAMES[size], occlusion.cells[size]);
+        scratch.around[size] = pass.write(AROUND_NAMES[size], scratch.around[size]);
+    }
+    scratch.near = pass.write("near", scratch.near);
+}
+
+}  // namespace
 
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs)
 {
     Pass pass = graph.compute(variant("occlusion_cells", volume) + (input.mask ? "_masked" : ""), "occlusion_cells");
-    gpu::OcclusionCellsParams params = input.params;
-    if (input.mask) {
-        params.mask_slots = input.mask->slots;
-        pass.read("mask", input.mask->mask);
-        pass.read("mask_table", input.mask->mask_table);
-        pass.block("group_opacities", std::span<const float>(input.group_opacities));
-    }
+    const gpu::OcclusionCellsParams params = params_of(input);
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
-    pass.block("opacities", std::span<const float>(input.opacities));
+    bind_opacities(pass, input);
     pass.read("atlas", volume.atlas);
     pass.dispatch({8 * uint32_t(jobs.size()), 8, 1});
-    const char* const names[] = {"cells_1", "cells_2", "cells_4"};
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
-        occlusion.cells[size] = pass.write(names[size], occlusion.cells[size]);
+        occlusion.cells[size] = pass.write(CELL_NAMES[size], occlusion.cells[size]);
 }
 
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
-                    const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
+                    OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
                     std::span<const uint32_t> around)
 {
+    SHVR_CHECK(jobs.size() <= gpu::OCCLUSION_SLICE);
+    gather(graph, volume, occlusion, scratch, input, jobs, around);
     Pass pass = graph.compute(variant("occlusion_bake", volume), "occlusion_bake");
-    gpu::OcclusionParams params = input.params;
+    gpu::OcclusionBakeParams params = input.params;
     params.radius = float(input.taps.radius);
     params.first = float(input.taps.first);
-    params.rays = uint32_t(input.directions.size());
+    params.turn_cos = float(std::cos(TURN));
+    params.turn_sin = float(std::sin(TURN));
     params.reach = occlusion_reach(input.taps.radius);
-    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) params.taps_end[size] = input.taps.end[size];
+    std::ranges::copy(input.taps.aprons, params.aprons);
     params.cell_counts = volume.cell_counts;
-    pass.block("params_block", std::span<const gpu::OcclusionParams>(&params, 1));
+    std::ranges::fill(params.taps, gpu::OcclusionTap{.distance = 1.0f, .lift = 0.0f, .stretch = 0.0f});
+    // Those of a size begin at a place of their own.
+    for (uint32_t size = 0, i = 0; size <= gpu::OCCLUSION_SIZES; ++size)
+        for (uint32_t of_size = 0; i < input.taps.end[size]; ++i, ++of_size)
+            params.taps[gpu::OCCLUSION_TAPS_EACH * size + of_size] = input.taps.taps[i];
+    pass.block("params_block", std::span<const gpu::OcclusionBakeParams>(&params, 1));
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
-    pass.block("directions", std::span<const glm::vec4>(input.directions));
-    // Blocks are never empty.
-    const gpu::OcclusionTap no_tap{};
-    const float nothing = 1.0f;
-    pass.block("taps", input.taps.taps.empty() ? std::span(&no_tap, 1) : std::span(input.taps.taps));
-    pass.block("passed", input.taps.taps.empty() ? std::span(&nothing, 1) : std::span(input.taps.passed));
     pass.read("atlas", volume.atlas);
-    const char* const names[] = {"cells_1", "cells_2", "cells_4"};
-    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(names[size], occlusion.cells[size]);
-    if (volume.pages)
-        pass.read("cell_leap", volume.pages->cell_leap);
-    else
-        pass.read("leap", volume.leap);
+    pass.read("near", scratch.near);
+    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);
+    bind_leap(pass, volume);
     pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
     occlusion.values = pass.write("values", occlusion.values);
 }

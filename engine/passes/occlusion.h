@@ -5,31 +5,41 @@
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
-#include "shaders/occlusion.h"
+#include "shaders/occlusion_bake.h"
 
 namespace shvr {
 
 /// Images of slots, as many as the density atlas has.
 struct OcclusionBinding {
     Resource values;                                     ///< r8ui, BRICK_TEXELS a side
-    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r8ui; BRICK_SIZE a side, half, a quarter
+    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r8ui; half of BRICK_SIZE a side, a quarter
 };
+
+/// What is gathered for a slice of bricks, and forgotten: images of OCCLUSION_SLICE jobs.
+struct OcclusionScratch {
+    Resource near;                                        ///< r32ui, see near_opacity
+    std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r8ui, cells with aprons
+};
+ResourceDesc occlusion_near_desc();
+ResourceDesc occlusion_around_desc(uint32_t size);
 
 /// Where rays look, and what they find there does. Lengths in units of the brick's level.
 struct OcclusionTaps {
     double radius = 0.0;
     double first = 0.0;                   ///< what light always passes
-    std::vector<gpu::OcclusionTap> taps;  ///< those of small cells first; their stretches and `first` make the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> end{};  ///< taps of each size end here
-    std::vector<float> passed;                         ///< for each tap and code, the share of light that gets through
+    std::vector<gpu::OcclusionTap> taps;  ///< the nearest first; their stretches and `first` make the radius
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};  ///< taps that are near, and of each size of cells, end here
+    double near_stretch = 0.0;                             ///< of each near tap
+    double exponent = 1.0;                                 ///< from the way through a cell to the stretch of its taps
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};   ///< cells around a brick that taps may meet
 };
 /// The largest radius, in units of any level.
 inline constexpr double OCCLUSION_MOST_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
 /// Radii below 1 have no tap: light reaches every voxel.
 OcclusionTaps occlusion_taps(double radius);
 
-/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010); w is 0.
-std::vector<glm::vec4> occlusion_directions(uint32_t count);
+/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010); the kernel makes its own.
+std::vector<glm::dvec3> occlusion_directions(uint32_t count);
 
 /// Bricks on each side of a brick that its light comes from.
 uint32_t occlusion_reach(double radius);
@@ -48,13 +58,13 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs);
 
 struct OcclusionInput {
-    gpu::OcclusionParams params;  ///< but for what follows from the others
+    gpu::OcclusionBakeParams params;  ///< but for what follows from the others
     OcclusionTaps taps;
-    std::vector<glm::vec4> directions;
+    OcclusionCellsInput near;  ///< opacities of the near taps' stretch
 };
-/// All of one level. `around`: for each job the bricks around it, see OcclusionJob.
+/// All of one level, at most OCCLUSION_SLICE. `around`: for each job the bricks around it, see OcclusionJob.
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
-                    const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
+                    OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
                     std::span<const uint32_t> around);
 
 }  // namespace shvr

@@ -39,7 +39,9 @@ bool same_function(const Occlusion::Look& a, const Occlusion::Look& b)
 void Occlusion::clear()
 {
     values_.reset();
+    near_.reset();
     for (gpu::Storage& cells : cells_) cells.reset();
+    for (gpu::Storage& around : around_) around.reset();
     entries_.clear();
     look_.reset();
     volume_ = nullptr;
@@ -49,9 +51,12 @@ void Occlusion::clear()
 void Occlusion::create(const glm::uvec3& slots)
 {
     values_ = memory_.create("occlusion values", image_desc(Format::r8_uint, gpu::BRICK_TEXELS * slots));
-    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
+    near_ = memory_.create("occlusion scratch", occlusion_near_desc());
+    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         cells_[size] =
-            memory_.create("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> size) * slots));
+            memory_.create("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
+        around_[size] = memory_.create("occlusion scratch", occlusion_around_desc(size));
+    }
     images_are_new_ = true;
 }
 
@@ -243,7 +248,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
 {
     SHVR_CHECK(look_.has_value());
     sync();
-    const std::vector<BrickKey> keys = nearest(eye, most.bricks);
+    const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, gpu::OCCLUSION_SLICE));
     if (keys.empty()) return {};
     OcclusionBinding images = import(graph);
     std::vector<BrickKey> needed;
@@ -264,7 +269,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
     }
     add_cells(graph, volume, images, mask, stale);
     if (!is_enough) return {};
-    add_values(graph, volume, images, mask.has_value(), keys);
+    add_values(graph, volume, images, mask, keys);
     std::vector<VoxelBox> renewed;
     for (const BrickKey& key : keys) {
         VoxelBox voxels = voxels_of(key, volume_->info().size);
@@ -272,6 +277,28 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
         renewed.push_back({voxels.lower - apron, voxels.upper + apron});
     }
     return renewed;
+}
+
+/// Opacities of `stretch` reference lengths.
+OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const
+{
+    const gpu::BrickLeapParams& table = look_->visibility.params;
+    OcclusionCellsInput input;
+    input.params = {.table_lower = table.table_lower,
+                    .table_upper = table.table_upper,
+                    .table_scale = table.table_scale,
+                    .table_entries = table.table_entries,
+                    .level = uint32_t(level),
+                    .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
+                    .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
+                    .brick_counts = glm::uvec3(brick_counts(volume_->info().size)),
+                    .mask_slots = glm::uvec3(0)};
+    for (const glm::vec4& entry : bake_table(look_->function, stretch, table.table_entries))
+        input.opacities.push_back(entry.a);
+    input.mask = mask;
+    for (const double opacity : look_->groups)
+        input.group_opacities.push_back(float(opacity_of_step(opacity, stretch)));
+    return input;
 }
 
 void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
@@ -282,40 +309,26 @@ void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, Occlus
         const Entry& entry = entries_.at(key);
         jobs[key.level].push_back({glm::uvec3(key.brick), entry.slot});
     }
-    const gpu::BrickLeapParams& table = look_->visibility.params;
     for (const auto& [level, list] : jobs) {
-        const double unit = std::ldexp(1.0, level);
-        OcclusionCellsInput input;
-        input.params = {.table_lower = table.table_lower,
-                        .table_upper = table.table_upper,
-                        .table_scale = table.table_scale,
-                        .table_entries = table.table_entries,
-                        .level = uint32_t(level),
-                        .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
-                        .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
-                        .brick_counts = glm::uvec3(brick_counts(volume_->info().size)),
-                        .mask_slots = glm::uvec3(0)};
-        for (const glm::vec4& entry : bake_table(look_->function, unit, table.table_entries))
-            input.opacities.push_back(entry.a);
-        input.mask = mask;
-        for (const double opacity : look_->groups)
-            input.group_opacities.push_back(float(opacity_of_step(opacity, unit)));
         counts_.cells += list.size();
-        occlusion_cells(graph, volume, images, input, list);
+        occlusion_cells(graph, volume, images, cells_input(level, std::ldexp(1.0, level), mask), list);
     }
 }
 
-void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images, bool is_painted,
-                           const std::vector<BrickKey>& keys)
+void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                           const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys)
 {
     const int level = keys.front().level;
     const glm::dvec3& spacing = volume_->info().spacing;
-    OcclusionInput input{
-        .params = {}, .taps = occlusion_taps(radius_of(level)), .directions = occlusion_directions(look_->rays)};
+    OcclusionInput input{.params = {}, .taps = occlusion_taps(radius_of(level)), .near = {}};
+    input.params.rays = look_->rays;
+    // Where the radius is below a voxel nothing is near; tables are of some stretch all the same.
+    const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
+    input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;
     input.params.gradient_fade = float(look_->gradient_fade);
     input.params.full_sphere = look_->full_sphere;
-    input.params.grow = is_painted;
+    input.params.grow = mask.has_value();
     std::vector<gpu::OcclusionJob> jobs;
     std::vector<uint32_t> bricks_around;
     for (const BrickKey& key : keys) {
@@ -327,7 +340,10 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
         entry.needs_values = false;
     }
     counts_.values += jobs.size();
-    occlusion_bake(graph, volume, images, input, jobs, bricks_around);
+    OcclusionScratch scratch{.near = graph.import("occlusion scratch", near_.import())};
+    for (size_t size = 0; size < around_.size(); ++size)
+        scratch.around[size] = graph.import("occlusion scratch", around_[size].import());
+    occlusion_bake(graph, volume, images, scratch, input, jobs, bricks_around);
 }
 
 }  // namespace shvr

@@ -55,7 +55,7 @@ public:
     bool is_due();
     /// Bounds of one slice.
     struct Most {
-        size_t bricks = 1;       ///< whose values are made
+        size_t bricks = 1;       ///< whose values are made, up to gpu::OCCLUSION_SLICE
         size_t cell_bricks = 8;  ///< whose cells are made
     };
     /// Adds the next slice to a graph that must be submitted, and returns the voxels that it renews. `eye` in voxels.
@@ -89,10 +89,11 @@ private:
     bool is_candidate(const BrickKey& key, const Entry& entry) const;
     std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most) const;
     uint32_t around(const BrickKey& key, std::vector<BrickKey>* keys) const;
+    OcclusionCellsInput cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const;
     void add_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
                    const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys);
-    void add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images, bool is_painted,
-                    const std::vector<BrickKey>& keys);
+    void add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                    const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys);
 
     gpu::Memory& memory_;
     const DeviceVolume* volume_ = nullptr;
@@ -101,6 +102,8 @@ private:
     std::function<bool(const BrickKey&)> is_drawn_;
     gpu::Storage values_;
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> cells_;
+    gpu::Storage near_;
+    std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
     bool images_are_new_ = false;
     Entries entries_;
     uint64_t revision_ = 0;  ///< of the volume's places

@@ -180,7 +180,7 @@ Picture PictureJob::take()
 std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, const Camera& camera,
                                                       const RenderOptions& options)
 {
-    constexpr Occlusion::Most MOST{.bricks = 64, .cell_bricks = 512};
+    constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     std::vector<gpu::PassReport> passes;
     if (paged_ && draws_occlusion(session)) {
         occlusion_.look(occlusion_look(session), *volume_, mask_);

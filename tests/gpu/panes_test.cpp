@@ -22,21 +22,6 @@ ImageF part_of(const ImageF& image, const PixelBox& box)
     return part;
 }
 
-/// Trilinear between voxel centres, the border repeated.
-double value_at(const TestVolume& volume, const glm::dvec3& voxel)
-{
-    const glm::dvec3 lattice = voxel - 0.5, corner = glm::floor(lattice), f = lattice - corner;
-    double sum = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::ivec3 half(i & 1, i >> 1 & 1, i >> 2);
-        const glm::ivec3 at = glm::clamp(glm::ivec3(corner) + half, glm::ivec3(0), volume.size - 1);
-        const glm::dvec3 weights = glm::mix(1.0 - f, f, glm::dvec3(half));
-        sum += weights.x * weights.y * weights.z *
-               volume.voxels[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))];
-    }
-    return sum;
-}
-
 Session sliced(const std::vector<ControlPoint>& points, const glm::uvec2& size)
 {
     Session session = plain_session(points, size);
@@ -45,8 +30,6 @@ Session sliced(const std::vector<ControlPoint>& points, const glm::uvec2& size)
     return session;
 }
 
-const std::vector<ControlPoint> NOTHING{{70000.0, WHITE, 0.0}, {80000.0, WHITE, 1.0}};
-
 }  // namespace
 
 TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the transfer function hides")
@@ -54,7 +37,7 @@ TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the 
     TestVolume noise = noise_volume({40, 33, 50}, 4);
     noise.spacing = {1.0, 1.5, 0.75};
     load(noise);
-    Session session = sliced(NOTHING, {96, 80});
+    Session session = sliced(unseen_points(), {96, 80});
     session.probe.voxel = glm::dvec3(11.25, 20.5, 37.8);
     session.view.slices.black = 8000.0;
     session.view.slices.white = 60000.0;
@@ -97,7 +80,7 @@ TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the 
 TEST_CASE_FIXTURE(OnDevice, "paint lies over slices as thickly as it is told to")
 {
     load(constant_volume({40, 40, 40}, 32768.0));
-    Session session = sliced(NOTHING, {80, 80});
+    Session session = sliced(unseen_points(), {80, 80});
     session.probe.voxel = glm::dvec3(20.5);
     session.groups[3] = {.color = glm::dvec3(1.0, 0.0, 0.0), .opacity = 0.125};
     Annotator annotator(renderer());

@@ -6,7 +6,7 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
-#include "shaders/occlusion.h"
+#include "shaders/occlusion_bake.h"
 #include "shaders/pages.h"
 #include "shaders/paint.h"
 #include "shaders/preview.h"
@@ -100,13 +100,28 @@ Members brick_leap_jobs()
             MEMBER(BrickLeapJob, mask_slot)};
 }
 
-Members occlusion_params()
+Members occlusion_bake_params()
 {
-    return {
-        MEMBER(OcclusionParams, inverse_spacing), MEMBER(OcclusionParams, radius),      MEMBER(OcclusionParams, first),
-        MEMBER(OcclusionParams, gradient_fade),   MEMBER(OcclusionParams, full_sphere), MEMBER(OcclusionParams, rays),
-        MEMBER(OcclusionParams, reach),           MEMBER(OcclusionParams, taps_end),    MEMBER(OcclusionParams, grow),
-        MEMBER(OcclusionParams, cell_counts)};
+    return {MEMBER(OcclusionBakeParams, inverse_spacing),
+            MEMBER(OcclusionBakeParams, radius),
+            MEMBER(OcclusionBakeParams, first),
+            MEMBER(OcclusionBakeParams, gradient_fade),
+            MEMBER(OcclusionBakeParams, full_sphere),
+            MEMBER(OcclusionBakeParams, rays),
+            MEMBER(OcclusionBakeParams, turn_cos),
+            MEMBER(OcclusionBakeParams, turn_sin),
+            MEMBER(OcclusionBakeParams, reach),
+            MEMBER(OcclusionBakeParams, grow),
+            MEMBER(OcclusionBakeParams, aprons),
+            MEMBER(OcclusionBakeParams, cell_counts),
+            MEMBER(OcclusionBakeParams, taps)};
+}
+
+Members occlusion_gather_params()
+{
+    return {MEMBER(OcclusionGatherParams, voxels), MEMBER(OcclusionGatherParams, cell_counts),
+            MEMBER(OcclusionGatherParams, reach), MEMBER(OcclusionGatherParams, aprons),
+            MEMBER(OcclusionGatherParams, exponent)};
 }
 
 Members occlusion_cells_params()
@@ -153,12 +168,12 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     for (const char* kernel : {"raycast_occluded", "raycast_paged_filtered_masked_occluded"})
         check_members(kernel, "occlusion_look", {MEMBER(OcclusionLook, strength), MEMBER(OcclusionLook, curve)});
     for (const char* kernel : {"occlusion_bake", "occlusion_bake_paged_filtered"}) {
-        check_members(kernel, "params_block", occlusion_params());
+        check_members(kernel, "params_block", occlusion_bake_params());
         check_members(kernel, "jobs",
                       {MEMBER(OcclusionJob, brick), MEMBER(OcclusionJob, slot), MEMBER(OcclusionJob, around)});
-        check_members(kernel, "taps",
-                      {MEMBER(OcclusionTap, distance), MEMBER(OcclusionTap, lift), MEMBER(OcclusionTap, stretch)});
     }
+    for (const char* kernel : {"occlusion_gather", "occlusion_gather_paged_filtered_masked"})
+        check_members(kernel, "params_block", occlusion_gather_params());
     for (const char* kernel : {"occlusion_cells", "occlusion_cells_paged_filtered_masked"}) {
         check_members(kernel, "params_block", occlusion_cells_params());
         check_members(kernel, "jobs", {MEMBER(OcclusionCellsJob, brick), MEMBER(OcclusionCellsJob, slot)});

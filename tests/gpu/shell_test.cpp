@@ -13,23 +13,6 @@ using namespace shvr::test;
 
 namespace {
 
-const std::vector<ControlPoint> NOTHING{{70000.0, WHITE, 0.0}, {80000.0, WHITE, 1.0}};
-
-/// Trilinear between voxel centres, the border repeated.
-double value_at(const TestVolume& volume, const glm::dvec3& voxel)
-{
-    const glm::dvec3 lattice = voxel - 0.5, corner = glm::floor(lattice), f = lattice - corner;
-    double sum = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::ivec3 half(i & 1, i >> 1 & 1, i >> 2);
-        const glm::ivec3 at = glm::clamp(glm::ivec3(corner) + half, glm::ivec3(0), volume.size - 1);
-        const glm::dvec3 weights = glm::mix(1.0 - f, f, glm::dvec3(half));
-        sum += weights.x * weights.y * weights.z *
-               volume.voxels[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))];
-    }
-    return sum;
-}
-
 /// Where the field crosses `threshold` from `begin` to `end`: signs at small steps, then bisection.
 std::vector<double> crossings(const TestVolume& volume, const glm::dvec3& origin, const glm::dvec3& direction,
                               double begin, double end, double threshold)
@@ -52,7 +35,7 @@ public:
     /// White where a shell is, black at the far end of the volume's box.
     Session session_of(const glm::uvec2& pixels) const
     {
-        Session session = plain_session(NOTHING, pixels);
+        Session session = plain_session(unseen_points(), pixels);
         session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
         session.blend = {.size = 1.0, .rate = 1.0, .color = glm::dvec3(0.0)};
         session.render.background = glm::dvec4(0.0);

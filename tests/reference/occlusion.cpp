@@ -12,26 +12,44 @@ glm::dvec3 turned(const glm::dvec3& direction, const OcclusionSide& side)
     return glm::dot(direction, side.normal) < side.surface - 1.0 ? -direction : direction;
 }
 
-/// Of the way through the cell that holds a voxel, as its 8 bits keep it.
-double kept_opacity(const VoxelOpacity& opacity, const glm::ivec3& voxel, int side)
+/// The opacity that 8 bits keep.
+double kept(double opacity)
+{
+    const double code = std::floor(255.0 * std::sqrt(opacity) + 0.5);
+    return code * code / (255.0 * 255.0);
+}
+
+double opacity_of(double one, double stretch)
+{
+    return 1.0 - std::pow(1.0 - one, stretch);
+}
+
+/// Of the stretch of a tap in the cell that holds a voxel.
+double cell_opacity(const VoxelOpacity& opacity, const glm::ivec3& voxel, int side, double exponent)
 {
     const glm::ivec3 first = glm::ivec3(glm::floor(glm::dvec3(voxel) / double(side))) * side;
     double sum = 0.0;
     for (int z = 0; z < side; ++z)
         for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x) {
-                double left = 1.0;
-                for (int i = 0; i < side; ++i) left *= 1.0 - opacity(first + glm::ivec3(x, y, z));
-                sum += 1.0 - left;
-            }
-    const double code = std::floor(255.0 * std::sqrt(sum / (side * side * side)) + 0.5);
-    return code * code / (255.0 * 255.0);
+            for (int x = 0; x < side; ++x) sum += opacity_of(opacity(first + glm::ivec3(x, y, z)), side);
+    return kept(opacity_of(kept(sum / (side * side * side)), exponent));
+}
+
+/// Of the stretch of a near tap: in sevenths of the voxel's greatest.
+double near_opacity(const HalfOpacity& halves, const glm::ivec3& half_voxel, double stretch)
+{
+    const glm::ivec3 voxel(glm::floor(glm::dvec3(half_voxel) / 2.0)), half = half_voxel - 2 * voxel;
+    double greatest = 0.0;
+    for (int i = 0; i < 8; ++i)
+        greatest = std::max(greatest, opacity_of(halves(voxel, {i & 1, i >> 1 & 1, i >> 2}), stretch));
+    if (greatest == 0.0) return 0.0;
+    return kept(greatest) * std::floor(7.0 * opacity_of(halves(voxel, half), stretch) / greatest + 0.5) / 7.0;
 }
 
 }  // namespace
 
-double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
-                         const OcclusionSide& side)
+double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves, const OcclusionRays& rays,
+                         const glm::ivec3& voxel, const OcclusionSide& side)
 {
     const glm::dvec3 lift = side.surface * side.normal * rays.voxels_per_unit;
     double sum = 0.0;
@@ -39,16 +57,26 @@ double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays,
         const glm::dvec3 step = turned(direction, side) * rays.voxels_per_unit;
         double left = 1.0, light = rays.first;
         for (const OcclusionTap& tap : rays.taps) {
-            const glm::ivec3 at(glm::floor(glm::dvec3(voxel) + 0.5 + tap.distance * step + tap.lift * lift));
-            const bool is_own = tap.side == 1 && at == voxel;
-            const double passed =
-                is_own ? 1.0 : std::pow(1.0 - kept_opacity(opacity, at, tap.side), tap.stretch / tap.side);
-            light += left * tap.stretch * 0.5 * (1.0 + passed);
-            left *= passed;
+            const glm::dvec3 place = glm::dvec3(voxel) + 0.5 + tap.distance * step + tap.lift * lift;
+            const glm::ivec3 at(glm::floor(place));
+            double stopped = 0.0;
+            if (tap.side > 0)
+                stopped = cell_opacity(opacity, at, tap.side, rays.exponent);
+            else if (at != voxel)
+                stopped = near_opacity(halves, glm::ivec3(glm::floor(2.0 * place)), tap.stretch);
+            light += left * tap.stretch * 0.5 * (2.0 - stopped);
+            left *= 1.0 - stopped;
         }
         sum += light / rays.radius;
     }
     return sum / double(rays.directions.size());
+}
+
+double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
+                         const OcclusionSide& side)
+{
+    const HalfOpacity halves = [&](const glm::ivec3& of, const glm::ivec3&) { return opacity(of); };
+    return occlusion_by_taps(opacity, halves, rays, voxel, side);
 }
 
 double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dvec3>& directions, double radius,

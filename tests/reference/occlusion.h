@@ -17,17 +17,23 @@ struct OcclusionSide {
 
 struct OcclusionTap {
     double distance, lift, stretch;
-    int side;  ///< of the cell that tells, in voxels
+    int side;  ///< of the cell that tells, in voxels; 0: half a voxel
 };
 struct OcclusionRays {
     double radius = 16.0, first = 0.5;
     std::vector<OcclusionTap> taps;
     std::vector<glm::dvec3> directions;
+    double exponent = 1.0;  ///< from the way through a cell to the stretch of its taps
     glm::dvec3 voxels_per_unit{1.0};
 };
 
 /// Opacity of one unit for every voxel there may be; 0 outside the volume.
 using VoxelOpacity = std::function<double(const glm::ivec3&)>;
+/// Opacity of one unit for every half of a voxel: the voxel, and 0 or 1 along each axis.
+using HalfOpacity = std::function<double(const glm::ivec3&, const glm::ivec3&)>;
+double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves, const OcclusionRays& rays,
+                         const glm::ivec3& voxel, const OcclusionSide& side);
+/// Where all halves of a voxel are alike.
 double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side);
 

@@ -82,6 +82,20 @@ TestVolume noise_volume(const glm::ivec3& size, uint32_t seed)
     return volume_of(size, [&](const glm::dvec3&) { return double(random() >> 16); });
 }
 
+double value_at(const TestVolume& volume, const glm::dvec3& voxel)
+{
+    const glm::dvec3 lattice = voxel - 0.5, corner = glm::floor(lattice), f = lattice - corner;
+    double sum = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::ivec3 half(i & 1, i >> 1 & 1, i >> 2);
+        const glm::ivec3 at = glm::clamp(glm::ivec3(corner) + half, glm::ivec3(0), volume.size - 1);
+        const glm::dvec3 weights = glm::mix(1.0 - f, f, glm::dvec3(half));
+        sum += weights.x * weights.y * weights.z *
+               volume.voxels[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))];
+    }
+    return sum;
+}
+
 std::unique_ptr<VolumeSource> source_of(const TestVolume& volume)
 {
     switch (volume.type) {
@@ -116,6 +130,11 @@ std::vector<ControlPoint> busy_points(double densest)
             {30000.0, BLUE, 0.1 * densest},
             {50000.0, WHITE, densest},
             {65535.0, RED, 0.0}};
+}
+
+std::vector<ControlPoint> unseen_points()
+{
+    return {{70000.0, WHITE, 0.0}, {80000.0, WHITE, 1.0}};
 }
 
 std::vector<ControlPoint> uniform_points(const glm::dvec3& color, double opacity)

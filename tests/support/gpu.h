@@ -38,6 +38,8 @@ TestVolume constant_volume(const glm::ivec3& size, double value);
 /// Independent values, uniform over all codes: the roughest field there is. Equal seeds, equal values.
 TestVolume noise_volume(const glm::ivec3& size, uint32_t seed);
 std::unique_ptr<VolumeSource> source_of(const TestVolume& volume);
+/// Trilinear between voxel centres, the border repeated.
+double value_at(const TestVolume& volume, const glm::dvec3& voxel);
 
 inline constexpr glm::dvec3 RED{1.0, 0.25, 0.0}, GREEN{0.1, 1.0, 0.2}, BLUE{0.0, 0.5, 1.0}, WHITE{1.0};
 
@@ -45,6 +47,8 @@ inline constexpr glm::dvec3 RED{1.0, 0.25, 0.0}, GREEN{0.1, 1.0, 0.2}, BLUE{0.0,
 Session plain_session(std::vector<ControlPoint> points, const glm::uvec2& pixels = {8, 8});
 /// Four tones over all codes, nothing at either end.
 std::vector<ControlPoint> busy_points(double densest = 0.2);
+/// Nothing of any code that there is.
+std::vector<ControlPoint> unseen_points();
 /// One colour and opacity for every code.
 std::vector<ControlPoint> uniform_points(const glm::dvec3& color, double opacity);
 

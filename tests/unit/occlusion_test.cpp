@@ -17,18 +17,17 @@ namespace {
 
 std::vector<glm::dvec3> directions(uint32_t count)
 {
-    std::vector<glm::dvec3> result;
-    for (const glm::vec4& direction : occlusion_directions(count)) result.emplace_back(direction);
-    return result;
+    return occlusion_directions(count);
 }
 
 OcclusionRays rays_of(double radius, uint32_t count)
 {
     const OcclusionTaps taps = occlusion_taps(radius);
-    OcclusionRays rays{.radius = taps.radius, .first = taps.first, .directions = directions(count)};
+    OcclusionRays rays{
+        .radius = taps.radius, .first = taps.first, .directions = directions(count), .exponent = taps.exponent};
     for (uint32_t i = 0; i < taps.taps.size(); ++i)
         rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].lift), double(taps.taps[i].stretch),
-                             i < taps.end[0]   ? 1
+                             i < taps.end[0]   ? 0
                              : i < taps.end[1] ? 2
                                                : 4});
     return rays;
@@ -78,7 +77,7 @@ TEST_CASE("the error falls with more rays, faster than that of random ones")
     CHECK(many < 1e-3);
 }
 
-TEST_CASE("an even medium has the closed form: over steps exactly, with seven looks within 0.03")
+TEST_CASE("an even medium has the closed form: over steps exactly, with six looks within 0.03")
 {
     for (const double a : {0.001, 0.01, 0.05, 0.2}) {
         CAPTURE(a);
@@ -87,7 +86,7 @@ TEST_CASE("an even medium has the closed form: over steps exactly, with seven lo
         const FieldOpacity even = [&](const glm::dvec3&) { return a; };
         CHECK(std::abs(occlusion_by_steps(even, directions(8), STEPS, STEPS, 0.0, 0.0, glm::dvec3(0.0), {}) -
                        discrete) < 1e-12);
-        const double extinction = -std::log1p(-a), free = 0.5;
+        const double extinction = -std::log1p(-a), free = rays_of(16.0, 1).first;
         const double expected = (free - std::expm1(-extinction * (16.0 - free)) / extinction) / 16.0;
         const double found = occlusion_by_taps([&](const glm::ivec3&) { return a; }, rays_of(16.0, 8), {0, 0, 0}, {});
         // Each stretch is a trapezium, which lets a little more through.
@@ -95,7 +94,7 @@ TEST_CASE("an even medium has the closed form: over steps exactly, with seven lo
     }
 }
 
-TEST_CASE("seven looks see planes, gaps and walls within 0.05 of the closed form")
+TEST_CASE("six looks see planes, gaps and walls within a few hundredths of the closed form")
 {
     const double radius = 16.0;
     const auto compare = [&](const char* what, const VoxelOpacity& opacity, const OcclusionSide& side, double expected,
@@ -111,7 +110,7 @@ TEST_CASE("seven looks see planes, gaps and walls within 0.05 of the closed form
         "plane", [](const glm::ivec3& v) { return v.z < 0 ? 1.0 : 0.0; }, {}, over_plane(3.5 / radius));
     compare(
         "gap", [](const glm::ivec3& v) { return v.z < 0 || v.z > 6 ? 1.0 : 0.0; }, {},
-        2.0 * over_plane(3.5 / radius) - 1.0);
+        2.0 * over_plane(3.5 / radius) - 1.0, 0.065);  // the error of two planes
     compare(
         "half space", [](const glm::ivec3& v) { return v.z <= 3 ? 1.0 : 0.0; }, up, 1.0);
     compare(
@@ -132,7 +131,9 @@ TEST_CASE("a voxel does not shadow itself, and a radius below one voxel sees not
     }
     const VoxelOpacity everywhere = [](const glm::ivec3&) { return 1.0; };
     CHECK(occlusion_by_taps(everywhere, rays_of(0.9, 64), {0, 0, 0}, {}) == doctest::Approx(1.0).epsilon(1e-6));
-    CHECK(occlusion_by_taps(everywhere, rays_of(16.0, 64), {0, 0, 0}, {}) == doctest::Approx(1.0 / 16).epsilon(1e-6));
+    const OcclusionTaps taps = occlusion_taps(16.0);
+    CHECK(occlusion_by_taps(everywhere, rays_of(16.0, 64), {0, 0, 0}, {}) ==
+          doctest::Approx((taps.first + 0.5 * taps.near_stretch) / 16).epsilon(1e-6));
 }
 
 TEST_CASE("looks cover the radius without gaps, within the bricks that are at hand")
@@ -142,7 +143,6 @@ TEST_CASE("looks cover the radius without gaps, within the bricks that are at ha
         const OcclusionTaps taps = occlusion_taps(radius);
         CHECK(taps.taps.size() <= gpu::OCCLUSION_MOST_TAPS);
         CHECK(taps.end[2] == taps.taps.size());
-        CHECK(taps.passed.size() == 256 * taps.taps.size());
         double sum = taps.first;
         for (const gpu::OcclusionTap& tap : taps.taps) {
             CHECK(double(tap.stretch) > 0.0);

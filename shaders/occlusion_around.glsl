@@ -1,0 +1,30 @@
+// The bricks around one whose values are made, and which of its cells show anything. Needs `bricks_around`, and `leap`, or
+// PAGED `cell_leap`.
+
+shared uint around[OCCLUSION_AROUND];
+
+void load_around(const OcclusionJob job, uint reach)
+{
+    const uint side = 2u * reach + 1u;
+    for (uint i = gl_LocalInvocationIndex; i < side * side * side; i += 64u)
+        around[i] = bricks_around.entries[job.around + i];
+}
+
+uint entry_at(uint reach, ivec3 brick_offset)
+{
+    return around[grid_index(uvec3(brick_offset + int(reach)), uvec3(2u * reach + 1u))];
+}
+
+// In cells of the brick; those of its neighbours lie beside.
+bool cell_is_occupied(uint reach, uvec3 cell_counts, const OcclusionJob job, ivec3 cell)
+{
+#ifdef PAGED
+    const uint entry = entry_at(reach, cell >> 3);
+    const ivec3 in_brick = int(BRICK_CELLS) * ivec3(job.brick) + cell >> int(entry >> OCCLUSION_LEVEL_SHIFT) & 7;
+    return entry != 0u && imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(entry)) + in_brick).x == 0u;
+#else
+    const ivec3 at = int(BRICK_CELLS) * ivec3(job.brick) + cell;
+    if (any(lessThan(at, ivec3(0))) || any(greaterThanEqual(at, ivec3(cell_counts)))) return false;
+    return imageLoad(leap, at).x >> LEAP_DISTANCE_SHIFT == 0u;
+#endif
+}

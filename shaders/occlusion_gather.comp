@@ -1,0 +1,134 @@
+// What rays of a brick meet, brought together from the bricks around it (occlusion.h): halves of voxels, made of densities and
+// their slopes, and copies of the cells.
+// variants: PAGED FILTERED MASKED
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "leap.h"
+#include "occlusion.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(binding = 0, scalar) readonly buffer Params { OcclusionGatherParams data; } params_block;
+layout(binding = 1, scalar) readonly buffer Jobs { OcclusionJob list[]; } jobs;
+layout(binding = 2, scalar) readonly buffer Opacities { float values[]; } opacities;   // of the stretch of a near tap
+#ifdef FILTERED
+layout(binding = 3) uniform sampler3D atlas;
+#else
+layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
+#endif
+layout(binding = 4, scalar) readonly buffer Around { uint entries[]; } bricks_around;
+#ifdef PAGED
+layout(binding = 5, r8ui) uniform readonly uimage3D cell_leap;
+#else
+layout(binding = 5, r32ui) uniform readonly uimage3D leap;
+#endif
+layout(binding = 9, r8ui) uniform readonly uimage3D cells_2;
+layout(binding = 10, r8ui) uniform readonly uimage3D cells_4;
+layout(binding = 11, r32ui) uniform writeonly uimage3D near;
+layout(binding = 12, r8ui) uniform writeonly uimage3D around_2;
+layout(binding = 13, r8ui) uniform writeonly uimage3D around_4;
+
+#include "occlusion_around.glsl"
+#include "occlusion_opacity.glsl"
+#include "voxel_code.glsl"
+
+const uint CELLS_A_SIDE = OCCLUSION_NEAR_SIDE / CELL_SIZE;
+const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
+// Where nothing shows, `near` is 0 from the start. Work is skipped by trip counts, never by branches.
+const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
+shared uint cells[CELLS_OF_ONE];
+shared uint cell_count;
+
+ivec3 place(uint i, uint side)
+{
+    return ivec3(i % side, i / side % side, i / (side * side));
+}
+
+// From the brick's corner to where that is found: in units of that brick's level.
+ivec3 in_brick_of(const OcclusionJob job, ivec3 voxel, int above)
+{
+    return int(BRICK_SIZE) * ivec3(job.brick) + voxel >> above & int(BRICK_SIZE - 1u);
+}
+
+uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 voxel)
+{
+    const uint entry = entry_at(params.reach, voxel >> 5), above = entry >> OCCLUSION_LEVEL_SHIFT;
+    const ivec3 texel = ivec3(slot_origin(entry)) + int(BRICK_APRON) + in_brick_of(job, voxel, int(above));
+    const float side = float(1u << above);
+    const vec3 slope = vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
+                            code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
+                            code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1))) / (2.0 * side);
+    // Coarse voxels hold several: this one lies beside their middle.
+    const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
+    const float code = code_at(texel) + dot(slope, beside);
+    const vec3 centre = float(1u << params.voxels.level) * (vec3(ivec3(BRICK_SIZE * job.brick) + voxel) + 0.5);
+    const float held = entry != 0u ? opacity_held(params.voxels, centre) : 0.0;
+    float halves[8], greatest = 0.0;
+    for (uint octant = 0u; octant < 8u; ++octant) {
+        const vec3 corner = vec3(octant & 1u, octant >> 1u & 1u, octant >> 2u) - 0.5;
+        halves[octant] = held < 0.0 ? opacity_of(params.voxels, code + 0.5 * dot(slope, corner)) : held;
+        greatest = max(greatest, halves[octant]);
+    }
+    uint packed = uint(255.0 * sqrt(min(greatest, 1.0)) + 0.5);
+    for (uint octant = 0u; octant < 8u; ++octant)
+        packed |= uint(7.0 * halves[octant] / max(greatest, 1e-20) + 0.5) << (8u + 3u * octant);
+    return (packed & 255u) != 0u ? packed : 0u;
+}
+
+// A cell's code, of the stretch that a tap there tells of instead of the way through the cell.
+uvec4 stretched(uint code, float exponent)
+{
+    const float opacity = float(code * code) / 65025.0;
+    const float left = code < 255u ? pow(1.0 - opacity, exponent) : 0.0;
+    return uvec4(uint(255.0 * sqrt(1.0 - left) + 0.5));
+}
+
+// Copies of the cells of one size around the brick. One loop instead of three: on SIMD devices each of them runs once more
+// than it has to, for all of what is in it.
+void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size)
+{
+    const int shift = int(size) + 1, apron = int(params.aprons[size]);
+    const uint side = (BRICK_SIZE >> shift) + 2u * params.aprons[size];
+    const float inverse_side = 1.0 / float(side);
+    const ivec3 behind = ivec3(0, 0, side * gl_WorkGroupID.x);
+    for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < side * side * side; i += 64u * OCCLUSION_SPLIT) {
+        // Exact for these numbers, and divisions of integers are slow.
+        const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
+        const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
+        const uint entry = entry_at(params.reach, voxel >> 5);
+        const int above = int(entry >> OCCLUSION_LEVEL_SHIFT);
+        const ivec3 from = int(BRICK_SIZE >> shift) * ivec3(unpack_slot(entry)) + (in_brick_of(job, voxel, above) >> shift);
+        const float exponent = ldexp(params.exponent, -above);
+        if (size == 0u)
+            imageStore(around_2, texel + behind, stretched(imageLoad(cells_2, from).x, exponent));
+        else
+            imageStore(around_4, texel + behind, stretched(imageLoad(cells_4, from).x, exponent));
+    }
+}
+
+void main()
+{
+    const OcclusionGatherParams params = params_block.data;
+    const OcclusionJob job = jobs.list[gl_WorkGroupID.x];
+    const uint lane = gl_LocalInvocationIndex, share = gl_WorkGroupID.z;
+    load_around(job, params.reach);
+    if (lane == 0u) cell_count = 0u;
+    barrier();
+    for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
+        const uint cell = i * OCCLUSION_SPLIT + share;
+        if (cell >= CELLS_OF_ALL) continue;
+        const ivec3 at = place(cell, CELLS_A_SIDE) - int(OCCLUSION_NEAR_APRON / CELL_SIZE);
+        if (cell_is_occupied(params.reach, params.cell_counts, job, at)) cells[atomicAdd(cell_count, 1u)] = cell;
+    }
+    barrier();
+    const ivec3 in_cell = place(lane, CELL_SIZE);
+    const ivec3 behind = ivec3(0, 0, gl_WorkGroupID.x);   // the images hold jobs one behind the other
+    const uint end = cell_count;
+    for (uint i = 0u; i < end; ++i) {
+        const ivec3 texel = int(CELL_SIZE) * place(cells[i], CELLS_A_SIDE) + in_cell;
+        const uint packed = near_of(params, job, texel - int(OCCLUSION_NEAR_APRON));
+        imageStore(near, texel + int(OCCLUSION_NEAR_SIDE) * behind, uvec4(packed));
+    }
+    copy_cells(params, job, 0u);
+    copy_cells(params, job, 1u);
+}

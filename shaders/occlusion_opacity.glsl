@@ -1,0 +1,37 @@
+// What stops light in a voxel (occlusion.h). Needs `opacities`; MASKED, `mask` from binding 6 on.
+#ifdef MASKED
+layout(binding = 6, r8ui) uniform readonly uimage3D mask;
+layout(binding = 7, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
+layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } group_opacities;
+
+#ifdef PAGED
+#define MASK_TABLE_HASHED
+#endif
+#include "mask.glsl"
+#endif
+
+float opacity_of(const OcclusionCellsParams params, float code)
+{
+    const float last = float(params.table_entries - 1u);
+    const float at = clamp((code - params.table_lower) * params.table_scale, 0.0, last);
+    const uint entry = uint(min(at, last - 1.0));
+    const float opacity = mix(opacities.values[entry], opacities.values[entry + 1u], at - float(entry));
+    return code >= params.table_lower && code <= params.table_upper ? opacity : 0.0;
+}
+
+// What paint and the cut make of a voxel, whatever its density; below 0: nothing. `centre` in voxels of level 0.
+float opacity_held(const OcclusionCellsParams params, vec3 centre)
+{
+    const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
+    float held = -1.0;
+#ifdef MASKED
+    // Held inside: what is outside stops nothing, whatever is found here.
+    const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
+    const uint slot = mask_slot_of(painted / BRICK_SIZE, params.brick_counts);
+    if (slot != 0u) {
+        const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + painted % BRICK_SIZE)).x;
+        held = group != 0u ? group_opacities.values[group] : -1.0;
+    }
+#endif
+    return inside ? held : 0.0;
+}
