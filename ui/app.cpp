@@ -167,6 +167,7 @@ void App::handle_events(double timeout_s)
         if (document_) {
             const ImGuiIO& io = ImGui::GetIO();
             viewport_.handle(event, model(), io.WantCaptureMouse, io.WantTextInput, actions_);
+            apply_all();  // what the next event means may depend on it: where the probe is, what is selected
         } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
             if (!drop->paths.empty()) actions_.emplace_back(Open{drop->paths.front()});
         }

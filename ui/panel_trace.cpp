@@ -1,4 +1,4 @@
-// Tracing: what the right button does, what there is of the trace, and what is selected.
+// Tracing: which tool the right button is, what there is of the trace, and what is selected.
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,10 @@ namespace {
 
 void tool(const Model& model, Actions& actions)
 {
-    label("Right button");
-    if (ImGui::RadioButton("paints", model.tool == Tool::paint)) actions.push_back(SetTool{Tool::paint});
+    label("Tool");
+    if (ImGui::RadioButton("Paint", model.tool == Tool::paint)) actions.push_back(SetTool{Tool::paint});
     ImGui::SameLine();
-    if (ImGui::RadioButton("traces (X)", model.tool == Tool::trace)) actions.push_back(SetTool{Tool::trace});
+    if (ImGui::RadioButton("Trace (X)", model.tool == Tool::trace)) actions.push_back(SetTool{Tool::trace});
     hint(
         "The right mouse button, F and the stylus then add a node at the probe, of its size and in the chosen group, "
         "linked with the selected node.");
@@ -122,8 +122,7 @@ void selection(const Model& model, Actions& actions)
     if (const auto internode = selected.internode()) return selected_internode(model, *internode);
     if (!selected.empty()) return selected_segment(model, selected);
     text_label("Selected");
-    ImGui::TextDisabled(model.trace.nodes().empty() ? "nothing yet: N adds a node at the probe"
-                                                    : "nothing: . selects the nearest node");
+    ImGui::TextDisabled(model.trace.nodes().empty() ? "nothing: N adds a node" : "nothing: . selects a node");
 }
 
 void button(const char* name, bool is_enabled, const char* text, const TraceOp& op, Actions& actions)

@@ -10,8 +10,9 @@ namespace shvr {
 
 namespace {
 
-constexpr double WIDTH = 1.5;  ///< pixels
-constexpr double HALO = 2.0;   ///< pixels more, of what sets a stroke off from what is below it
+constexpr double WIDTH = 1.5;        ///< pixels
+constexpr double TRACE_WIDTH = 2.5;  ///< of what stands out of the trace
+constexpr double HALO = 2.0;         ///< pixels more, of what sets a stroke off from what is below it
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
 /// Of x, y and z, and of the four edges of a frustum that run away from the eye.
@@ -45,21 +46,21 @@ class Strokes {
 public:
     explicit Strokes(const glm::uvec2& pixels) : pixels_(pixels) {}
 
-    void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, bool stippled = false)
+    void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, bool stippled = false,
+              double width = WIDTH)
     {
         const auto seen = clipped(from, to, pixels_);
         if (!seen) return;
         const auto [a, b] = *seen;
         const double length = glm::distance(a, b);
-        if (!stippled) return add(a, b, color);
+        if (!stippled) return add(a, b, color, width);
         for (double at = 0.0; at < length; at += DASH + GAP)
-            add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color);
+            add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color, width);
     }
     void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = WIDTH)
     {
-        const size_t before = strokes_.size();
-        for (size_t i = 0; i < points.size(); ++i) line(points[i], points[(i + 1) % points.size()], color);
-        for (size_t i = before; i < strokes_.size(); ++i) strokes_[i].width = width;
+        for (size_t i = 0; i < points.size(); ++i)
+            line(points[i], points[(i + 1) % points.size()], color, false, width);
     }
     /// Halos first, so that none lies on a neighbour's stroke.
     std::vector<Stroke> taken()
@@ -75,9 +76,9 @@ public:
     }
 
 private:
-    void add(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color)
+    void add(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
     {
-        strokes_.push_back({from, to, color, WIDTH});
+        strokes_.push_back({from, to, color, width});
     }
     glm::uvec2 pixels_;
     std::vector<Stroke> strokes_;
@@ -197,7 +198,7 @@ void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, cons
     const double scale = std::max(reach + APART, LEAST) / std::max(reach, 1e-9);
     std::vector<glm::dvec2> ring;
     for (const glm::dvec2& point : outline) ring.push_back(at->pixel + scale * (point - at->pixel));
-    strokes.closed(ring, ball.color, 2.5);
+    strokes.closed(ring, ball.color, TRACE_WIDTH);
 }
 
 void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
@@ -206,7 +207,7 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
         for (const OverlayScene::Line& line : scene.lines) {
             const auto from = project(pane.shot.camera, pixels, line.from);
             const auto to = project(pane.shot.camera, pixels, line.to);
-            if (from && to) strokes.line(from->pixel, to->pixel, line.color);
+            if (from && to) strokes.line(from->pixel, to->pixel, line.color, false, TRACE_WIDTH);
         }
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }

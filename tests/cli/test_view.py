@@ -206,8 +206,7 @@ class View(CliTest):
         self.assertEqual(again["commands"], 1)
 
     def test_three_nodes_are_traced_linked_moved_deleted_undone_and_saved(self):
-        session = self.write_ball(camera={"projection": "orthographic", "eye": [32, -60, 32], "target": [32, 32, 32],
-                                          "height": 80})
+        session = self.write_ball()
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
