@@ -185,7 +185,7 @@ class View(CliTest):
         self.wait_for_window("sphere.* - SHVR")
         before = json.loads(session.read_text())["transfer_function"]
         # The widget's upper edge holds the points of opacity 1; the last lies in its right corner.
-        for y in range(298, 360, 6):
+        for y in range(298, 480, 6):
             self.do("mousemove", WINDOW[0] - 31, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove",
                     WINDOW[0] - 60, y + 10, "sleep", 0.1, "mouseup", 1, pause_s=0.05)
         self.do("key", "ctrl+s", pause_s=0.5)

@@ -58,9 +58,9 @@ const std::vector<Feature> FEATURES{
          s.session.light.shaded = true;
          s.session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 8};
      },
-     {"raycast_occluded", "occlusion_cells", "occlusion_bake", "reset occlusion values", "clear occlusion cells",
-      "start occlusion"},
-     {"occlusion cells", "occlusion start", "occlusion values"}},
+     {"raycast_occluded", "occlusion_cells", "occlusion_gather", "occlusion_bake", "clear occlusion scratch",
+      "reset occlusion values", "clear occlusion cells", "start occlusion"},
+     {"occlusion cells", "occlusion scratch", "occlusion start", "occlusion values"}},
     {"distance blending", [](Scenery& s) { s.session.blend = {.size = 0.7, .color = RED}; }, {}},
     {"ball of the probe",
      [](Scenery& s) { s.options.probe = probe_of(0.5, s.options.probe && s.options.probe->shell); },

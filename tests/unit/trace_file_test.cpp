@@ -284,18 +284,18 @@ TEST_CASE("RSML that is none is refused in words")
     CHECK(contains(told(""), "cannot be read as RSML"));
     CHECK(contains(told("<graphml/>"), "it has no element rsml"));
     CHECK(contains(told("<rsml/>"), "has no element scene"));
-    CHECK(contains(told(root("")), "root '7': has no geometry with a polyline of points"));
-    CHECK(contains(told(root("<geometry><polyline><point x='1'/></polyline></geometry>")), "root '7': y is ''"));
-    CHECK(contains(told(root("<geometry><polyline><point x='nan' y='1'/></polyline></geometry>")), "x is 'nan'"));
+    CHECK(contains(told(root("")), "root \"7\": has no geometry with a polyline of points"));
+    CHECK(contains(told(root("<geometry><polyline><point x='1'/></polyline></geometry>")), "root \"7\": y is \"\""));
+    CHECK(contains(told(root("<geometry><polyline><point x='nan' y='1'/></polyline></geometry>")), "x is \"nan\""));
     CHECK(contains(told(root("<properties><group>256</group></properties><geometry><polyline><point x='1' y='1'/>"
                              "</polyline></geometry>")),
-                   "group is '256'"));
+                   "group is \"256\""));
     for (const char* resolution : {"0", "-1", "inf", "x", "1e-300"})
         CHECK(contains(
             told("<rsml><metadata><resolution>" + std::string(resolution) + "</resolution></metadata><scene/></rsml>"),
-            "metadata: resolution is '" + std::string(resolution) + "'"));
+            "metadata: resolution is \"" + std::string(resolution) + "\""));
     const auto path = folder.write("a.rsml", "<rsml><metadata><unit>cm</unit></metadata><scene/></rsml>");
-    CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit 'cm'; expected 'um'"));
+    CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit \"cm\"; expected \"um\""));
     // Nested as deep as a file can be.
     std::string deep = "<rsml><scene><plant>", end;
     for (int i = 0; i < 100'000; ++i) deep += "<root><geometry><polyline><point x='1' y='1'/></polyline></geometry>";
@@ -338,7 +338,7 @@ TEST_CASE("hostile text is refused in one sentence")
     CHECK(refusal("a.txt", node + "-l 0, 0, 1") == "a.txt:2: joins node 0 with itself; expected two different nodes");
     CHECK(refusal("a.txt", node + node + "-l 0, 1, 1\n-l 1, 0, 2") ==
           "a.txt:4: joins nodes 1 and 0 a second time; expected each link once");
-    CHECK(refusal("a.doc", node) == "a.doc: has the extension \".doc\"; expected .graphml, .txt or .swc");
+    CHECK(refusal("a.doc", node) == "a.doc: has the extension \".doc\"; expected .graphml, .txt, .swc or .rsml");
 }
 
 TEST_CASE("hostile SWC is refused in one sentence")
