@@ -328,23 +328,20 @@ void Work::extend(std::vector<Change> changes)
 
 const Command* Work::undo()
 {
-    if (history_.undoable() == 0) return nullptr;
-    begin_journal();
-    const Command* const command = history_.undo(document_);
-    touch(command->changes);
-    record(RecordKind::undo);
-    ++unsaved_;
-    note_step();
-    return command;
+    return history_.undoable() == 0 ? nullptr : go(&History::undo, RecordKind::undo);
 }
 
 const Command* Work::redo()
 {
-    if (history_.redoable() == 0) return nullptr;
+    return history_.redoable() == 0 ? nullptr : go(&History::redo, RecordKind::redo);
+}
+
+const Command* Work::go(const Command* (History::*way)(Document&), RecordKind kind)
+{
     begin_journal();
-    const Command* const command = history_.redo(document_);
+    const Command* const command = (history_.*way)(document_);
     touch(command->changes);
-    record(RecordKind::redo);
+    record(kind);
     ++unsaved_;
     note_step();
     return command;

@@ -99,6 +99,7 @@ private:
     void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
     void touch(std::span<const Change> changes);
+    const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
     void note_step();
     void keep_state();
 

@@ -46,15 +46,18 @@ double resident_mib()
 
 class Folder {
 public:
-    Folder() : path(fs::temp_directory_path() / sentence("shvr-annotation-", ::getpid())) { fs::create_directory(path); }
+    Folder() : path(fs::temp_directory_path() / sentence("shvr-annotation-", ::getpid()))
+    {
+        fs::create_directory(path);
+    }
     ~Folder() { fs::remove_all(path); }
     const fs::path path;
 };
 
 Session session_of(const VolumeInfo& volume)
 {
-    return parse_session(sentence(R"({"shvr_session": 1, "volume": {"procedural": "tubes", "size": [)", volume.size.x, ",",
-                                  volume.size.y, ",", volume.size.z,
+    return parse_session(sentence(R"({"shvr_session": 1, "volume": {"procedural": "tubes", "size": [)", volume.size.x,
+                                  ",", volume.size.y, ",", volume.size.z,
                                   R"(]}, "transfer_function": {"points": [
                                      {"intensity": 90, "color": "#806040", "opacity": 0.0},
                                      {"intensity": 255, "color": "#ffe0c0", "opacity": 0.4}]},
@@ -80,7 +83,8 @@ void one_stroke(const Folder& folder)
     int64_t most = -1;
     std::vector<glm::dvec3> path;
     for (int tries = 0; tries < 20; ++tries) {
-        const glm::dvec3 at(double(20 + random() % 370) + 0.5, double(20 + random() % 470), double(20 + random() % 470));
+        const glm::dvec3 at(double(20 + random() % 370) + 0.5, double(20 + random() % 470),
+                            double(20 + random() % 470));
         op.path = {at, at + glm::dvec3(POSITIONS - 1, 0.0, 0.0)};
         const int64_t count = annotator.select(op).count();
         if (count > most) path = op.path;
@@ -115,7 +119,8 @@ void one_stroke(const Folder& folder)
     std::printf("  picture of 512x512 before %.1f ms, after %.1f ms: %.2f\n", median(before), median(after),
                 median(after) / median(before));
     if (voxels > 0)
-        std::printf("  journal: %lld bytes, %.3f a voxel\n", static_cast<long long>(bytes), double(bytes) / double(voxels));
+        std::printf("  journal: %lld bytes, %.3f a voxel\n", static_cast<long long>(bytes),
+                    double(bytes) / double(voxels));
 }
 
 /// Without a device, which does not take part in it: every voxel of the brush is selected.
@@ -163,9 +168,9 @@ void many_strokes(const Folder& folder)
                 double(fs::file_size(files.journal)) / double(voxels));
     std::unique_ptr<Work> again;
     std::printf("  opened again in %.0f ms\n", milliseconds_of([&] {
-        again = std::make_unique<Work>(size, VoxelType::uint8);
-        again->open(files);
-    }));
+                    again = std::make_unique<Work>(size, VoxelType::uint8);
+                    again->open(files);
+                }));
 }
 
 }  // namespace
