@@ -8,6 +8,7 @@
 #include <chrono>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -58,6 +59,7 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         source_.read(box, voxels);
+        const std::scoped_lock lock(mutex_);  // who counts later sees that it is to stop
         if (++reads_ != last_) return;
         if (fails_) fail("source: cannot be read: Input/output error");
         stop = true;
@@ -68,6 +70,7 @@ public:
 private:
     const VolumeSource& source_;
     int last_;
+    mutable std::mutex mutex_;
     mutable std::atomic<int> reads_ = 0;
     bool fails_;
 };
