@@ -38,6 +38,8 @@ layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 // Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
 layout(constant_id = 7) const uint SLICE = 0u;
+// Classifies a step by the densities at both of its ends.
+layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 #endif
@@ -51,7 +53,7 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
-layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB, opacity of a full step
+layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB (PREINTEGRATED: times opacity), opacity of a full step
 layout(binding = 4, rgba32f) uniform writeonly image3D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
@@ -141,6 +143,25 @@ vec4 classify(const RaycastParams params, float density)
     return look;
 }
 
+// The same where the density goes from `front` to `back`. The table has both axes; what the function leaves out at its ends is
+// a part of the step in which there is nothing.
+vec4 classify_step(const RaycastParams params, float front, float back)
+{
+    const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
+    const float last = float(params.table_entries - 1u);
+    const vec2 at = clamp((ends - params.table_lower) * params.table_scale, 0.0, last);
+    const ivec2 entry = ivec2(min(at, last - 1.0));
+    const vec2 share = at - vec2(entry);
+    const vec4 near = mix(imageLoad(table, ivec3(entry, 0)), imageLoad(table, ivec3(entry + ivec2(1, 0), 0)), share.x);
+    const vec4 far = mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
+    const vec4 sum = mix(near, far, share.y);
+    const float whole = abs(back - front), inside = abs(ends.y - ends.x);
+    const bool is_inside = front >= params.table_lower && front <= params.table_upper;
+    const float part = whole > 0.0 ? inside / whole : float(is_inside);
+    const float opacity = part >= 1.0 ? sum.a : part > 0.0 ? opacity_of_part(sum.a, part) : 0.0;
+    return vec4(sum.rgb / max(sum.a, 1e-30), opacity);
+}
+
 #ifdef MASKED
 // A painted voxel has the look of its group, whatever its density; the lookup is nearest, never interpolated.
 vec4 painted(const RaycastParams params, vec3 position, vec4 look)
@@ -158,8 +179,18 @@ vec4 painted(const RaycastParams params, vec3 position, vec4 look)
 }
 #endif
 
-// Colour (shaded) and opacity of a full step at a position in the brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const Place place, inout Work work)
+// The density at a point that is at most half a voxel away from the brick whose first texel lies at `slot`.
+float value_near(vec3 in_brick, ivec3 slot)
+{
+    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons
+    const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
+    return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
+}
+
+// Colour (shaded) and opacity of a full step, of which `stretch` is sampled, in the middle of it at a position in the brick at
+// `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float stretch, const Place place,
+                 inout Work work)
 {
     // Cell and fraction come from the global position, and only the whole number moves into the brick: a bricked volume
     // gives the same bits as one in a single texture.
@@ -173,7 +204,19 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const
     const vec3 corner = floor(lattice);
     const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
-    vec4 look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density));
+    vec4 look;
+    if (PREINTEGRATED != 0u) {
+#ifdef PAGED
+        const float per_voxel = uintBitsToFloat(127u - place.level << 23);
+#else
+        const float per_voxel = 1.0;
+#endif
+        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE), half_step = 0.5 * stretch * per_voxel * ray.direction;
+        const ivec3 slot = ivec3(slot_origin(place.slot));
+        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot));
+    } else {
+        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density));
+    }
 #ifdef MASKED
     if (place.is_painted) look = painted(params, position, look);
 #endif
@@ -244,7 +287,7 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
 #ifdef PAGED
     if (place.distance > 0u) return vec4(0.0);
 #endif
-    return sample_look(params, ray, position, place, work);
+    return sample_look(params, ray, position, 0.0, place, work);
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -333,7 +376,7 @@ void main()
         if (i < steps) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
 #endif
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, place, work));
+        if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, params.step, place, work));
         ++i;
     }
 
@@ -347,7 +390,7 @@ void main()
         const Place place = place_at(params, position);
         note(place, work);
         if (place.distance == 0u) {
-            vec4 look = sample_look(params, ray, position, place, work);
+            vec4 look = sample_look(params, ray, position, rest, place, work);
             look.a = opacity_of_part(look.a, rest / params.step);
             accumulate(sum, look);
         }

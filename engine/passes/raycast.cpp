@@ -46,6 +46,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("SLICE", input.slice);
+    pass.constant("PREINTEGRATED", input.preintegrated);
     if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);

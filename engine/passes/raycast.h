@@ -22,7 +22,7 @@ uint32_t shininess_squarings(float shininess);
 
 struct RaycastInput {
     gpu::RaycastParams params;
-    Resource table;  ///< rgba32f image: linear RGB, opacity of a full step
+    Resource table;  ///< rgba32f image: linear RGB, opacity of a full step; preintegrated: RGB times opacity
     std::optional<MaskBinding> mask;
     std::vector<gpu::GroupLook> groups;  ///< 256, used with a mask
     std::optional<RaycastOcclusion> occlusion;
@@ -32,6 +32,7 @@ struct RaycastInput {
     uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
     glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
+    bool preintegrated = false;        ///< `table` is of steps between two densities, TABLE_WIDTH a side
     bool slice = false;                ///< params.slice_* are set: what lies half-way along the rays
     bool pick = false;                 ///< positions instead of colours, see the kernel
 };

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "engine/scene/renderer.h"
+#include "engine/scene/look_table.h"
 
 namespace shvr {
 
@@ -282,17 +282,13 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
 /// Opacities of `stretch` reference lengths.
 OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const
 {
-    const gpu::BrickLeapParams& table = look_->visibility.params;
     OcclusionCellsInput input;
-    input.params = {.table_lower = table.table_lower,
-                    .table_upper = table.table_upper,
-                    .table_scale = table.table_scale,
-                    .table_entries = table.table_entries,
-                    .level = uint32_t(level),
+    input.params = {.level = uint32_t(level),
                     .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
                     .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
                     .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
-    for (const glm::vec4& entry : bake_table(look_->function, stretch, table.table_entries))
+    set_table(input.params, look_->function, volume_->window(), TABLE_ENTRIES);
+    for (const glm::vec4& entry : bake_table(look_->function, stretch, TABLE_ENTRIES))
         input.opacities.push_back(entry.a);
     input.mask = mask;
     for (const double opacity : look_->groups)

@@ -35,17 +35,6 @@ glm::dvec3 light_direction(const Light& light, const Camera& camera)
     return glm::normalize(local.x * right + local.y * up + local.z * back);
 }
 
-struct TableMap {
-    float lower, upper, scale;
-};
-
-/// Table coordinate = (code - lower) * scale.
-TableMap table_map(const TransferFunction& function, const IntensityWindow& window)
-{
-    const double lower = window.code_of(function.lower()), upper = window.code_of(function.upper());
-    return {float(lower), float(upper), float((TABLE_ENTRIES - 1) / std::max(upper - lower, 1e-6))};
-}
-
 std::array<uint32_t, 8> visible_groups(const Session& session)
 {
     std::array<uint32_t, 8> bits{};
@@ -120,7 +109,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
                                   const VolumeBinding& binding, const PicturePart& part, double step_voxels)
 {
     const VolumeInfo& info = volume.info();
-    const TableMap map = table_map(session.transfer_function, volume.window());
     const glm::vec3 size(info.size);
     const glm::vec3 last(std::nextafter(size.x, 0.0f), std::nextafter(size.y, 0.0f), std::nextafter(size.z, 0.0f));
     gpu::RaycastParams params{};
@@ -140,10 +128,8 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     }
     params.step = float(step_voxels);
     params.opacity_limit = float(session.render.opacity_limit);
-    params.table_lower = map.lower;
-    params.table_upper = map.upper;
-    params.table_scale = map.scale;
-    params.table_entries = TABLE_ENTRIES;
+    const uint32_t entries = session.render.preintegration ? STEP_TABLE_SIDE : TABLE_ENTRIES;
+    set_table(params, session.transfer_function, volume.window(), entries);
     params.background = session.render.background;
     params.ambient = float(session.light.ambient);
     params.diffuse = float(session.light.diffuse);
@@ -276,40 +262,34 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
     }
 }
 
-const Renderer::Table& Renderer::table_of(const Session& session, double step_voxels)
+const LookTable& Renderer::table_of(const Session& session, double step_voxels)
 {
-    const std::span<const ControlPoint> points = session.transfer_function.points();
-    if (baked_ && baked_->step_voxels == step_voxels && std::ranges::equal(baked_->points, points)) return *baked_;
-    baked_ = {.points = {points.begin(), points.end()},
-              .step_voxels = step_voxels,
-              .entries = bake_table(session.transfer_function, step_voxels, TABLE_ENTRIES),
-              .visible_intervals = {}};
-    baked_->visible_intervals = visible_intervals(baked_->entries);
+    if (table_ && table_->is_of(session, step_voxels)) return *table_;
+    table_ = make_look_table(session, step_voxels);
     table_is_on_device_ = false;
-    return *baked_;
+    return *table_;
 }
 
-Resource Renderer::upload_table(FrameGraph& graph, const Table& table)
+Resource Renderer::upload_table(FrameGraph& graph, const LookTable& table)
 {
-    const ResourceDesc desc = image_desc(Format::rgba32_float, {gpu::TABLE_WIDTH, gpu::TABLE_HEIGHT, 1});
-    if (!table_) table_ = memory_.create("transfer function", desc);
-    const Resource on_device = graph.import("transfer function", table_.import());
+    const uint32_t width = gpu::TABLE_WIDTH;
+    const ResourceDesc desc = image_desc(Format::rgba32_float, {width, uint32_t(table.texels.size()) / width, 1});
+    if (!table_image_ || table_image_.desc().texels != desc.texels) {
+        table_image_.reset();
+        table_image_ = memory_.create("transfer function", desc);
+    }
+    const Resource on_device = graph.import("transfer function", table_image_.import());
     if (std::exchange(table_is_on_device_, true)) return on_device;
-    return graph.copy_to_image(graph.upload<glm::vec4>("transfer function entries", table.entries), on_device,
+    return graph.copy_to_image(graph.upload<glm::vec4>("transfer function entries", table.texels), on_device,
                                {{0, glm::uvec3(0), desc.texels}}, "upload transfer function");
 }
 
 LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session)
 {
-    const Table& table = table_of(session, session.render.step_voxels);
-    const TableMap map = table_map(session.transfer_function, volume_->window());
+    const LookTable& table = table_of(session, session.render.step_voxels);
     LeapGridInput input;
-    input.params = {.brick_counts = volume.brick_counts,
-                    .table_lower = map.lower,
-                    .table_upper = map.upper,
-                    .table_scale = map.scale,
-                    .table_entries = TABLE_ENTRIES,
-                    .skipping = session.render.skip_empty_space};
+    input.params = {.brick_counts = volume.brick_counts, .skipping = session.render.skip_empty_space};
+    set_table(input.params, session.transfer_function, volume_->window(), table.entries());
     input.visible_intervals = table.visible_intervals;
     input.visible_groups = visible_groups(session);
     if (!mask_.empty()) input.mask = mask_.import(graph);
@@ -320,15 +300,12 @@ LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& v
 /// What may be seen does not depend on the length of a step.
 Visibility Renderer::visibility_of(const Session& session)
 {
-    const TableMap map = table_map(session.transfer_function, volume_->window());
-    const Table& table = table_of(session, baked_ ? baked_->step_voxels : session.render.step_voxels);
-    return {.params = {.table_lower = map.lower,
-                       .table_upper = map.upper,
-                       .table_scale = map.scale,
-                       .table_entries = TABLE_ENTRIES,
-                       .skipping = session.render.skip_empty_space},
-            .visible_intervals = table.visible_intervals,
-            .visible_groups = visible_groups(session)};
+    const LookTable& table = table_of(session, table_ ? table_->step_voxels : session.render.step_voxels);
+    Visibility visibility{.params = {.skipping = session.render.skip_empty_space},
+                          .visible_intervals = table.visible_intervals,
+                          .visible_groups = visible_groups(session)};
+    set_table(visibility.params, session.transfer_function, volume_->window(), table.entries());
+    return visibility;
 }
 
 double Renderer::gradient_fade_codes(const Session& session) const
@@ -454,6 +431,7 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     input.table = upload_table(graph, table_of(session, step_voxels));
     input.shaded = is_shaded;
     input.slice = shot.is_slice;
+    input.preintegrated = session.render.preintegration && !shot.is_slice;
     if (shot.is_slice) set_slice(input.params, session, *volume_, statistics_);
     input.group_width = device_.traits().is_cpu ? 16 : 8;
     input.tile = TILE;

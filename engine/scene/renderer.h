@@ -20,6 +20,7 @@
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
 #include "engine/scene/empty_space.h"
+#include "engine/scene/look_table.h"
 #include "engine/scene/occlusion.h"
 #include "engine/scene/paged_volume.h"
 #include "engine/scene/resident_volume.h"
@@ -176,16 +177,9 @@ public:
 
 private:
     friend class PictureJob;
-    /// A transfer function as the device reads it.
-    struct Table {
-        std::vector<ControlPoint> points;
-        double step_voxels = 0.0;
-        std::vector<glm::vec4> entries;
-        std::vector<uint32_t> visible_intervals;
-    };
     bool filters(Sampling sampling) const;
     bool pages(const VolumeSource& source, Paging paging, bool with_occlusion) const;
-    const Table& table_of(const Session& session, double step_voxels);
+    const LookTable& table_of(const Session& session, double step_voxels);
     Visibility visibility_of(const Session& session);
     double gradient_fade_codes(const Session& session) const;
     Occlusion::Look occlusion_look(const Session& session);
@@ -196,7 +190,7 @@ private:
     VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
-    Resource upload_table(FrameGraph& graph, const Table& table);
+    Resource upload_table(FrameGraph& graph, const LookTable& table);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
         VolumeBinding volume;
@@ -227,16 +221,13 @@ private:
     bool occlusion_has_no_room_ = false;
     std::vector<std::string> messages_;
     uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen
-    std::optional<Table> baked_;
-    gpu::Storage table_;
+    std::optional<LookTable> table_;
+    gpu::Storage table_image_;
     bool table_is_on_device_ = false;
     EmptySpace empty_space_;
 };
 
 /// Whether the light of a session makes ambient occlusion.
 bool shows_occlusion(const Light& light);
-
-/// Entries of the transfer function's table on the device.
-inline constexpr uint32_t TABLE_ENTRIES = gpu::TABLE_WIDTH * gpu::TABLE_HEIGHT;
 
 }  // namespace shvr

@@ -67,6 +67,8 @@ struct RenderSettings {
     Paging paging = Paging::automatic;
     double detail = 1.0;  ///< voxels per pixel at least, where there are levels to choose from; 0: the finest always
     bool skip_empty_space = true;
+    bool preintegration =
+        false;  ///< steps are classified by both of their ends (preintegration.h); for steps of at most 1
     bool operator==(const RenderSettings&) const = default;
 };
 

@@ -210,8 +210,8 @@ RenderSettings read_render(const JsonNode& node)
 {
     RenderSettings render;
     if (!node.exists()) return render;
-    node.expect_object(
-        {"size", "step_voxels", "opacity_limit", "background", "sampling", "paging", "detail", "skip_empty_space"});
+    node.expect_object({"size", "step_voxels", "opacity_limit", "background", "sampling", "paging", "detail",
+                        "skip_empty_space", "preintegration"});
     render.size = read_picture_size(node["size"], render.size);
     render.step_voxels = node["step_voxels"].number(render.step_voxels, above_zero(1e-4, 1024.0));
     render.opacity_limit = node["opacity_limit"].number(render.opacity_limit, above_zero(1e-6, 1.0));
@@ -223,6 +223,9 @@ RenderSettings read_render(const JsonNode& node)
         render.paging, {{"automatic", Paging::automatic}, {"always", Paging::always}, {"never", Paging::never}});
     render.detail = node["detail"].number(render.detail, range(0.0, 16.0));
     render.skip_empty_space = node["skip_empty_space"].flag(render.skip_empty_space);
+    render.preintegration = node["preintegration"].flag(render.preintegration);
+    if (render.preintegration && render.step_voxels > 1.0)
+        node["preintegration"].refuse(sentence("false, as render.step_voxels is ", render.step_voxels, ", above 1"));
     return render;
 }
 

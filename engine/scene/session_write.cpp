@@ -168,7 +168,8 @@ json write_render(const RenderSettings& render)
             {"sampling", name_of(render.sampling)},
             {"paging", name_of(render.paging)},
             {"detail", render.detail},
-            {"skip_empty_space", render.skip_empty_space}};
+            {"skip_empty_space", render.skip_empty_space},
+            {"preintegration", render.preintegration}};
 }
 
 const char* name_of(Arrangement arrangement)

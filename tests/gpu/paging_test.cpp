@@ -98,7 +98,8 @@ TEST_CASE("paged pictures of the finest level equal resident ones bit for bit")
     for (const double opacity : {0.02, 1.0})
         for (const bool shaded : {false, true})
             for (const Camera& camera : {camera_looking("front", source->info()), inside, parallel}) {
-                const Session session = session_of(opacity, shaded);
+                Session session = session_of(opacity, shaded);
+                session.render.preintegration = shaded == (opacity < 1.0);
                 const Picture expected = all.picture(source, session, Paging::never, camera);
                 const Picture seen = all.picture(source, session, Paging::always, camera);
                 CHECK(seen.complete);

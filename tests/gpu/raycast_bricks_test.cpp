@@ -75,6 +75,7 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000
         session.transfer_function = random_function(random);
         session.light.shaded = i % 3 == 0;
         session.render.step_voxels = std::array{0.25, 0.5, 0.77, 1.0, 2.0}[size_t(i % 5)];
+        session.render.preintegration = session.render.step_voxels <= 1.0 && i % 7 < 3;
         if (i % 4 == 1) session.cut = {glm::dvec3(4.0 * unit(random)), glm::dvec3(12.0, 24.0, 40.0)};
         const Camera camera =
             camera_along(volume(), {unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5}, 60.0);
