@@ -230,6 +230,28 @@ class Export(CliTest):
         self.assertEqual((self.folder / "a.offset").read_bytes(), saved)
         self.assertTrue((self.folder / "a.nrrd").read_bytes().endswith(struct.pack(f"<{len(offsets)}f", *offsets)))
         for name in ["a.nrrd", "a.tif"]:
+            # A session that names such a file takes it, and saves in the same form.
+            other = self.write_session("other.json", annotation={"mask": "other.mask", "density": name}, volume={
+                "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
+            self.check("export", other, "--offset", self.folder / "b.offset")
+            self.assertEqual((self.folder / "b.offset").read_bytes(), saved)
+            first = struct.unpack_from("<h", saved)
+            script = self.write_script("more.jsonl", [
+                {"op": "density", "brush": "fill", "region": "box", "threshold": -1e9, "radius": 0.6, "offset": 7,
+                 "path": [[0.5, 0.5, 0.5]]}, {"op": "save"}])
+            self.assertEqual(first, (0,))
+            self.check("annotate", other, "--script", script)
+            (self.folder / "other.journal").unlink()
+            self.check("export", other, "--offset", self.folder / "b.offset")
+            again = (self.folder / "b.offset").read_bytes()
+            self.assertEqual((again[:2], again[2:]), (struct.pack("<h", 7), saved[2:]))
+            for size, spacing, says in [([24, 20, 41], self.SPACING, ["24 20 40", "24 20 41"]),
+                                        (self.SIZE, [0.5, 1, 2.5], ["0.5 1 2 mm", "0.5 1 2.5 mm"])]:
+                wrong = self.write_session("wrong.json", annotation={"density": name}, volume={
+                    "procedural": "constant", "size": size, "spacing": spacing, "unit": "mm"})
+                self.check_refused("export", wrong, "--offset", self.folder / "c.offset", says=[name, *says])
+            self.assertFalse((self.folder / "c.offset").exists())
+            self.export("--offset", self.folder / name)
             info = self.check_json("info", self.folder / name)
             self.assertEqual((info["type"], info["size"], info["unit"]), ("float32", self.SIZE, "mm"))
             self.assertEqual((info["min"], info["max"]), (-40, 0))
