@@ -375,7 +375,7 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
     files_.density = density;
 }
 
-std::vector<fs::path> Work::save()
+std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
 {
     const bool has_mask = !document_.mask.painted_bricks().empty();
     const bool has_trace = !document_.trace.nodes().empty(), has_offsets = document_.density.voxels() > 0;
@@ -392,7 +392,8 @@ std::vector<fs::path> Work::save()
     }
     std::vector<fs::path> written;
     if (!files_.mask.empty()) {
-        save_mask_as(files_.mask, document_.mask, files_.volume, {.painted_on = files_.volume_hash});
+        save_mask_as(files_.mask, document_.mask, files_.volume,
+                     {.colors = std::move(looks), .painted_on = files_.volume_hash});
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }

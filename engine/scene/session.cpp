@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/scene/label_looks.h"
 #include "engine/scene/session_color.h"
 #include "engine/scene/session_json.h"
 #include "engine/scene/transfer_presets.h"
@@ -93,6 +94,8 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     opened.statistics = measure(hashed);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();
     opened.warnings = warnings_of(opened.statistics);
+    for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))
+        opened.warnings.push_back(std::move(warning));
     if (std::string& preset = opened.session.transfer_preset; !preset.empty())
         opened.session.transfer_function =
             transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);

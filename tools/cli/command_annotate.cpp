@@ -3,6 +3,7 @@
 #include <concepts>
 
 #include "engine/annotation/trace_command.h"
+#include "engine/scene/label_looks.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -80,7 +81,10 @@ public:
     }
     void operator()(const SaveOp&)
     {
-        for (const std::filesystem::path& path : in_words([&] { return opened.annotator->save(); }))
+        const auto save = [&] {
+            return opened.annotator->save(label_looks(opened.session.groups, opened.annotator->document().mask));
+        };
+        for (const std::filesystem::path& path : in_words(save))
             say(options.common, sentence(at, ": saved ", path.string()));
     }
     void operator()(const ExpectOp& op)
