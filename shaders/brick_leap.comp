@@ -1,4 +1,5 @@
-// One brick per workgroup: which of its cells can show something, and how far the nearest of those is (pages.h).
+// One brick per workgroup: which of its cells can show something, how far the nearest of those is, and which are painted
+// (pages.h).
 // MASKED: a cell is occupied, too, where a voxel of a visible group is.
 // variants: MASKED
 #version 460
@@ -22,18 +23,14 @@ layout(binding = 5, scalar) readonly buffer VisibleGroups { uint bits[]; } visib
 shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 
 #ifdef MASKED
-bool paint_shows(const BrickLeapJob job, uvec3 cell)
+#include "cell_paint.glsl"
+
+CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {
+    if (job.mask_slot == 0u) return CellPaint(false, false);
     // A coarse cell holds too many voxels to look at: some of its brick are painted, so some of it may be.
-    if (job.level > 0u) return true;
-    const uvec3 base = mask_slot_origin(job.mask_slot, params.mask_slots) + CELL_SIZE * cell;
-    uint seen = 0u;
-    for (uint i = 0u; i < CELL_SIZE * CELL_SIZE * CELL_SIZE; ++i) {
-        const uvec3 voxel = base + uvec3(i % CELL_SIZE, (i / CELL_SIZE) % CELL_SIZE, i / (CELL_SIZE * CELL_SIZE));
-        const uint group = imageLoad(mask, ivec3(voxel)).x;
-        seen |= visible_groups.bits[group >> 5] >> (group & 31u) & 1u;
-    }
-    return seen != 0u;
+    if (job.level > 0u) return CellPaint(true, true);
+    return paint_in(job.mask_slot, cell);
 }
 #endif
 
@@ -54,12 +51,14 @@ void main()
     const BrickLeapJob job = jobs.list[gl_WorkGroupID.x];
     const uvec2 column = gl_LocalInvocationID.xy;
     const uvec3 origin = BRICK_CELLS * unpack_slot(job.slot);
+    uint painted = 0u;   // bit per cell of the column
     for (uint z = 0u; z < BRICK_CELLS; ++z) {
         const uvec3 cell = uvec3(column, z);
         bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(origin + cell)).x);
 #ifdef MASKED
-        const bool shows = job.mask_slot != 0u && paint_shows(job, cell);
-        occupied = occupied || shows;
+        const CellPaint paint = paint_of(job, cell);
+        occupied = occupied || paint.shows;
+        painted |= uint(paint.is_there) << z;
 #endif
         distances[0][grid_index(cell, uvec3(BRICK_CELLS))] = occupied ? 0u : BRICK_CELLS;
     }
@@ -77,6 +76,7 @@ void main()
     for (uint z = 0u; z < BRICK_CELLS; ++z) {
         const uint at = grid_index(uvec3(column, z), uvec3(BRICK_CELLS));
         const uint distance = nearer(0u, at, BRICK_CELLS * BRICK_CELLS, z);
-        imageStore(cell_leap, ivec3(origin + uvec3(column, z)), uvec4(distance));
+        const uint is_painted = painted >> z & CELL_PAINTED;
+        imageStore(cell_leap, ivec3(origin + uvec3(column, z)), uvec4(distance << CELL_DISTANCE_SHIFT | is_painted));
     }
 }

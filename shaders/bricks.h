@@ -40,11 +40,10 @@ SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
     return BRICK_TEXELS * unpack_slot(packed_slot);
 }
 
-/// First voxel of a brick of the mask in its atlas, which holds bricks without aprons; slots count from 1.
-SHARED_FUNCTION uvec3 mask_slot_origin(uint slot, uvec3 slots)
+/// First voxel of a brick of the mask in its atlas, whose bricks have no aprons.
+SHARED_FUNCTION uvec3 mask_slot_origin(uint packed_slot)
 {
-    return BRICK_SIZE *
-           uvec3((slot - 1u) % slots.x, (slot - 1u) / slots.x % slots.y, (slot - 1u) / (slots.x * slots.y));
+    return BRICK_SIZE * unpack_slot(packed_slot);
 }
 
 /// Where the search for a painted brick begins in a hashed table (Teschner and others 2003), and the uints of its entries:

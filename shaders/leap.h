@@ -1,7 +1,8 @@
-// The leap grid: for every cell of 4^3 voxels, how far a ray may jump and which brick is there.
+// The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether there is paint, and which brick is there.
 //
-// An entry is (distance << 24) | slot. Distance 0: something visible may be in the cell. Distance D > 0: every cell
-// within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without a sample.
+// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is of a group; samples in all other
+// cells need not look at the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
+// Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without a sample.
 #ifndef SHVR_LEAP_H
 #define SHVR_LEAP_H
 #include "bricks.h"
@@ -9,7 +10,8 @@
 SHARED_BEGIN
 
 SHARED_CONST uint LEAP_SLOT_MASK = 0x00ffffffu;
-SHARED_CONST uint LEAP_DISTANCE_SHIFT = 24u;
+SHARED_CONST uint LEAP_PAINTED = 1u << 24u;
+SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Farther than this is not looked for: a jump of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
@@ -22,8 +24,9 @@ struct OccupancyParams {
     float table_upper;
     float table_scale;
     uint table_entries;
-    uint skipping;     ///< 0: every cell counts as occupied
-    uvec3 mask_slots;  ///< atlas of mask bricks; used with a mask
+    uint skipping;        ///< 0: every cell counts as occupied
+    uvec3 changed_begin;  ///< PATCHED: the cells that changed
+    uvec3 changed_end;
 };
 
 struct LeapDistanceParams {

@@ -26,5 +26,5 @@ void main()
         const uint nearest = min(imageLoad(source, cell + below * along).x, imageLoad(source, cell + above * along).x);
         best = min(best, max(k, nearest >> LEAP_DISTANCE_SHIFT));
     }
-    imageStore(leap, cell, uvec4(best << LEAP_DISTANCE_SHIFT | (entry & LEAP_SLOT_MASK)));
+    imageStore(leap, cell, uvec4(best << LEAP_DISTANCE_SHIFT | (entry & (LEAP_PAINTED | LEAP_SLOT_MASK))));
 }

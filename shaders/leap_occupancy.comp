@@ -1,6 +1,8 @@
 // One cell per thread: is anything in it visible? Distance 0 where it is, LEAP_LIMIT where it is not.
-// MASKED: a cell is occupied, too, where a voxel of a visible group is.
-// variants: MASKED
+// PATCHED: in a grid that is there, where only some cells changed. They get distance 0 or 1, and those around them no more
+// than to the nearest of them, as if all of those were occupied: a grid that leaps less far than it might, and never too far.
+// MASKED: a cell is occupied, too, where a voxel of a visible group is; and is it painted at all?
+// variants: MASKED PATCHED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -11,7 +13,13 @@ layout(push_constant, scalar) uniform Push { OccupancyParams params; };
 layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
 layout(binding = 1, scalar) readonly buffer PageTable { uint slots[]; } page_table;
 layout(binding = 2, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
+#ifdef PATCHED
+layout(binding = 3, r32ui) uniform uimage3D leap;
+const uint EMPTY_DISTANCE = 1u;
+#else
 layout(binding = 3, r32ui) uniform writeonly uimage3D leap;
+const uint EMPTY_DISTANCE = LEAP_LIMIT;
+#endif
 #ifdef MASKED
 layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 layout(binding = 5, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
@@ -22,28 +30,33 @@ layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visib
 #include "occupancy.glsl"
 
 #ifdef MASKED
-bool paint_shows(uvec3 cell, uint mask_slot)
-{
-    const uvec3 base = mask_slot_origin(mask_slot, params.mask_slots) + CELL_SIZE * (cell % BRICK_CELLS);
-    uint seen = 0u;
-    for (uint i = 0u; i < CELL_SIZE * CELL_SIZE * CELL_SIZE; ++i) {
-        const uvec3 voxel = base + uvec3(i % CELL_SIZE, (i / CELL_SIZE) % CELL_SIZE, i / (CELL_SIZE * CELL_SIZE));
-        const uint group = imageLoad(mask, ivec3(voxel)).x;
-        seen |= visible_groups.bits[group >> 5] >> (group & 31u) & 1u;
-    }
-    return seen != 0u;
-}
+#include "cell_paint.glsl"
 #endif
 
 void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
+#ifdef PATCHED
+    const ivec3 apart = max(ivec3(params.changed_begin) - ivec3(cell), ivec3(cell) - ivec3(params.changed_end) + 1);
+    const int to_changed = max(apart.x, max(apart.y, apart.z));
+    if (to_changed > 0) {
+        const uint before = imageLoad(leap, ivec3(cell)).x;
+        const uint distance = min(before >> LEAP_DISTANCE_SHIFT, uint(to_changed));
+        imageStore(leap, ivec3(cell), uvec4(distance << LEAP_DISTANCE_SHIFT | before & (LEAP_PAINTED | LEAP_SLOT_MASK)));
+        return;
+    }
+#endif
     const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
     bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
+    uint entry = page_table.slots[brick];
 #ifdef MASKED
     const uint mask_slot = mask_slot_of(cell / BRICK_CELLS, params.brick_counts);
-    if (!occupied && mask_slot != 0u) occupied = paint_shows(cell, mask_slot);
+    if (mask_slot != 0u) {
+        const CellPaint paint = paint_in(mask_slot, cell % BRICK_CELLS);
+        occupied = occupied || paint.shows;
+        entry |= paint.is_there ? LEAP_PAINTED : 0u;
+    }
 #endif
-    imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : LEAP_LIMIT << LEAP_DISTANCE_SHIFT) | page_table.slots[brick]));
+    imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : EMPTY_DISTANCE << LEAP_DISTANCE_SHIFT) | entry));
 }

@@ -1,4 +1,4 @@
-// Finding painted bricks: 32^3 voxels without an apron. Slots are 1 or more; 0 means that nothing is painted there. Needs
+// Finding painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted there. Needs
 // `mask_table`. A volume of a thousand bricks a side has no room for a table of all of them: MASK_TABLE_HASHED is one by
 // open addressing (engine/scene/device_mask.cpp makes it).
 

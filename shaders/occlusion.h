@@ -46,7 +46,6 @@ struct OcclusionCellsParams {
     vec3 lower;  ///< what stops light, voxels of level 0; outside is nothing
     vec3 upper;
     uvec3 brick_counts;  ///< of level 0
-    uvec3 mask_slots;
 };
 
 /// A brick whose values are made: OCCLUSION_SPLIT workgroups.

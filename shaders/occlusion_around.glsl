@@ -21,7 +21,8 @@ bool cell_is_occupied(uint reach, uvec3 cell_counts, const OcclusionJob job, ive
 #ifdef PAGED
     const uint entry = entry_at(reach, cell >> 3);
     const ivec3 in_brick = int(BRICK_CELLS) * ivec3(job.brick) + cell >> int(entry >> OCCLUSION_LEVEL_SHIFT) & 7;
-    return entry != 0u && imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(entry)) + in_brick).x == 0u;
+    const uint found = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(entry)) + in_brick).x;
+    return entry != 0u && found >> CELL_DISTANCE_SHIFT == 0u;
 #else
     const ivec3 at = int(BRICK_CELLS) * ivec3(job.brick) + cell;
     if (any(lessThan(at, ivec3(0))) || any(greaterThanEqual(at, ivec3(cell_counts)))) return false;

@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "leap.h"
+#include "pages.h"
 #include "occlusion.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;

@@ -29,7 +29,7 @@ float opacity_held(const OcclusionCellsParams params, vec3 centre)
     const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
     const uint slot = mask_slot_of(painted / BRICK_SIZE, params.brick_counts);
     if (slot != 0u) {
-        const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + painted % BRICK_SIZE)).x;
+        const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + painted % BRICK_SIZE)).x;
         held = group != 0u ? group_opacities.values[group] : -1.0;
     }
 #endif

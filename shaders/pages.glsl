@@ -12,6 +12,7 @@ struct Place {
     uint slot;
     uint level;
     uint entry;
+    bool is_painted;  // perhaps
 };
 
 Place place_at(const RaycastParams params, vec3 position)
@@ -33,13 +34,16 @@ Place place_at(const RaycastParams params, vec3 position)
     }
     place.distance = entry >> PAGE_DISTANCE_SHIFT;
     place.box_shift = 31u;
+    place.is_painted = true;
     place.slot = entry & PAGE_PAYLOAD_MASK;
     place.level = entry >> PAGE_LEVEL_SHIFT & 0xfu;
     if (place.distance == 0u && SLICE == 0u) {
         const uvec3 cell = voxel >> place.level + 2u & BRICK_CELLS - 1u;
         place.box_shift = place.cell_shift;
         place.cell_shift = place.level + 2u;
-        place.distance = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;
+        const uint found = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;
+        place.distance = found >> CELL_DISTANCE_SHIFT;
+        place.is_painted = (found & CELL_PAINTED) != 0u;
     }
     return place;
 }

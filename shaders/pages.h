@@ -6,8 +6,9 @@
 // payload is the first of eight entries, x fastest, for the halves of this cell. Otherwise the payload is the slot (pack_slot)
 // of a brick of that level that holds the cell, perhaps a coarser one than wanted: the nearest there is.
 //
-// Within a brick, `cell_leap` tells how far one may leap over its 8^3 cells: Chebyshev distance to the nearest cell that
-// something visible may be in, as far as the brick reaches.
+// Within a brick, `cell_leap` tells of its 8^3 cells: distance << 1 | painted. One may leap as far as the distance, Chebyshev,
+// to the nearest cell that something visible may be in, as far as the brick reaches; where painted is 0, no voxel of the
+// cell is of a group.
 #ifndef SHVR_PAGES_H
 #define SHVR_PAGES_H
 #include "leap.h"
@@ -18,6 +19,8 @@ SHARED_CONST uint PAGE_DISTANCE_SHIFT = 28u;
 SHARED_CONST uint PAGE_LEVEL_SHIFT = 24u;
 SHARED_CONST uint PAGE_NODE = 15u;
 SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
+SHARED_CONST uint CELL_PAINTED = 1u;
+SHARED_CONST uint CELL_DISTANCE_SHIFT = 1u;
 /// Cells of the directory's grid along one axis, at most: rebuilt for every new view.
 SHARED_CONST uint PAGE_GRID = 32u;
 
@@ -36,7 +39,6 @@ struct BrickLeapParams {
     float table_scale;
     uint table_entries;
     uint skipping;
-    uvec3 mask_slots;
 };
 
 SHARED_END

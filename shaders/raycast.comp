@@ -55,7 +55,7 @@ layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB, op
 layout(binding = 4, rgba32f) uniform writeonly image3D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
-layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;   // per brick: slot + 1, 0 = none
+layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;   // mask.glsl
 layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups;
 #endif
 
@@ -92,12 +92,13 @@ layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB
 struct Place {
     uint distance;   // in cells
     uint slot;
+    bool is_painted;  // perhaps
 };
 
 Place place_at(const RaycastParams params, vec3 position)
 {
     const uint entry = imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
-    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK);
+    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK, (entry & LEAP_PAINTED) != 0u);
 }
 #endif
 
@@ -147,7 +148,7 @@ vec4 painted(const RaycastParams params, vec3 position, vec4 look)
     const uvec3 voxel = uvec3(position);
     const uint slot = mask_slot_of(voxel / BRICK_SIZE, params.brick_counts);
     if (slot == 0u) return look;
-    const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot, params.mask_slots) + voxel % BRICK_SIZE)).x;
+    const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
     if (SLICE != 0u) {
         const float share = groups.looks[group].opacity > 0.0 ? params.slice_paint : 0.0;
@@ -174,7 +175,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, const
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
     vec4 look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density));
 #ifdef MASKED
-    look = painted(params, position, look);
+    if (place.is_painted) look = painted(params, position, look);
 #endif
     if (COUNT_WORK != 0u) {
         ++work.samples;

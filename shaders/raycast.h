@@ -35,7 +35,6 @@ struct RaycastParams {
     vec3 inverse_spacing;
     uvec3 cell_counts;
     uvec3 brick_counts;
-    uvec3 mask_slots;     ///< atlas of mask bricks
     uvec3 page_counts;    ///< cells of the directory's grid, see pages.h
     uint page_shift;      ///< log2 of such a cell's side in voxels
     uint page_depth;      ///< how far the directory's nodes go down

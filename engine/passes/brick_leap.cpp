@@ -44,13 +44,11 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
         pass.read("cell_ranges", volume.cell_ranges);
         pass.block("jobs", batch);
         pass.block("visible_intervals", std::span<const uint32_t>(visibility.visible_intervals));
-        gpu::BrickLeapParams params = visibility.params;
         if (mask) {
             pass.read("mask", mask->mask);
             pass.block("visible_groups", std::span<const uint32_t>(visibility.visible_groups));
-            params.mask_slots = mask->slots;
         }
-        pass.push(params);
+        pass.push(visibility.params);
         pass.dispatch({8 * uint32_t(batch.size()), 8, 1});
         volume.pages->cell_leap = pass.write("cell_leap", volume.pages->cell_leap);
     }

@@ -13,7 +13,7 @@ namespace shvr {
 
 /// What decides whether a range of codes shows anything.
 struct Visibility {
-    gpu::BrickLeapParams params{};            ///< but for mask_slots
+    gpu::BrickLeapParams params{};
     std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
     std::array<uint32_t, 8> visible_groups{};
     /// As the kernels do it (shaders/occupancy.glsl).

@@ -13,9 +13,12 @@ CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_
     return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
 }
 
-void occupancy(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells)
+/// What decides whether cells are empty, but for where the result goes.
+Pass occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
+               const std::string& name)
 {
-    Pass pass = graph.compute(input.mask ? "leap_occupancy_masked" : "leap_occupancy");
+    Pass pass =
+        graph.compute("leap_occupancy" + std::string(input.mask ? "_masked" : "") + name, "leap_occupancy" + name);
     pass.read("cell_ranges", volume.cell_ranges);
     pass.read("page_table", volume.page_table);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
@@ -27,9 +30,11 @@ void occupancy(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& in
     gpu::OccupancyParams params = input.params;
     params.cell_begin = cells.begin;
     params.cell_end = cells.end;
+    params.changed_begin = input.changed.begin;
+    params.changed_end = input.changed.end;
     pass.push(params);
     pass.dispatch(cells.end - cells.begin);
-    volume.leap_scratch[0] = pass.write("leap", volume.leap_scratch[0]);
+    return pass;
 }
 
 void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, const CellBox& cells, Resource from,
@@ -49,12 +54,21 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 {
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, stage);
     switch (stage) {
-        case 0: return occupancy(graph, volume, input, cells);
+        case 0:
+            volume.leap_scratch[0] = occupancy(graph, volume, input, cells, "").write("leap", volume.leap_scratch[0]);
+            return;
         case 1: return distance(graph, volume, 0, cells, volume.leap_scratch[0], volume.leap_scratch[1]);
         case 2: return distance(graph, volume, 1, cells, volume.leap_scratch[1], volume.leap_scratch[0]);
         case 3: return distance(graph, volume, 2, cells, volume.leap_scratch[0], volume.leap);
         default: SHVR_CHECK(false, "stage ", stage);
     }
+}
+
+void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
+{
+    // As the last stage: the cells whose distance the changed ones may bound.
+    const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
+    volume.leap = occupancy(graph, volume, input, cells, "_patched").modify("leap", volume.leap);
 }
 
 }  // namespace shvr

@@ -5,6 +5,9 @@
 // changed, the stages cover no more than what those can reach.
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
+//
+// A patch is what a picture needs at once after a few cells changed: right, but some leaps are shorter than they could be
+// until the four stages have run. One thread a cell, few loads.
 
 #include <array>
 #include <optional>
@@ -18,6 +21,7 @@ namespace shvr {
 /// Half open.
 struct CellBox {
     glm::uvec3 begin{0}, end{0};
+    bool empty() const { return glm::any(glm::lessThanEqual(end, begin)); }
     bool operator==(const CellBox&) const = default;
 };
 
@@ -34,5 +38,8 @@ inline constexpr uint32_t LEAP_STAGES = 4;
 /// Adds one stage, 0 ... LEAP_STAGES - 1, and renews the handles of `volume` that it writes. The leap grid holds after the
 /// last one, provided that all four ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
+
+/// The grid that is there holds for what is now in the changed cells, too.
+void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input);
 
 }  // namespace shvr

@@ -124,13 +124,6 @@ void bind_opacities(Pass& pass, const OcclusionCellsInput& input)
     pass.block("opacities", std::span<const float>(input.opacities));
 }
 
-gpu::OcclusionCellsParams params_of(const OcclusionCellsInput& input)
-{
-    gpu::OcclusionCellsParams params = input.params;
-    if (input.mask) params.mask_slots = input.mask->slots;
-    return params;
-}
-
 void bind_leap(Pass& pass, const VolumeBinding& volume)
 {
     if (volume.pages)
@@ -154,7 +147,7 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
     Pass pass =
         graph.compute(variant("occlusion_gather", volume) + (input.near.mask ? "_masked" : ""), "occlusion_gather");
-    gpu::OcclusionGatherParams params{.voxels = params_of(input.near),
+    gpu::OcclusionGatherParams params{.voxels = input.near.params,
                                       .cell_counts = volume.cell_counts,
                                       .reach = occlusion_reach(input.taps.radius),
                                       .aprons = {},
@@ -180,7 +173,7 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs)
 {
     Pass pass = graph.compute(variant("occlusion_cells", volume) + (input.mask ? "_masked" : ""), "occlusion_cells");
-    const gpu::OcclusionCellsParams params = params_of(input);
+    const gpu::OcclusionCellsParams& params = input.params;
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
     bind_opacities(pass, input);

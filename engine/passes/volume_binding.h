@@ -44,7 +44,6 @@ struct RegionBricks {
 struct MaskBinding {
     Resource mask;        ///< r8ui, bricks without aprons
     Resource mask_table;  ///< slots of painted bricks, see shaders/mask.glsl
-    glm::uvec3 slots{1};
 };
 
 }  // namespace shvr

@@ -14,16 +14,20 @@ constexpr uint32_t BATCH = 128;  // bricks per upload: 4 MiB of staging
 
 }  // namespace
 
-void DeviceMask::grow(uint64_t slots)
+void DeviceMask::grow(uint64_t bricks)
 {
     const gpu::DeviceTraits& traits = memory_.device().traits();
     atlas_.reset();
-    atlas_slots_ = atlas_layout(slots, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
-    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, atlas_slots_ * gpu::BRICK_SIZE));
+    const glm::uvec3 slots =
+        atlas_layout(bricks + 1, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
+    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE));
     free_slots_.clear();
     slots_.clear();
-    for (uint32_t slot = atlas_slots_.x * atlas_slots_.y * atlas_slots_.z; slot > 0; --slot)
-        free_slots_.push_back(slot);
+    // The first corner is NO_SLOT. What is taken first comes last.
+    for (uint32_t z = slots.z; z-- > 0;)
+        for (uint32_t y = slots.y; y-- > 0;)
+            for (uint32_t x = slots.x; x-- > 0;)
+                if (const uint32_t slot = gpu::pack_slot({x, y, z}); slot != gpu::NO_SLOT) free_slots_.push_back(slot);
 }
 
 void DeviceMask::clear(bool hashed)
@@ -35,7 +39,7 @@ void DeviceMask::clear(bool hashed)
 uint32_t DeviceMask::slot_of(int64_t brick) const
 {
     const auto found = slots_.find(brick);
-    return found == slots_.end() ? 0 : found->second;
+    return found == slots_.end() ? gpu::NO_SLOT : found->second;
 }
 
 void DeviceMask::clear()
@@ -81,8 +85,7 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
         for (size_t i = 0; i < count; ++i) {
             const MaskBrick& brick = *mask.brick(changed[first + i]);
             voxels.insert(voxels.end(), brick.begin(), brick.end());
-            regions.push_back({i * MASK_BRICK_VOXELS,
-                               gpu::mask_slot_origin(slots_.at(changed[first + i]), atlas_slots_),
+            regions.push_back({i * MASK_BRICK_VOXELS, gpu::mask_slot_origin(slots_.at(changed[first + i])),
                                glm::uvec3(gpu::BRICK_SIZE)});
         }
         FrameGraph graph;
@@ -156,9 +159,7 @@ std::vector<VoxelBox> DeviceMask::bricks(const Size3& size) const
 
 MaskBinding DeviceMask::import(FrameGraph& graph) const
 {
-    return {.mask = graph.import("mask", atlas_.import()),
-            .mask_table = graph.import("mask table", table_.import()),
-            .slots = atlas_slots_};
+    return {.mask = graph.import("mask", atlas_.import()), .mask_table = graph.import("mask table", table_.import())};
 }
 
 }  // namespace shvr

@@ -23,7 +23,7 @@ public:
     void clear();
     /// The same for another volume. `hashed`: the table on the device is one of painted bricks only (shaders/mask.glsl).
     void clear(bool hashed);
-    /// Of a painted brick on the device; 0 where it is not there.
+    /// Of a painted brick on the device; gpu::NO_SLOT where it is not there.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
     /// Voxels of the painted bricks of a volume of that size.
@@ -31,15 +31,14 @@ public:
     MaskBinding import(FrameGraph& graph) const;
 
 private:
-    void grow(uint64_t slots);
+    void grow(uint64_t bricks);
     void submit(FrameGraph graph);
     std::vector<uint32_t> dense_table(const Mask& mask) const;
     std::vector<uint32_t> hashed_table(const Mask& mask) const;
     gpu::Executor& executor_;
     gpu::Memory& memory_;
     bool hashed_ = false;
-    glm::uvec3 atlas_slots_{0};
-    std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot, from 1
+    std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot (gpu::pack_slot), never NO_SLOT
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;
     std::vector<gpu::Submission> in_flight_;

@@ -291,8 +291,7 @@ OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std:
                     .level = uint32_t(level),
                     .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
                     .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
-                    .brick_counts = glm::uvec3(brick_counts(volume_->info().size)),
-                    .mask_slots = glm::uvec3(0)};
+                    .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
     for (const glm::vec4& entry : bake_table(look_->function, stretch, table.table_entries))
         input.opacities.push_back(entry.a);
     input.mask = mask;

@@ -188,16 +188,6 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
     return look;
 }
 
-bool Renderer::LeapState::operator==(const LeapState& other) const
-{
-    const auto members = [](const LeapState& state) {
-        const gpu::OccupancyParams& p = state.params;
-        return std::tie(p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries, p.skipping,
-                        state.visible_intervals, state.visible_groups);
-    };
-    return members(*this) == members(other);
-}
-
 Renderer::Renderer(const Options& options)
     : device_(options.device),
       host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : uint64_t{2} << 30),
@@ -240,7 +230,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     offsets_.reset();
     resident_ = nullptr;
     paged_ = nullptr;
-    leap_state_.reset();
+    empty_space_.forget();
     statistics_ = statistics;
     const bool filtered = filters(settings.sampling);
     const bool comes_and_goes = pages(*source, settings.paging, with_occlusion);
@@ -282,17 +272,8 @@ void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
         for (int64_t brick : bricks) occlusion_.changed(voxels_of({0, position_of(brick)}, volume_->info().size));
     for (int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick));
-        cells_changed({first, first + gpu::BRICK_CELLS});
+        empty_space_.changed({first, first + gpu::BRICK_CELLS});
     }
-}
-
-/// The leap grid there is renewed before anything is drawn.
-void Renderer::cells_changed(const CellBox& cells)
-{
-    if (!leap_state_) return;
-    const CellBox before = leap_stage_ == LEAP_STAGES ? CellBox{glm::uvec3(~0u), glm::uvec3(0)} : leap_changed_;
-    leap_changed_ = {glm::min(before.begin, cells.begin), glm::max(before.end, cells.end)};
-    leap_stage_ = 0;
 }
 
 const Renderer::Table& Renderer::table_of(const Session& session, double step_voxels)
@@ -328,21 +309,11 @@ LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& v
                     .table_upper = map.upper,
                     .table_scale = map.scale,
                     .table_entries = TABLE_ENTRIES,
-                    .skipping = session.render.skip_empty_space,
-                    .mask_slots = glm::uvec3(0)};
+                    .skipping = session.render.skip_empty_space};
     input.visible_intervals = table.visible_intervals;
     input.visible_groups = visible_groups(session);
-    LeapState state{input.params, input.visible_intervals, input.visible_groups};
-    if (!mask_.empty()) {
-        input.mask = mask_.import(graph);
-        input.params.mask_slots = input.mask->slots;
-    }
-    if (!leap_state_ || !(*leap_state_ == state)) {
-        leap_state_ = std::move(state);
-        leap_stage_ = 0;
-        leap_changed_ = {glm::uvec3(0), volume.cell_counts};
-    }
-    input.changed = leap_changed_;
+    if (!mask_.empty()) input.mask = mask_.import(graph);
+    empty_space_.want(input, volume.cell_counts);
     return input;
 }
 
@@ -355,8 +326,7 @@ Visibility Renderer::visibility_of(const Session& session)
                        .table_upper = map.upper,
                        .table_scale = map.scale,
                        .table_entries = TABLE_ENTRIES,
-                       .skipping = session.render.skip_empty_space,
-                       .mask_slots = glm::uvec3(0)},
+                       .skipping = session.render.skip_empty_space},
             .visible_intervals = table.visible_intervals,
             .visible_groups = visible_groups(session)};
 }
@@ -390,8 +360,19 @@ std::optional<FrameGraph> Renderer::next_preparation(const Session& session)
     FrameGraph graph;
     VolumeBinding volume = resident_->import(graph);
     const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    if (leap_stage_ == LEAP_STAGES) return std::nullopt;
-    leap_grid_stage(graph, volume, leap, leap_stage_++);
+    if (!empty_space_.is_due()) return std::nullopt;
+    empty_space_.prepare(graph, volume, leap);
+    return graph;
+}
+
+std::optional<FrameGraph> Renderer::next_refinement(const Session& session)
+{
+    if (!refinement_is_due()) return std::nullopt;
+    FrameGraph graph;
+    VolumeBinding volume = resident_->import(graph);
+    const LeapGridInput leap = want_leap_grid(graph, volume, session);
+    if (!empty_space_.is_worth_refining()) return std::nullopt;
+    empty_space_.refine(graph, volume, leap);
     return graph;
 }
 
@@ -405,7 +386,7 @@ VolumeBinding Renderer::import_prepared(FrameGraph& graph, const Session& sessio
     }
     VolumeBinding volume = resident_->import(graph);
     const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    while (leap_stage_ < LEAP_STAGES) leap_grid_stage(graph, volume, leap, leap_stage_++);
+    while (empty_space_.is_due()) empty_space_.prepare(graph, volume, leap);
     mask = leap.mask;
     return volume;
 }
@@ -482,7 +463,6 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
         input.surfaces = draw_surfaces(graph, prepared, input, shot.camera, part);
     }
     if (input.mask) {
-        input.params.mask_slots = input.mask->slots;
         input.groups = group_looks(session, step_voxels);
     }
     return prepared;

@@ -2,7 +2,8 @@
 // Makes pictures: owns the volume, the mask and the leap grid on the device, and lists the passes of a frame in order.
 //
 //   [look changed]            upload transfer function
-//   [look or mask changed]    leap_occupancy -> leap_distance x, y, z      (one thread a cell)
+//   [look changed]            leap_occupancy -> leap_distance x, y, z      (one thread a cell)
+//   [paint or offsets]        leap_occupancy_patched, the above when idle  (one thread a cell around them)
 //   [surfaces or a probe]     surfaces                                     (one thread a pixel)
 //   every part of a picture   raycast                                      (one thread a pixel)
 //
@@ -18,6 +19,7 @@
 #include "engine/base/image.h"
 #include "engine/passes/raycast.h"
 #include "engine/scene/device_mask.h"
+#include "engine/scene/empty_space.h"
 #include "engine/scene/occlusion.h"
 #include "engine/scene/paged_volume.h"
 #include "engine/scene/resident_volume.h"
@@ -140,6 +142,9 @@ public:
     /// What has to be computed before parts of `session` are drawn, one short graph at a time; nothing when all is ready.
     /// Whoever does not ask gets it all in the first `draw`. The graph must be submitted before the next call.
     std::optional<FrameGraph> next_preparation(const Session& session);
+    /// What makes pictures of it come sooner without making them different, for when nothing else is to be done; likewise.
+    std::optional<FrameGraph> next_refinement(const Session& session);
+    bool refinement_is_due() const { return resident_ && empty_space_.is_worth_refining(); }
 
     /// The next slice of the ambient occlusion that `session` wants, as seen from `camera`; nothing where it wants none or
     /// all is made. Must be submitted before the next call. Pictures are drawn with what is made so far.
@@ -192,7 +197,6 @@ private:
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
     Resource upload_table(FrameGraph& graph, const Table& table);
-    void cells_changed(const CellBox& cells);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
         VolumeBinding volume;
@@ -226,16 +230,7 @@ private:
     std::optional<Table> baked_;
     gpu::Storage table_;
     bool table_is_on_device_ = false;
-    /// What the leap grid on the device was built from.
-    struct LeapState {
-        gpu::OccupancyParams params;
-        std::vector<uint32_t> visible_intervals;
-        std::array<uint32_t, 8> visible_groups;  ///< whether anything is painted or not
-        bool operator==(const LeapState& other) const;
-    };
-    std::optional<LeapState> leap_state_;
-    uint32_t leap_stage_ = 0;  ///< the next of LEAP_STAGES
-    CellBox leap_changed_;     ///< the cells that the stages are about
+    EmptySpace empty_space_;
 };
 
 /// Whether the light of a session makes ambient occlusion.

@@ -36,7 +36,7 @@ void Renderer::update_density(const DensityField& field, std::span<const VoxelBo
         Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
         for (int axis = 0; axis < 3; ++axis)
             if (box.upper[axis] >= info.size[axis]) upper[axis] = gpu::BRICK_CELLS * field.brick_counts()[axis];
-        cells_changed(
+        empty_space_.changed(
             {glm::uvec3(lower), glm::min(glm::uvec3(upper), gpu::BRICK_CELLS * glm::uvec3(field.brick_counts()))});
     }
 }

@@ -168,7 +168,15 @@ bool View::submit_next(bool sketches_alone)
         start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
         return submit_next(sketches_alone);
     }
-    return false;
+    return running_.empty() && submit_refinement();
+}
+
+bool View::submit_refinement()
+{
+    std::optional<FrameGraph> graph = renderer_.next_refinement(shown_scene_->session);
+    if (!graph) return false;
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    return true;
 }
 
 bool View::submit_preparation(const Scene& scene)
@@ -494,7 +502,7 @@ bool View::is_finished() const
 {
     if (!scene_) return true;
     if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
-    if (occlusion_is_due()) return false;
+    if (occlusion_is_due() || renderer_.refinement_is_due()) return false;
     return (patch_.shown.share == 1.0 || patch_.shown.part.empty()) &&
            std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
 }

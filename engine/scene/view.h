@@ -140,6 +140,7 @@ private:
     bool submit_next(bool sketches_alone);
     bool may_draw(const Tile& tile) const;
     bool submit_preparation(const Scene& scene);
+    bool submit_refinement();
     Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
     void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
     bool submit_sketch(Sketch& sketch, Purpose purpose);

@@ -41,6 +41,8 @@ Grid grid_of(OnDevice& device, const Session& session)
     return grid;
 }
 
+constexpr uint32_t REST = gpu::LEAP_PAINTED | gpu::LEAP_SLOT_MASK;
+
 template <class Visit>
 void for_each_cell(const glm::ivec3& counts, const Visit& visit)
 {
@@ -106,6 +108,22 @@ void check_occupancy(const TestVolume& volume, const Session& session, const Gri
     });
     CHECK(lost == 0);
     CHECK(idle == 0);
+}
+
+/// A cell is painted where any of its voxels is of a group.
+void check_painted(const Grid& grid, const Mask& mask)
+{
+    size_t wrong = 0;
+    for_each_cell(grid.counts, [&](const glm::ivec3& cell) {
+        bool is_painted = false;
+        for_each_cell(glm::ivec3(gpu::CELL_SIZE), [&](const glm::ivec3& offset) {
+            const Size3 voxel = Size3(int(gpu::CELL_SIZE) * cell + offset);
+            if (glm::all(glm::lessThan(voxel, mask.size()))) is_painted = is_painted || mask.at(voxel) != 0;
+        });
+        const size_t index = size_t(cell.x + grid.counts.x * (cell.y + grid.counts.y * cell.z));
+        wrong += is_painted != ((grid.entries[index] & gpu::LEAP_PAINTED) != 0);
+    });
+    CHECK(wrong == 0);
 }
 
 /// Voxels of 50000 at the given places, 1000 elsewhere.
@@ -211,7 +229,18 @@ TEST_CASE_FIXTURE(OnDevice, "random looks of a random field occupy what they sho
     }
 }
 
-TEST_CASE_FIXTURE(OnDevice, "painting renews what it can reach, and that is enough")
+namespace {
+
+struct Refining : OnDevice {
+    void refine(const Session& session)
+    {
+        while (std::optional<FrameGraph> graph = renderer().next_refinement(session)) renderer().executor().run(*graph);
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Refining, "painting patches what it can reach, and refining makes that exact")
 {
     load(dots({150, 130, 140}, {{3, 3, 3}, {140, 120, 130}}));
     const Session session = bright_session();
@@ -220,6 +249,7 @@ TEST_CASE_FIXTURE(OnDevice, "painting renews what it can reach, and that is enou
     Annotator annotator(renderer());
     std::mt19937 random(63);  // seed 63
     const auto below = [&](int end) { return int(random() % uint32_t(end)); };
+    draw(session, camera_looking("front", volume().info()));
     for (int trial = 0; trial < 25; ++trial) {
         CAPTURE(trial);
         if (trial % 5 == 4)
@@ -229,8 +259,40 @@ TEST_CASE_FIXTURE(OnDevice, "painting renews what it can reach, and that is enou
                              .group = uint8_t(trial % 3),
                              .radius_voxels = 1.0 + below(8),
                              .path = {{below(150), below(130), below(140)}, {below(150), below(130), below(140)}}});
+        const Grid patched = grid_of(*this, session);
+        if (trial % 2 == 0) refine(session);  // every other time two changes come before it
         const Grid renewed = grid_of(*this, session);
         draw(other, camera_looking("front", volume().info()));
-        CHECK(renewed.entries == grid_of(*this, session).entries);
+        const Grid fresh = grid_of(*this, session);
+        if (trial % 2 == 0) CHECK(renewed.entries == fresh.entries);
+        size_t wrong = 0;
+        for (size_t i = 0; i < fresh.entries.size(); ++i) {
+            const uint32_t distance = patched.entries[i] >> gpu::LEAP_DISTANCE_SHIFT;
+            const uint32_t exact = fresh.entries[i] >> gpu::LEAP_DISTANCE_SHIFT;
+            const uint32_t differing = patched.entries[i] ^ fresh.entries[i];
+            wrong += distance > exact || (distance == 0) != (exact == 0) || (differing & REST) != 0;
+        }
+        CHECK(wrong == 0);
+        check_painted(fresh, annotator.document().mask);
+        refine(session);
+        CHECK(!renderer().refinement_is_due());
     }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a patch covers what a change can reach and no more, and costs less than all stages")
+{
+    load(dots({256, 256, 256}, {{3, 3, 3}, {250, 250, 250}}));
+    const Session session = bright_session();
+    draw(session, camera_looking("front", volume().info()));
+    Annotator annotator(renderer());
+    annotator.paint({.brush = Brush::fill, .group = 1, .radius_voxels = 4.0, .path = {{128.5, 128.5, 128.5}}});
+    const std::optional<FrameGraph> patch = renderer().next_preparation(session);
+    REQUIRE(patch);
+    REQUIRE(patch->passes().size() > 0);
+    uint64_t threads = 0;
+    for (const PassData& pass : patch->passes())
+        if (pass.kernel.starts_with("leap")) threads += uint64_t(pass.threads.x) * pass.threads.y * pass.threads.z;
+    // The ball's bricks, two a side, and a reach around them.
+    const uint64_t side = 2 * gpu::BRICK_CELLS + 2 * gpu::LEAP_LIMIT;
+    CHECK(threads == side * side * side);
 }

@@ -34,21 +34,20 @@ Members raycast_params()
             MEMBER(RaycastParams, box_upper),     MEMBER(RaycastParams, position_limit),
             MEMBER(RaycastParams, spacing),       MEMBER(RaycastParams, inverse_spacing),
             MEMBER(RaycastParams, cell_counts),   MEMBER(RaycastParams, brick_counts),
-            MEMBER(RaycastParams, mask_slots),    MEMBER(RaycastParams, page_counts),
-            MEMBER(RaycastParams, page_shift),    MEMBER(RaycastParams, page_depth),
-            MEMBER(RaycastParams, step),          MEMBER(RaycastParams, opacity_limit),
-            MEMBER(RaycastParams, table_lower),   MEMBER(RaycastParams, table_upper),
-            MEMBER(RaycastParams, table_scale),   MEMBER(RaycastParams, table_entries),
-            MEMBER(RaycastParams, background),    MEMBER(RaycastParams, light),
-            MEMBER(RaycastParams, ambient),       MEMBER(RaycastParams, diffuse),
-            MEMBER(RaycastParams, specular),      MEMBER(RaycastParams, shininess),
-            MEMBER(RaycastParams, gradient_fade), MEMBER(RaycastParams, depth_plane),
-            MEMBER(RaycastParams, blend_color),   MEMBER(RaycastParams, blend_size),
-            MEMBER(RaycastParams, blend_rate),    MEMBER(RaycastParams, slice_black),
-            MEMBER(RaycastParams, slice_scale),   MEMBER(RaycastParams, slice_paint),
-            MEMBER(RaycastParams, shell_center),  MEMBER(RaycastParams, shell_reach),
-            MEMBER(RaycastParams, shell_code),    MEMBER(RaycastParams, shell_color),
-            MEMBER(RaycastParams, shell_opacity)};
+            MEMBER(RaycastParams, page_counts),   MEMBER(RaycastParams, page_shift),
+            MEMBER(RaycastParams, page_depth),    MEMBER(RaycastParams, step),
+            MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
+            MEMBER(RaycastParams, table_upper),   MEMBER(RaycastParams, table_scale),
+            MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, background),
+            MEMBER(RaycastParams, light),         MEMBER(RaycastParams, ambient),
+            MEMBER(RaycastParams, diffuse),       MEMBER(RaycastParams, specular),
+            MEMBER(RaycastParams, shininess),     MEMBER(RaycastParams, gradient_fade),
+            MEMBER(RaycastParams, depth_plane),   MEMBER(RaycastParams, blend_color),
+            MEMBER(RaycastParams, blend_size),    MEMBER(RaycastParams, blend_rate),
+            MEMBER(RaycastParams, slice_black),   MEMBER(RaycastParams, slice_scale),
+            MEMBER(RaycastParams, slice_paint),   MEMBER(RaycastParams, shell_center),
+            MEMBER(RaycastParams, shell_reach),   MEMBER(RaycastParams, shell_code),
+            MEMBER(RaycastParams, shell_color),   MEMBER(RaycastParams, shell_opacity)};
 }
 
 Members preview_params()
@@ -76,7 +75,7 @@ Members occupancy_params()
             MEMBER(OccupancyParams, brick_counts),  MEMBER(OccupancyParams, table_lower),
             MEMBER(OccupancyParams, table_upper),   MEMBER(OccupancyParams, table_scale),
             MEMBER(OccupancyParams, table_entries), MEMBER(OccupancyParams, skipping),
-            MEMBER(OccupancyParams, mask_slots)};
+            MEMBER(OccupancyParams, changed_begin), MEMBER(OccupancyParams, changed_end)};
 }
 
 Members region_params()
@@ -91,7 +90,7 @@ Members brick_leap_params()
 {
     return {MEMBER(BrickLeapParams, table_lower), MEMBER(BrickLeapParams, table_upper),
             MEMBER(BrickLeapParams, table_scale), MEMBER(BrickLeapParams, table_entries),
-            MEMBER(BrickLeapParams, skipping),    MEMBER(BrickLeapParams, mask_slots)};
+            MEMBER(BrickLeapParams, skipping)};
 }
 
 Members brick_leap_jobs()
@@ -129,8 +128,7 @@ Members occlusion_cells_params()
     return {MEMBER(OcclusionCellsParams, table_lower), MEMBER(OcclusionCellsParams, table_upper),
             MEMBER(OcclusionCellsParams, table_scale), MEMBER(OcclusionCellsParams, table_entries),
             MEMBER(OcclusionCellsParams, level),       MEMBER(OcclusionCellsParams, lower),
-            MEMBER(OcclusionCellsParams, upper),       MEMBER(OcclusionCellsParams, brick_counts),
-            MEMBER(OcclusionCellsParams, mask_slots)};
+            MEMBER(OcclusionCellsParams, upper),       MEMBER(OcclusionCellsParams, brick_counts)};
 }
 
 gpu::KernelInterface interface_of(const std::string& name)
