@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/scene/label_looks.h"
 #include "engine/scene/trace_look.h"
 
 namespace shvr::ui {
@@ -112,7 +113,7 @@ void Document::save()
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
     annotator.name_files(session.mask_path, session.trace_path, session.density_path);
-    annotator.save();
+    annotator.save(label_looks(session.groups, annotator.document().mask));
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
     is_saved = true;

@@ -13,9 +13,6 @@
 
 namespace shvr {
 
-/// Whether the file or folder says itself how large it is.
-bool is_mask_volume(const std::filesystem::path& path);
-
 /// The records that make an unpainted mask of this one. Fails where it is of another size or, where it states one, spacing
 /// (of which both are named), and where it is not of 8 bits without sign.
 std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);

@@ -95,8 +95,8 @@ TraceMeasures measure(const TraceGraph& trace)
 
 std::optional<double> micrometres_in(const std::string& unit)
 {
-    constexpr std::pair<const char*, double> UNITS[] = {{"um", 1.0}, {"nm", 1e-3}, {"mm", 1e3},
-                                                        {"cm", 1e4}, {"m", 1e6},   {"pm", 1e-6}};
+    constexpr std::pair<const char*, double> UNITS[] = {{"um", 1.0}, {"nm", 1e-3}, {"mm", 1e3},      {"cm", 1e4},
+                                                        {"m", 1e6},  {"pm", 1e-6}, {"inch", 25400.0}};
     for (const auto& [name, micrometres] : UNITS)
         if (unit == name) return micrometres;
     return std::nullopt;

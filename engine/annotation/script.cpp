@@ -185,30 +185,38 @@ NodeOp read_node(const Fields& fields)
     return {fields.point("at"), fields.radius("radius"), fields.group("group")};
 }
 
+/// How far what is near may be; `key` is the one that says where it is.
+std::optional<double> read_within(const Fields& fields, const std::string& key)
+{
+    if (fields.find("within") && !key.starts_with("near"))
+        fields.refuse("key within is given with ", key, "; expected it with near");
+    return fields.radius("within");
+}
+
 SelectOp read_select(const Fields& fields)
 {
     fields.allow({"near", "near_internode", "within", "node", "internode"});
     const std::string key = fields.one_of({"near", "near_internode", "node", "internode"});
     SelectOp op;
     op.is_internode = key == "near_internode" || key == "internode";
-    if (key == "near" || key == "near_internode") {
+    if (key == "near" || key == "near_internode")
         op.near = fields.point(key.c_str());
-        op.within_voxels = fields.radius("within");
-    } else {
-        if (fields.find("within")) fields.refuse("key within is given with ", key, "; expected it with near");
+    else
         op.number = fields.item(key.c_str());
-    }
+    op.within_voxels = read_within(fields, key);
     return op;
 }
 
 LinkOp read_link(const Fields& fields)
 {
-    fields.allow({"near", "node"});
+    fields.allow({"near", "within", "node"});
+    const std::string key = fields.one_of({"near", "node"});
     LinkOp op;
-    if (fields.one_of({"near", "node"}) == std::string("near"))
+    if (key == "near")
         op.near = fields.point("near");
     else
         op.node = fields.item("node");
+    op.within_voxels = read_within(fields, key);
     return op;
 }
 

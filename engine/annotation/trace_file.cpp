@@ -81,7 +81,7 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
     else if (form == ".txt")
         read_trace_text(reader, text);
     else if (form == ".rsml")
-        read_trace_rsml(reader, text);
+        read_trace_rsml(reader, text, expected);
     else
         read_trace_swc(reader, text);
     const StatedSpace& stated = reader.stated;

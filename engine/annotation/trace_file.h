@@ -6,9 +6,9 @@
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
 //   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Positions and radii are in the volume's unit in all of them but RSML, which counts in voxels along x. The way to
-// pixels and back costs the last bit or two. An internode has no group of its own in SWC and RSML, and only GraphML
-// keeps numbers and the sizes of groups.
+// Positions and radii are in the volume's unit, but RSML counts in pixels: we write voxels along x, and convert from other
+// units of length. The way there and back costs the last bit or two. An internode has no group of its own in SWC and RSML,
+// and only GraphML keeps numbers and the sizes of groups.
 //
 // Files come from strangers: every refusal is one sentence with file, line or element, value and what was expected.
 // Any thread may call these.
@@ -43,7 +43,7 @@ struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< where the file states all of it
 };
-/// At most 256 MiB and 4 million nodes. Fails where the file states a size, spacing or unit that is not `expected`'s.
+/// At most 256 MiB and 4 million nodes. Fails where a stated size, spacing or unit (RSML: no length) is not `expected`'s.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` knows the extension.

@@ -50,7 +50,8 @@ private:
 void read_trace_text(TraceReader& reader, std::string_view text);
 void read_trace_swc(TraceReader& reader, std::string_view text);
 void read_trace_graphml(TraceReader& reader, std::string_view text);
-void read_trace_rsml(TraceReader& reader, std::string_view text);
+/// `volume`: whose unit lengths are converted to, where both are units of length.
+void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume);
 
 /// A trace as trees: every node once, parents before children.
 struct TraceTrees {

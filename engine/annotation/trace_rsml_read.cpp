@@ -1,11 +1,15 @@
 // Reading RSML (trace_rsml.cpp writes it): metadata's unit and resolution, and of each root its polyline, its functions
 // "diameter" and "group" along the polyline, and its roots. Elements and attributes beyond these are passed over, as other
 // programs have many. A root below another one begins at the parent's node where its first point lies, or is joined to the
-// nearest one of them. Where no resolution is stated a pixel is one unit, and where no diameter is, a radius is one pixel.
+// nearest one of them. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution` of them make
+// one `unit`. A unit that is "pixel" is a voxel along x, and so it is where neither is stated; one that is left out is the
+// volume's, and a resolution that is left out is 1. Lengths come out in the volume's unit. Where no diameter is stated, a
+// radius is one pixel.
 
 #include <memory>
 #include <pugixml.hpp>
 
+#include "engine/annotation/measures.h"
 #include "engine/annotation/trace_forms.h"
 #include "engine/annotation/trace_index.h"
 #include "engine/base/error.h"
@@ -37,7 +41,7 @@ std::string value_of(const pugi::xml_node& node)
 
 class RsmlReader {
 public:
-    explicit RsmlReader(TraceReader& reader) : reader_(reader) {}
+    RsmlReader(TraceReader& reader, const std::optional<TraceSpace>& volume) : reader_(reader), volume_(volume) {}
 
     void read(std::string_view text)
     {
@@ -68,9 +72,9 @@ private:
 
     void read_metadata(const pugi::xml_node& metadata)
     {
-        const std::string unit = plain_unit(trimmed(child_named(metadata, "unit").text().get()));
-        if (!unit.empty() && unit != "pixel" && unit != "pixels" && unit != "px") reader_.stated.unit = unit;
         const std::string text(trimmed(child_named(metadata, "resolution").text().get()));
+        const std::string unit = plain_unit(trimmed(child_named(metadata, "unit").text().get()));
+        take_unit(unit.empty() && text.empty() ? "pixel" : unit);
         if (text.empty()) return;
         const std::optional<double> resolution = number_of(text);
         // Far beyond any scan, and near enough to 1 that nothing overflows.
@@ -79,6 +83,25 @@ private:
                  "; expected pixels to the unit, a number from 1e-12 to 1e12");
         pixels_per_unit_ = *resolution;
     }
+
+    /// A unit that cannot be converted stays stated, which is refused where it is not the volume's.
+    void take_unit(const std::string& unit)
+    {
+        const std::string lower = lower_case(unit);
+        if (lower == "pixel" || lower == "pixels" || lower == "px") {
+            if (volume_) per_unit_ = volume_->spacing.x;
+            return;
+        }
+        if (unit.empty()) return;
+        reader_.stated.unit = unit;
+        if (!volume_ || unit == volume_->unit) return;
+        const std::optional<double> from = micrometres_in(unit), to = micrometres_in(volume_->unit);
+        if (!from || !to) return;
+        per_unit_ = *from / *to;
+        reader_.stated.unit = volume_->unit;
+    }
+
+    double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }
 
     /// In document's order, without recursion: nesting may be deep.
     void read_plant(const pugi::xml_node& plant)
@@ -129,9 +152,9 @@ private:
         const auto axis = std::make_shared<Axis>();
         axis->is_parent = bool(child_named(root, "root"));
         for (size_t i = 0; i < points.size(); ++i) {
-            TraceNode node{position_of(where, points[i]), 1.0 / pixels_per_unit_,
+            TraceNode node{position_of(where, points[i]), length(1.0),
                            reader_.group(where, groups.empty() ? group : groups[i])};
-            if (!diameters.empty()) node.radius = 0.5 * reader_.radius(where, diameters[i]) / pixels_per_unit_;
+            if (!diameters.empty()) node.radius = length(0.5 * reader_.radius(where, diameters[i]));
             add_point(where, node, i == 0 ? parent : nullptr, *axis);
         }
         return axis;
@@ -162,20 +185,22 @@ private:
     glm::dvec3 position_of(const std::string& where, const pugi::xml_node& point) const
     {
         const auto coordinate = [&](const char* name, const char* otherwise) {
-            return reader_.coordinate(where, name, point.attribute(name).as_string(otherwise)) / pixels_per_unit_;
+            return length(reader_.coordinate(where, name, point.attribute(name).as_string(otherwise)));
         };
         return {coordinate("x", ""), coordinate("y", ""), coordinate("z", "0")};
     }
 
     TraceReader& reader_;
+    const std::optional<TraceSpace>& volume_;
     double pixels_per_unit_ = 1.0;
+    double per_unit_ = 1.0;  ///< the volume's units to one of the file's
 };
 
 }  // namespace
 
-void read_trace_rsml(TraceReader& reader, std::string_view text)
+void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume)
 {
-    RsmlReader(reader).read(text);
+    RsmlReader(reader, volume).read(text);
 }
 
 }  // namespace shvr

@@ -11,7 +11,7 @@
 #include "engine/annotation/mask_export.h"
 #include "engine/annotation/mask_image.h"
 #include "engine/annotation/mask_import.h"
-#include "engine/annotation/offset_file.h"
+#include "engine/annotation/offset_import.h"
 #include "engine/base/atomic_writer.h"
 
 namespace shvr {
@@ -176,7 +176,7 @@ void Work::load_files()
         for (const MaskBrickChange& change : changes) document_.mask.apply(change, Direction::forwards);
     }
     if (is_there(files_.trace)) document_.trace = load_trace(files_.trace, space_of(files_.volume)).trace;
-    if (is_there(files_.density)) document_.density = load_offsets(files_.density, size_, type_);
+    if (is_there(files_.density)) document_.density = import_offsets(files_.density, space_of(files_.volume), type_);
     for (const fs::path& path : {files_.mask, files_.trace, files_.density})
         if (is_there(path)) loaded_[path] = fs::last_write_time(path);
 }
@@ -375,7 +375,7 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
     files_.density = density;
 }
 
-std::vector<fs::path> Work::save()
+std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
 {
     const bool has_mask = !document_.mask.painted_bricks().empty();
     const bool has_trace = !document_.trace.nodes().empty(), has_offsets = document_.density.voxels() > 0;
@@ -392,7 +392,8 @@ std::vector<fs::path> Work::save()
     }
     std::vector<fs::path> written;
     if (!files_.mask.empty()) {
-        save_mask_as(files_.mask, document_.mask, files_.volume, {.painted_on = files_.volume_hash});
+        save_mask_as(files_.mask, document_.mask, files_.volume,
+                     {.colors = std::move(looks), .painted_on = files_.volume_hash});
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }
@@ -405,7 +406,7 @@ std::vector<fs::path> Work::save()
         written.push_back(files_.trace);
     }
     if (is_to_write(touched_.density, has_offsets, files_.density)) {
-        save_offsets(files_.density, document_.density);
+        save_offsets_as(files_.density, document_.density, files_.volume);
         written.push_back(files_.density);
     }
     loaded_.clear();

@@ -17,6 +17,7 @@
 #include "engine/annotation/journal.h"
 #include "engine/annotation/journal_record.h"
 #include "engine/annotation/trace_file.h"
+#include "engine/volume/import_volume.h"
 
 namespace shvr {
 
@@ -55,10 +56,10 @@ public:
     /// No step of the history. What is selected must be there.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each whole or not at all, and notes it in the journal. A trace or offsets that have not changed are
-    /// left as they are. Fails where one cannot be written (a second try may succeed), and where there is something to save and no
-    /// file named for it. Returns the files it wrote.
-    std::vector<std::filesystem::path> save();
+    /// Writes the files, each whole or not at all, and notes it in the journal; a label image gets the groups' `looks`. What has
+    /// not changed, of trace and offsets, is left as it is. Fails where one cannot be written (a second try may succeed), and
+    /// where there is something to save and no file named for it. Returns the files it wrote.
+    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {});
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undone and redone ones included, since the last save.

@@ -71,7 +71,11 @@ public:
 
     /// As Work's; what is there comes to the device.
     std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
-    std::vector<std::filesystem::path> save() { return work_.save(); }
+    /// As Work's.
+    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {})
+    {
+        return work_.save(std::move(looks));
+    }
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density)
     {

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/scene/label_looks.h"
 #include "engine/scene/session_color.h"
 #include "engine/scene/session_json.h"
 #include "engine/scene/transfer_presets.h"
@@ -57,40 +58,44 @@ std::unique_ptr<VolumeSource> open_source(const Session& session)
 
 namespace {
 
-/// Without what is found in the voxels.
-std::pair<nlohmann::json, OpenedSession> open_unmeasured(const fs::path& path, const std::vector<std::string>& settings)
+std::pair<nlohmann::json, UnmeasuredSession> open_unmeasured(const fs::path& path,
+                                                             const std::vector<std::string>& settings)
 {
     const fs::path session_file = session_file_of(path);
     const fs::path file = session_file.empty() ? path : session_file;
     nlohmann::json document = session_file.empty() ? document_for_volume(path)
                                                    : json_of(read_text(file, LARGEST_SESSION_FILE), file.string());
     apply_settings(document, settings);
-    OpenedSession opened;
-    opened.session = read_session(document, fs::absolute(file).parent_path(), file.string());
-    if (!session_file.empty()) opened.session.journal_path = journal_beside(session_file);
-    opened.source = open_source(opened.session);
+    UnmeasuredSession opened;
+    Session& session = opened.session;
+    session = read_session(document, fs::absolute(file).parent_path(), file.string());
+    if (!session_file.empty()) session.journal_path = journal_beside(session_file);
+    opened.source = open_source(session);
+    // A project whose record is sound knows its statistics, too.
+    std::error_code ignored;
+    const fs::path record = session.volume_path / PROJECT_RECORD;
+    if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))
+        session.volume_hash = read_project_record(record).content_hash;
     return {std::move(document), std::move(opened)};
 }
 
 }  // namespace
 
-std::shared_ptr<const VolumeSource> open_session_volume(const fs::path& path, const std::vector<std::string>& settings)
+UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vector<std::string>& settings)
 {
-    return open_unmeasured(path, settings).second.source;
+    return open_unmeasured(path, settings).second;
 }
 
 OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
 {
-    auto [document, opened] = open_unmeasured(path, settings);
+    auto [document, unmeasured] = open_unmeasured(path, settings);
+    OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}};
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed);
-    opened.session.volume_hash = hashed.hash();
-    // A project whose record is sound knows both.
-    std::error_code ignored;
-    const fs::path record = opened.session.volume_path / PROJECT_RECORD;
-    if (!opened.session.procedural && opened.source->statistics() && fs::exists(record, ignored))
-        opened.session.volume_hash = read_project_record(record).content_hash;
+    if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();
     opened.warnings = warnings_of(opened.statistics);
+    for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))
+        opened.warnings.push_back(std::move(warning));
     if (std::string& preset = opened.session.transfer_preset; !preset.empty())
         opened.session.transfer_function =
             transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);

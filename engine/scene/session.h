@@ -152,9 +152,14 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
-/// Its volume alone; voxels are not gone through.
-std::shared_ptr<const VolumeSource> open_session_volume(const std::filesystem::path& path,
-                                                        const std::vector<std::string>& settings = {});
+/// Without what is found in the voxels, which are not gone through: a transfer function is as the file says, and the hash is
+/// known of projects alone.
+struct UnmeasuredSession {
+    Session session;
+    std::shared_ptr<const VolumeSource> source;
+};
+UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
+                                          const std::vector<std::string>& settings = {});
 
 /// "scan.journal" for "scan.json".
 std::filesystem::path journal_beside(const std::filesystem::path& session_file);

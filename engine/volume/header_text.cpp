@@ -30,7 +30,7 @@ constexpr std::pair<const char*, const char*> UNITS[] = {
     {"millimeter", "mm"},  {"millimeters", "mm"}, {"millimetre", "mm"}, {"millimetres", "mm"}, {"nanometer", "nm"},
     {"nanometers", "nm"},  {"nanometre", "nm"},   {"nanometres", "nm"}, {"centimeter", "cm"},  {"centimeters", "cm"},
     {"centimetre", "cm"},  {"centimetres", "cm"}, {"meter", "m"},       {"meters", "m"},       {"metre", "m"},
-    {"metres", "m"},
+    {"metres", "m"},       {"inch", "inch"},      {"inches", "inch"},
 };
 
 template <class Number>

@@ -1,5 +1,6 @@
 """shvr export: what other programs get, read back by shvr or in plain Python."""
 import csv
+import json
 import math
 import struct
 import unittest
@@ -190,6 +191,36 @@ class Export(CliTest):
         self.assertEqual(found["label"]["colors"], [{"label-value": 3, "rgba": [255, 128, 0, 128]}])
         self.assertEqual(found["label"]["properties"], [{"label-value": 3, "name": "vessel"}])
 
+    def test_a_mask_that_is_saved_as_labels_keeps_the_looks_of_its_groups(self):
+        volume = {"procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"}
+        groups = {"3": {"name": "vessel", "color": "#ff8000", "opacity": 0.2}, "5": {"name": "not painted"}}
+        drawn = self.write_session("drawn.json", volume=volume, groups=groups, annotation={"mask": "own.zarr"})
+        paint = {"op": "paint", "brush": "fill", "region": "box", "threshold": 0, "radius": 4}
+        script = self.write_script("paint.jsonl", [{**paint, "group": 3, "path": [[5, 5, 5]]},
+                                                   {**paint, "group": 12, "path": [[14, 14, 20]]}, {"op": "save"}])
+        self.check("annotate", drawn, "--script", script)
+        label = read_by_zarr(self, self.folder / "own.zarr", self.folder / "bare")["label"]
+        self.assertEqual([color["label-value"] for color in label["colors"]], [3, 5, 12])
+        self.assertEqual(label["colors"][0]["rgba"], [255, 128, 0, 51])
+        self.assertEqual(label["colors"][2]["rgba"], [0x1f, 0x77, 0xb4, 255])  # the second of the ten
+        self.assertEqual(label["properties"], [{"label-value": 3, "name": "vessel"},
+                                               {"label-value": 5, "name": "not painted"},
+                                               {"label-value": 12, "name": "group 12"}])
+        # A session that knows nothing of them draws the same picture, and says the same of them.
+        plain = self.write_session("plain.json", volume=volume, annotation={"mask": "own.zarr"})
+        for session, name in [(drawn, "drawn"), (plain, "plain")]:
+            self.check("render", session, "-o", self.folder / f"{name}.png")
+            self.check("export", session, "--mask", self.folder / f"{name}.zarr")
+        self.assertEqual((self.folder / "drawn.png").read_bytes(), (self.folder / "plain.png").read_bytes())
+        self.assertEqual(json.loads((self.folder / "plain.zarr" / ".zattrs").read_text())["image-label"], label)
+        # What a session says itself goes before, whole.
+        own = self.write_session("own.json", volume=volume, groups={"3": {"name": "mine"}},
+                                 annotation={"mask": "own.zarr"})
+        self.check("export", own, "--mask", self.folder / "again.zarr")
+        again = json.loads((self.folder / "again.zarr" / ".zattrs").read_text())["image-label"]
+        self.assertEqual(again["colors"][0]["rgba"], [0x2c, 0xa0, 0x2c, 255])
+        self.assertEqual([entry["name"] for entry in again["properties"]], ["mine", "not painted", "group 12"])
+
     def test_a_project_takes_its_mask_as_labels_and_knows_it_again(self):
         for name, seed in [("project", 1), ("other", 2)]:
             header = Volume.noise((20, 12, 9), seed=seed).write(self.folder, name + "-volume")
@@ -230,6 +261,28 @@ class Export(CliTest):
         self.assertEqual((self.folder / "a.offset").read_bytes(), saved)
         self.assertTrue((self.folder / "a.nrrd").read_bytes().endswith(struct.pack(f"<{len(offsets)}f", *offsets)))
         for name in ["a.nrrd", "a.tif"]:
+            # A session that names such a file takes it, and saves in the same form.
+            other = self.write_session("other.json", annotation={"mask": "other.mask", "density": name}, volume={
+                "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
+            self.check("export", other, "--offset", self.folder / "b.offset")
+            self.assertEqual((self.folder / "b.offset").read_bytes(), saved)
+            first = struct.unpack_from("<h", saved)
+            script = self.write_script("more.jsonl", [
+                {"op": "density", "brush": "fill", "region": "box", "threshold": -1e9, "radius": 0.6, "offset": 7,
+                 "path": [[0.5, 0.5, 0.5]]}, {"op": "save"}])
+            self.assertEqual(first, (0,))
+            self.check("annotate", other, "--script", script)
+            (self.folder / "other.journal").unlink()
+            self.check("export", other, "--offset", self.folder / "b.offset")
+            again = (self.folder / "b.offset").read_bytes()
+            self.assertEqual((again[:2], again[2:]), (struct.pack("<h", 7), saved[2:]))
+            for size, spacing, says in [([24, 20, 41], self.SPACING, ["24 20 40", "24 20 41"]),
+                                        (self.SIZE, [0.5, 1, 2.5], ["0.5 1 2 mm", "0.5 1 2.5 mm"])]:
+                wrong = self.write_session("wrong.json", annotation={"density": name}, volume={
+                    "procedural": "constant", "size": size, "spacing": spacing, "unit": "mm"})
+                self.check_refused("export", wrong, "--offset", self.folder / "c.offset", says=[name, *says])
+            self.assertFalse((self.folder / "c.offset").exists())
+            self.export("--offset", self.folder / name)
             info = self.check_json("info", self.folder / name)
             self.assertEqual((info["type"], info["size"], info["unit"]), ("float32", self.SIZE, "mm"))
             self.assertEqual((info["min"], info["max"]), (-40, 0))

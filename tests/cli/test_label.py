@@ -1,6 +1,7 @@
 """shvr label: components of whole volumes, as plain Python finds them and as python3-zarr reads them."""
 import itertools
 import json
+import random
 import struct
 import subprocess
 import unittest
@@ -132,6 +133,55 @@ class Label(CliTest):
         self.assertEqual(found["label"]["source"], {"image": "../../"})
         self.assertEqual(found["type"], result["type"])
         self.assertEqual(self.check_json("info", project)["size"], list(self.SIZE))
+
+    def write_offsets(self, path, offsets):
+        """As the thesis has them, for a volume of 8 bits."""
+        path.write_bytes(struct.pack(f"<{len(offsets)}h", *offsets))
+
+    def test_density_offsets_are_added(self):
+        numbers = random.Random(4)
+        offsets = [numbers.randint(-255, 255) if numbers.randrange(4) == 0 else 0 for _ in self.volume.values]
+        session = self.write_session(volume={"path": self.header.name},
+                                     annotation={"mask": "paint.mask", "density": "raised.offset"})
+        labels = self.folder / "labels.nrrd"
+        arguments = ["label", session, "--threshold", 200, "--connectivity", 26, "-o", labels]
+        bare = self.expected(200, 26)
+        without = self.check_json(*arguments)
+        self.assertEqual((without["components"], without["voxels_with_offset"]), (max(bare), 0))
+        self.write_offsets(self.folder / "raised.offset", offsets)
+        (self.folder / "paint.mask").write_bytes(b"a mask of another volume is of no concern")
+        self.volume.values = [min(max(v + o, 0), 255) for v, o in zip(self.volume.values, offsets)]
+        expected = self.expected(200, 26)
+        self.assertNotEqual(max(expected), max(bare))
+        result = self.check_json(*arguments)
+        self.assertEqual(result["components"], max(expected))
+        self.assertEqual(result["foreground_voxels"], sum(label > 0 for label in expected))
+        self.assertEqual(result["voxels_with_offset"], sum(offset != 0 for offset in offsets))
+        letter = {"uint8": "B", "uint16": "H"}[result["type"]]
+        self.assertTrue(labels.read_bytes().endswith(struct.pack(f"<{len(expected)}{letter}", *expected)))
+        # A volume that is named itself has none.
+        self.assertEqual(self.label("--threshold", 200, "--connectivity", 26)["components"], max(bare))
+        (self.folder / "raised.offset").write_bytes(bytes(9))
+        self.check_refused(*arguments, says=["raised.offset", "holds 9 bytes"])
+
+    def test_offsets_open_and_close_a_path_in_a_project_before_they_are_saved(self):
+        size = (40, 9, 9)
+        values = [200 if x in (2, 3, 36, 37) and (y, z) == (4, 4) else 10
+                  for z, y, x in itertools.product(*map(range, size[::-1]))]
+        header, project = Volume(size, values).write(self.folder, "path"), self.folder / "project"
+        self.check("import", header, project)
+        count = lambda: self.check_json("label", project, "--threshold", 60)["components"]
+        self.assertEqual(count(), 2)
+        corridor = {"op": "density", "brush": "fill", "region": "ball", "threshold": 0, "radius": 1.2, "offset": 50,
+                    "path": [[4.5, 4.5, 4.5], [35.5, 4.5, 4.5]]}
+        script = self.write_script("open.jsonl", [corridor])
+        self.check("annotate", project, "--script", script)
+        journal = (project / "shvr" / "session.journal").read_bytes()
+        self.assertEqual(count(), 1)
+        self.assertEqual((project / "shvr" / "session.journal").read_bytes(), journal)
+        script = self.write_script("close.jsonl", [{**corridor, "offset": 49, "path": [[20.5, 4.5, 4.5]]}])
+        self.check("annotate", project, "--script", script)
+        self.assertEqual(count(), 2)
 
     def test_small_ones_are_left_out_and_the_largest_kept(self):
         everything = self.label("--threshold", 176)

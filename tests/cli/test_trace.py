@@ -105,6 +105,10 @@ class Trace(CliTest):
                                 {"op": "expect", "voxels_in_group": {"1": 0, "2": 0}}])
         self.assertGreater(result["voxels_changed"], 0)
 
+    def test_a_link_reaches_no_farther_than_it_may(self):
+        self.annotate([node(1, 1, 1), {"op": "deselect"}, node(6, 1, 1),
+                       {"op": "link", "near": [2, 1, 1], "within": 1.5}, expect(2, 1)])
+
     def test_what_cannot_be_done_is_said_with_the_line(self):
         for operations, words in [
                 ([{"op": "move", "to": [1, 1, 1]}], ["script.jsonl:1", "nothing is selected"]),
@@ -113,6 +117,8 @@ class Trace(CliTest):
                 ([node(1, 1, 1), {"op": "select", "node": 7}], ["there is no node 7"]),
                 ([node(1, 1, 1), node(2, 1, 1), {"op": "link", "near": [1, 1, 1]}], ["linked already"]),
                 ([node(1, 1, 1), {"op": "select", "near": [9, 1, 1], "within": 3}], ["8 voxels away", "within 3"]),
+                ([node(1, 1, 1), {"op": "deselect"}, node(6, 1, 1), {"op": "link", "near": [2, 1, 1], "within": 0.5}],
+                 ["script.jsonl:4", "the nearest other node is 1 voxels away", "within 0.5"]),
                 ([node(1, 1, 1), {"op": "select_segment"}], ["node 0 has no internodes"])]:
             with self.subTest(words=words):
                 stderr = self.annotate(operations, "--fresh", status=1).stderr

@@ -167,6 +167,9 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {R"({"op":"deselect","node":4})", {"unknown key node", "none but op"}},
         {R"({"op":"link","to":4})", {"unknown key to"}},
         {R"({"op":"link"})", {"none of these keys is given: near, node"}},
+        {R"({"op":"link","node":4,"within":3})", {"key within is given with node; expected it with near"}},
+        {R"({"op":"link","near":[1,2,3],"within":0})", {"key within is 0", "above 0"}},
+        {R"({"op":"select","internode":4,"within":3})", {"key within is given with internode"}},
         {R"({"op":"move","to":"here"})", {"key to is \"here\""}},
         {R"({"op":"group"})", {"key group is missing"}},
         {R"({"op":"radius"})", {"key radius is missing"}},
@@ -225,6 +228,7 @@ TEST_CASE("lines of tracing are read with every key")
     CHECK(near.within_voxels == 7.0);
     CHECK(!near.is_internode);
     CHECK(op_of<SelectOp>(R"({"op":"select","near_internode":[1,2,3]})").is_internode);
+    CHECK(op_of<SelectOp>(R"({"op":"select","near_internode":[1,2,3],"within":4})").within_voxels == 4.0);
     CHECK(op_of<SelectOp>(R"({"op":"select","node":4294967295})").number == 4294967295u);
     CHECK(op_of<SelectOp>(R"({"op":"select","internode":8})").is_internode);
     op_of<SelectSegmentOp>(R"({"op":"select_segment"})");
@@ -232,6 +236,8 @@ TEST_CASE("lines of tracing are read with every key")
     op_of<DeleteOp>(R"({"op":"delete"})");
 
     CHECK(op_of<LinkOp>(R"({"op":"link","near":[4,5,6]})").near == glm::dvec3(4, 5, 6));
+    CHECK(!op_of<LinkOp>(R"({"op":"link","near":[4,5,6]})").within_voxels);
+    CHECK(op_of<LinkOp>(R"({"op":"link","near":[4,5,6],"within":2.5})").within_voxels == 2.5);
     CHECK(op_of<LinkOp>(R"({"op":"link","node":9})").node == 9u);
     CHECK(op_of<MoveOp>(R"({"op":"move","to":[7,8,9]})").to == glm::dvec3(7, 8, 9));
     CHECK(op_of<GroupOp>(R"({"op":"group","group":200})").group == 200);

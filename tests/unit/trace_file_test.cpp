@@ -269,6 +269,45 @@ TEST_CASE("RSML of other programs is read, whatever else is in it")
     CHECK(!read.space);
 }
 
+TEST_CASE("RSML in another unit of length is converted to the volume's, by its resolution")
+{
+    const TemporaryFolder folder;
+    const auto read = [&](const std::string& metadata, const std::optional<TraceSpace>& space) {
+        const auto path = folder.write(
+            "a.rsml", "<rsml><metadata>" + metadata +
+                          "</metadata><scene><plant><root ID='1'><geometry><polyline><point x='10' y='20' z='-5'/>"
+                          "</polyline></geometry><functions><function name='diameter' domain='polyline'>"
+                          "<sample value='4'/></function></functions></root></plant></scene></rsml>");
+        const TraceGraph trace = load_trace(path, space).trace;
+        return trace.node(0);
+    };
+    /// One pixel is `pixel` units of the volume.
+    const auto is_scaled = [](const TraceNode& node, double pixel) {
+        const glm::dvec3 expected = pixel * glm::dvec3(10, 20, -5);
+        return glm::length(node.position - expected) <= 1e-12 * glm::length(expected) &&
+               std::abs(node.radius - 2.0 * pixel) <= 1e-12 * pixel;
+    };
+    const auto unit = [](const char* name) { return sentence("<unit>", name, "</unit>"); };
+    const std::string resolution = "<resolution>4</resolution>";
+    CHECK(is_scaled(read(unit("um") + resolution, SPACE), 0.25));
+    CHECK(is_scaled(read(unit("mm") + resolution, SPACE), 250.0));
+    CHECK(is_scaled(read(unit("centimetre") + resolution, SPACE), 2500.0));
+    CHECK(is_scaled(read(unit("nm") + resolution, SPACE), 0.25e-3));
+    CHECK(is_scaled(read(unit("inch") + "<resolution>300</resolution>", SPACE), 25400.0 / 300.0));
+    CHECK(is_scaled(read(unit("m"), SPACE), 1e6));
+    const TraceSpace in_mm{{40, 30, 20}, {0.5, 0.25, 1.5}, "mm"};
+    CHECK(is_scaled(read(unit("um") + resolution, in_mm), 0.25e-3));
+    CHECK(is_scaled(read(unit("inch") + resolution, in_mm), 25.4 / 4.0));
+    // Pixels are voxels along x, and so are numbers of which nothing is said; a resolution without a unit has the volume's.
+    for (const char* pixel : {"pixel", "Pixels", "px"}) CHECK(is_scaled(read(unit(pixel), SPACE), 0.5));
+    CHECK(is_scaled(read("", SPACE), 0.5));
+    CHECK(is_scaled(read(unit("pixel") + "<resolution>2</resolution>", SPACE), 0.25));
+    CHECK(is_scaled(read(resolution, SPACE), 0.25));
+    // Without a volume nothing is converted.
+    CHECK(is_scaled(read(unit("mm") + resolution, {}), 0.25));
+    CHECK(is_scaled(read(unit("pixel"), {}), 1.0));
+}
+
 TEST_CASE("RSML that is none is refused in words")
 {
     const TemporaryFolder folder;
@@ -294,8 +333,11 @@ TEST_CASE("RSML that is none is refused in words")
         CHECK(contains(
             told("<rsml><metadata><resolution>" + std::string(resolution) + "</resolution></metadata><scene/></rsml>"),
             "metadata: resolution is \"" + std::string(resolution) + "\""));
-    const auto path = folder.write("a.rsml", "<rsml><metadata><unit>cm</unit></metadata><scene/></rsml>");
-    CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit \"cm\"; expected \"um\""));
+    // A unit that is no length, and a volume whose unit is none.
+    auto path = folder.write("a.rsml", "<rsml><metadata><unit>furlong</unit></metadata><scene/></rsml>");
+    CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit \"furlong\"; expected \"um\""));
+    path = folder.write("a.rsml", "<rsml><metadata><unit>cm</unit></metadata><scene/></rsml>");
+    CHECK(contains(error_of([&] { load_trace(path, TraceSpace{}); }), "is in the unit \"cm\"; expected \"voxel\""));
     // Nested as deep as a file can be.
     std::string deep = "<rsml><scene><plant>", end;
     for (int i = 0; i < 100'000; ++i) deep += "<root><geometry><polyline><point x='1' y='1'/></polyline></geometry>";

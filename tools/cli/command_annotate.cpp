@@ -1,6 +1,9 @@
 // shvr annotate: replays a script of annotation commands.
 
-#include "engine/annotation/trace_edit.h"
+#include <concepts>
+
+#include "engine/annotation/trace_command.h"
+#include "engine/scene/label_looks.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -24,8 +27,6 @@ public:
 
 private:
     const TraceGraph& trace() const { return opened.annotator->document().trace; }
-    glm::dvec3 in_volume(const glm::dvec3& voxel) const { return voxel * opened.source->info().spacing; }
-    double in_volume(double radius_voxels) const { return radius_voxels * opened.source->info().spacing.x; }
 
     /// What `act` returns; what it cannot do is said with the line.
     template <class Act>
@@ -36,11 +37,6 @@ private:
         } catch (const Error& error) {
             fail(at, ": ", error.what());
         }
-    }
-    template <class Make>
-    void edit(std::string label, const Make& make)
-    {
-        opened.annotator->edit_trace(std::move(label), in_words(make));
     }
 
 public:
@@ -56,78 +52,22 @@ public:
                 sentence(at, ": ", voxels, " changes of offsets", chosen.paints_group ? " and groups" : "",
                          ", by at most ", *chosen.density->offset));
     }
-    void operator()(const NodeOp& op)
+    template <class Op>
+    requires std::constructible_from<TraceOp, Op>
+    void operator()(const Op& op)
     {
         const ProbeSettings& probe = opened.session.probe;
-        const TraceNode node{in_volume(op.at), in_volume(op.radius_voxels.value_or(probe.radius_voxels)),
-                             op.group.value_or(probe.group)};
-        edit(sentence("node, group ", int(node.group)), [&] { return add_node(trace(), node); });
-        say(options.common, sentence(at, ": node ", *trace().selection().node(), " in group ", int(node.group)));
-    }
-    void operator()(const SelectOp& op)
-    {
-        const TraceGraph& graph = trace();
-        const char* what = op.is_internode ? "internode" : "node";
-        if (op.number &&
-            !(op.is_internode ? graph.internodes().contains(*op.number) : graph.nodes().contains(*op.number)))
-            fail(at, ": there is no ", what, " ", *op.number, "; expected one that the trace has");
-        TraceSelection selection;
-        if (op.number) (op.is_internode ? selection.internodes : selection.nodes) = {*op.number};
-        if (op.near)
-            selection = in_words([&] {
-                return op.is_internode ? nearest_internode_selection(graph, in_volume(*op.near))
-                                       : nearest_node_selection(graph, in_volume(*op.near));
-            });
-        if (op.within_voxels) {
-            const double away = op.is_internode
-                                    ? distance_to(graph, graph.internode(selection.internodes[0]), in_volume(*op.near))
-                                    : glm::length(graph.node(selection.nodes[0]).position - in_volume(*op.near));
-            if (away > in_volume(*op.within_voxels))
-                fail(at, ": the nearest ", what, " is ", away / in_volume(1.0), " voxels away; expected one within ",
-                     *op.within_voxels);
+        TraceEffect effect = in_words([&] {
+            return effect_of(op, trace(), {opened.source->info().spacing, probe.radius_voxels, probe.group});
+        });
+        if (effect.selection)
+            opened.annotator->select_trace(std::move(*effect.selection));
+        else
+            opened.annotator->edit_trace(std::move(effect.label), std::move(effect.changes));
+        if constexpr (std::same_as<Op, NodeOp>) {
+            const uint32_t number = trace().selection().node().value();
+            say(options.common, sentence(at, ": node ", number, " in group ", int(trace().node(number).group)));
         }
-        opened.annotator->select_trace(std::move(selection));
-    }
-    void operator()(const SelectSegmentOp&)
-    {
-        opened.annotator->select_trace(in_words([&] { return segment_selection(trace()); }));
-    }
-    void operator()(const DeselectOp&) { opened.annotator->select_trace({}); }
-    void operator()(const LinkOp& op)
-    {
-        if (op.node && !trace().nodes().contains(*op.node))
-            fail(at, ": there is no node ", *op.node, "; expected one that the trace has");
-        edit("link", [&] {
-            const std::optional<uint32_t> to =
-                op.node ? op.node : trace().nearest_node(in_volume(*op.near), trace().selection().node());
-            if (!to) fail("there is no other node; expected one to link with");
-            return link_selected(trace(), *to);
-        });
-    }
-    void operator()(const MoveOp& op)
-    {
-        edit("move", [&] { return move_selected(trace(), in_volume(op.to)); });
-    }
-    void operator()(const DeleteOp&)
-    {
-        edit("delete", [&] { return delete_selected(trace()); });
-    }
-    void operator()(const GroupOp& op)
-    {
-        edit(sentence("group ", int(op.group)), [&] { return set_group_of_selected(trace(), op.group); });
-    }
-    void operator()(const RadiusOp& op)
-    {
-        std::optional<double> radius;
-        if (op.radius_voxels) radius = in_volume(*op.radius_voxels);
-        edit("size", [&] {
-            switch (op.of) {
-                case RadiusOp::Of::nodes: return set_node_radii(trace(), op.group, radius.value());
-                case RadiusOp::Of::internodes: return set_internode_radius(trace(), op.group, radius);
-                case RadiusOp::Of::selected: break;
-            }
-            return set_radius_of_selected(trace(), radius.value());
-        });
     }
     void operator()(const UndoOp& op)
     {
@@ -141,7 +81,10 @@ public:
     }
     void operator()(const SaveOp&)
     {
-        for (const std::filesystem::path& path : in_words([&] { return opened.annotator->save(); }))
+        const auto save = [&] {
+            return opened.annotator->save(label_looks(opened.session.groups, opened.annotator->document().mask));
+        };
+        for (const std::filesystem::path& path : in_words(save))
             say(options.common, sentence(at, ": saved ", path.string()));
     }
     void operator()(const ExpectOp& op)

@@ -1,8 +1,5 @@
 // shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
 
-#include <algorithm>
-#include <cmath>
-
 #include "engine/annotation/mask_image.h"
 #include "engine/annotation/mask_import.h"
 #include "engine/annotation/measures.h"
@@ -10,7 +7,7 @@
 #include "engine/annotation/offset_file.h"
 #include "engine/annotation/trace_mesh.h"
 #include "engine/base/atomic_file.h"
-#include "engine/base/image.h"
+#include "engine/scene/label_looks.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -32,25 +29,6 @@ void check_extension(const char* option, const std::string& path, const std::vec
         all += (all.empty() ? "" : ", ") + extension;
     }
     throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
-}
-
-uint8_t byte_of(double share)
-{
-    return uint8_t(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
-}
-
-/// The looks of the groups that are painted or set up.
-LabelImage label_image_of(const Session& session, const Mask& mask)
-{
-    LabelImage image{.painted_on = session.volume_hash};
-    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
-    for (int group = 1; group < 256; ++group) {
-        if (voxels[size_t(group)] == 0 && !session.groups.contains(uint8_t(group))) continue;
-        const ColorGroup look = group_of(session.groups, uint8_t(group));
-        const auto channel = [&](int index) { return byte_of(srgb_encode(std::clamp(look.color[index], 0.0, 1.0))); };
-        image.colors.push_back({group, {channel(0), channel(1), channel(2), byte_of(look.opacity)}, look.name});
-    }
-    return image;
 }
 
 void check_mask_name(const std::string& path)
@@ -141,7 +119,8 @@ void run(const Options& options)
     }
     for (const std::string& path : {options.mask, project_labels(options)}) {
         if (path.empty()) continue;
-        export_mask(path, mask, volume, label_image_of(opened.session, mask));
+        export_mask(path, mask, volume,
+                    {.colors = label_looks(opened.session.groups, mask), .painted_on = opened.session.volume_hash});
         wrote(path);
     }
     if (!options.offset.empty()) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "engine/annotation/work_offsets.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/volume/components.h"
 #include "engine/volume/header_text.h"
@@ -100,9 +101,13 @@ std::function<void(double)> progress_of(const Common& common, const char* what)
 void run(const Options& options)
 {
     check_usage(options);
-    const std::shared_ptr<const VolumeSource> source = open_session_volume(options.volume, options.common.settings);
-    const VolumeInfo& info = source->info();
+    const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
+    const VolumeInfo info = opened.source->info();
     warn(info.warnings, options.common);
+    std::vector<std::string> messages;
+    const DensityField offsets = offsets_of(work_files(opened.session, info), messages);
+    warn(messages, options.common);
+    const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
     const auto begin = Clock::now();
     ComponentOptions wanted{
         .threshold = options.threshold,
@@ -150,6 +155,7 @@ void run(const Options& options)
            {"peak_bytes", counts.peak_bytes},
            {"provisional_labels", counts.provisional},
            {"run_file_bytes", counts.run_file_bytes},
+           {"voxels_with_offset", offsets.voxels()},
            {"warnings", info.warnings}});
 }
 
@@ -175,7 +181,8 @@ void add_label(CLI::App& program)
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
-        "Density offsets are not counted in. Memory follows the size of a slice and the number of components.\n"
+        "Density offsets of a session or project are added to its voxels. Memory follows the size of a slice and the "
+        "number of components.\n"
         "Example:\n  shvr label scan/ --threshold 120 --min-voxels 50 -o scan/labels/parts --json");
     command->callback([options] { run(*options); });
 }
