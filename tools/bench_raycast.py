@@ -3,8 +3,8 @@
 
 tools/bench_raycast.py [--quick] [--rounds 3] [--mappers fixed gpu]
 
-Three scenes of one synthetic volume, drawn by both programs in turn with the same camera, transfer function, light and
-step. Errors are against the reference renderer, in linear light (tests/tools/README.md). Prints a table and writes
+Scenes of one synthetic volume, drawn by both programs in turn with the same camera, transfer function, light and step;
+those with ambient occlusion by SHVR alone, since VTK's ray casters have none. Errors are against the reference renderer, in linear light (tests/tools/README.md). Prints a table and writes
 build/bench/raycast.json. The environment names the programs: SHVR and REFERENCE; without them, those of build/release.
 """
 import argparse
@@ -37,9 +37,13 @@ CAMERA = "bench"
 # Intensity and opacity per voxel. The background is noise about 40, so the translucent ramp begins within it.
 OPAQUE = [(120, 0.0), (160, 1.0), (255, 1.0)]
 TRANSLUCENT = [(38.7, 0.0), (120, 0.005), (255, 0.02)]
-SCENES = {"opaque shaded": (OPAQUE, True),
-          "translucent shaded": (TRANSLUCENT, True),
-          "translucent unshaded": (TRANSLUCENT, False)}
+OCCLUSION = {"strength": 0.8, "radius": 16, "rays": 32}
+# Opacities, whether it is shaded, ambient occlusion.
+SCENES = {"opaque shaded": (OPAQUE, True, None),
+          "opaque occluded": (OPAQUE, True, OCCLUSION),
+          "translucent shaded": (TRANSLUCENT, True, None),
+          "translucent occluded": (TRANSLUCENT, True, OCCLUSION),
+          "translucent unshaded": (TRANSLUCENT, False, None)}
 
 
 def say(text):
@@ -88,7 +92,7 @@ def make_volume(side):
     return folder / "tubes.nhdr"
 
 
-def session_of(header, side, points, shaded):
+def session_of(header, side, points, shaded, occlusion):
     centre = [0.5 * side] * 3
     offset = [1.35, -2.7, 0.95]  # from there 30 degrees hold every corner
     return {"shvr_session": 1,
@@ -98,7 +102,7 @@ def session_of(header, side, points, shaded):
             "camera": CAMERA,
             "transfer_function": {"points": [{"intensity": x, "color": "#f4e8d8", "opacity": y} for x, y in points]},
             "light": {"shaded": shaded, "ambient": 0.3, "diffuse": 0.7, "specular": 0, "direction": [0, 0, 1],
-                      "gradient_fade": 0},
+                      "gradient_fade": 0, **({"occlusion": occlusion} if occlusion else {})},
             "render": {"size": [512, 512], "step_voxels": 0.5, "background": "#000000"},
             # VTK's volume ends at the centres of its outermost voxels.
             "cut": {"lower": [0.5] * 3, "upper": [side - 0.5] * 3}}
@@ -214,6 +218,8 @@ def summary_of(rounds, mapper_names):
                         "peak_mib": max(one["peak_mib"] for one in shvr),
                         "counters": shvr[0]["counters"]}}
     for name in mapper_names:
+        if name not in rounds[0]:
+            continue
         peers = [one[name] for one in rounds]
         ratios = spread([a["frame_ms"] / b["frame_ms"] for a, b in zip(shvr, peers)])
         frame = spread([one["frame_ms"] for one in peers])
@@ -239,22 +245,25 @@ def three(values, digits):
 def report(result, mapper_names):
     rows = [["ms a frame (min / median / max of rounds)", "SHVR", "ray cast alone",
              *(f"VTK {name}" for name in mapper_names), *(f"SHVR / VTK {name}" for name in mapper_names)]]
-    costs = [["", "SHVR start to picture", "leap grid", "SHVR peak MiB",
+    costs = [["", "SHVR start to picture", "leap grid", "occlusion", "SHVR peak MiB",
               *(text for name in mapper_names for text in (f"VTK {name} load + first", "peak MiB"))]]
     errors = [["error in linear light (rmse, max)", "share seen", "SHVR", *(f"VTK {name}" for name in mapper_names)]]
     for name, scene in result["scenes"].items():
         shvr = scene["shvr"]
+        peers = [scene.get(m) for m in mapper_names]
         rows.append([name, three(shvr["frame_ms"], 0), three(shvr["raycast_ms"], 0),
-                     *(three(scene[m]["frame_ms"], 0) for m in mapper_names),
-                     *(three(scene[m]["ratio_per_round"], 2) for m in mapper_names)])
-        leap = sum(ms for one, ms in shvr["first_frame_passes_ms"].items() if one.startswith("leap"))
-        costs.append([name, f"{shvr['start_to_picture_ms']:.0f}", f"{leap:.0f}", f"{shvr['peak_mib']:.0f}",
-                      *(text for m in mapper_names for text in
-                        (f"{scene[m]['load_ms']['median'] + scene[m]['first_frame_ms']['median']:.0f}",
-                         f"{scene[m]['peak_mib']:.0f}"))])
+                     *(three(peer["frame_ms"], 0) if peer else "-" for peer in peers),
+                     *(three(peer["ratio_per_round"], 2) if peer else "-" for peer in peers)])
+        leap, occlusion = (sum(ms for one, ms in shvr["first_frame_passes_ms"].items() if one.startswith(start))
+                           for start in ("leap", "occlusion"))
+        costs.append([name, f"{shvr['start_to_picture_ms']:.0f}", f"{leap:.0f}", f"{occlusion:.0f}" if occlusion else "-",
+                      f"{shvr['peak_mib']:.0f}",
+                      *(text for peer in peers for text in
+                        ((f"{peer['load_ms']['median'] + peer['first_frame_ms']['median']:.0f}",
+                          f"{peer['peak_mib']:.0f}") if peer else ("-", "-")))])
         errors.append([name, f"{scene['visible_share']:.1%}",
-                       *(f"{e['rmse']:.5f} {e['max']:.4f}" if (e := scene[m].get("error")) else "-"
-                         for m in ("shvr", *mapper_names))])
+                       *(f"{e['rmse']:.5f} {e['max']:.4f}" if (e := (one or {}).get("error")) else "-"
+                         for one in (shvr, *peers))])
     return "\n\n".join(table(one) for one in (rows, costs, errors))
 
 
@@ -292,14 +301,14 @@ def main():
     volume = make_volume(side)
 
     sessions, rounds = {}, {name: [] for name in SCENES}
-    for name, (points, shaded) in SCENES.items():
+    for name, (points, shaded, occlusion) in SCENES.items():
         sessions[name] = FOLDER / f"{name.replace(' ', '_')}_{side}.json"
-        sessions[name].write_text(json.dumps(session_of(volume, side, points, shaded), indent=1) + "\n")
+        sessions[name].write_text(json.dumps(session_of(volume, side, points, shaded, occlusion), indent=1) + "\n")
     for number in range(options.rounds):
         for name, path in sessions.items():
             say(f"round {number + 1} of {options.rounds}: {name}")
             one = {"shvr": round_of_shvr(path)}
-            for mapper in mapper_names:
+            for mapper in mapper_names if SCENES[name][2] is None else []:
                 one[mapper] = round_of_vtk(python, mapper, path, path.with_suffix(f".vtk_{mapper}.pfm"))
             rounds[name].append(one)
 
@@ -312,7 +321,7 @@ def main():
         scene = summary_of(rounds[name], mapper_names)
         scene["visible_share"] = visible_share(volume.with_suffix(".raw"), side, SCENES[name][0])
         scene["shvr"]["start_to_picture_ms"] = draw_with_shvr(path, path.with_suffix(".shvr.pfm"))
-        if REFERENCE.exists():
+        if REFERENCE.exists() and SCENES[name][2] is None:  # the reference has no occlusion: tests/gpu/occlusion_test.cpp
             reference = reference_of(path, volume)
             for drawn in ("shvr", *(f"vtk_{m}" for m in mapper_names)):
                 scene[drawn.removeprefix("vtk_")]["error"] = error_of(path.with_suffix(f".{drawn}.pfm"), reference)

@@ -67,6 +67,10 @@ struct SetBlend {
 struct SetLight {
     Light light;
 };
+/// See RenderSettings; steps longer than a voxel go without.
+struct SetPreintegration {
+    bool on = true;
+};
 struct SetOcclusion {
     OcclusionSettings occlusion;
 };
@@ -147,10 +151,10 @@ struct ShowHelp {
 struct Quit {};
 
 using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFrom, MoveCut, MoveClip, ResetCuts,
-                            SetTransferFunction, SetGroup, SetLight, SetOcclusion, UpdateOcclusion, SetBlend, ProbeTo,
-                            ProbeOnto, PushProbe, ScaleProbe, SetBrush, ShowShell, ShowPreview, ChooseGroup, SetTool,
-                            Paint, Trace, DragNode, SetHapticThreshold, Assist, SetProxyLaw, Undo, Redo, Save,
-                            Screenshot, SetInteraction, Open, ShowHelp, Quit>;
+                            SetTransferFunction, SetGroup, SetLight, SetPreintegration, SetOcclusion, UpdateOcclusion,
+                            SetBlend, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ShowShell, ShowPreview,
+                            ChooseGroup, SetTool, Paint, Trace, DragNode, SetHapticThreshold, Assist, SetProxyLaw, Undo,
+                            Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -102,6 +102,7 @@ private:
     void apply(const SetTransferFunction& action);
     void apply(const SetGroup& action);
     void apply(const SetLight& action);
+    void apply(const SetPreintegration& action);
     void apply(const SetBlend& action);
     void apply(const SetOcclusion& action);
     void apply(const UpdateOcclusion& action);

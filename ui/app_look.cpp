@@ -172,6 +172,14 @@ void App::apply(const SetLight& action)
     look_again();
 }
 
+void App::apply(const SetPreintegration& action)
+{
+    document_->session.render.preintegration = action.on;
+    document_->is_saved = false;
+    say(action.on ? "Narrow peaks: every one that a step passes is seen" : "Narrow peaks: steps may miss them");
+    look_again();
+}
+
 void App::apply(const SetOcclusion& action)
 {
     document_->session.light.occlusion = action.occlusion;

@@ -333,6 +333,15 @@ void shading_and_help(const Model& model, Actions& actions)
     Light light = model.session.light;
     if (ImGui::Checkbox("Shading", &light.shaded)) actions.push_back(SetLight{light});
     hint("Light from over your shoulder. Without it, colours are as chosen above.");
+    const RenderSettings& render = model.session.render;
+    bool sees_peaks = render.preintegration;
+    ImGui::SameLine();
+    ImGui::BeginDisabled(render.step_voxels > 1.0);
+    if (ImGui::Checkbox("Narrow peaks", &sees_peaks)) actions.push_back(SetPreintegration{sees_peaks});
+    ImGui::EndDisabled();
+    hint(
+        "No peak or edge of the curve is missed, however narrow (pre-integration). Slower; smooth curves do not need "
+        "it.");
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
     ImGui::TextDisabled("How to edit (?)");
     hint(
