@@ -12,17 +12,10 @@ namespace shvr {
 
 namespace {
 
-constexpr size_t TEXELS = size_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
-constexpr size_t CELLS = size_t{gpu::BRICK_CELLS} * gpu::BRICK_CELLS * gpu::BRICK_CELLS;
-constexpr uint64_t SLOT_BYTES = TEXELS * sizeof(uint16_t) + CELLS * (sizeof(uint32_t) + 1);
-constexpr size_t BATCH = 32;  // bricks per upload: twice 2.5 MiB of staging
-constexpr size_t CODE_BYTES = TEXELS * sizeof(uint16_t), RANGE_BYTES = CELLS * sizeof(BrickTexels::Range);
 /// A region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
 constexpr uint64_t FEWEST_SLOTS = 64;
 /// Levels of no more bricks than this are always there.
 constexpr int64_t COARSE_BRICKS = 64;
-/// Bricks that a change of the voxels may read anew while somebody waits.
-constexpr size_t MOST_RENEWED_NOW = 256;
 
 int64_t brick_total(const Size3& size, int level)
 {
@@ -35,10 +28,10 @@ uint64_t slots_for(const VolumeInfo& info, int levels, uint64_t bytes)
     uint64_t useful = 1;
     for (int level = 0; level < levels; ++level)
         useful += uint64_t(std::min<int64_t>(brick_total(info.size, level), int64_t{1} << 40));
-    const uint64_t slots = std::min(useful, bytes / SLOT_BYTES);
+    const uint64_t slots = std::min(useful, bytes / BrickAtlas::slot_bytes());
     if (slots < std::min(useful, FEWEST_SLOTS))
         fail(info.name, ": ", bytes >> 20, " MiB of device memory are left for its bricks; expected at least ",
-             (FEWEST_SLOTS * SLOT_BYTES >> 20) + 1);
+             (FEWEST_SLOTS * BrickAtlas::slot_bytes() >> 20) + 1);
     return slots;
 }
 
@@ -47,25 +40,15 @@ uint64_t slots_for(const VolumeInfo& info, int levels, uint64_t bytes)
 PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                          const IntensityWindow& window, const Options& options)
     : DeviceVolume(source->info(), window),
-      executor_(executor),
       memory_(memory),
       source_(std::move(source)),
       options_(options),
       levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
+      atlas_(executor, memory, slots_for(source_->info(), levels_, options.device_bytes), options.filtered),
+      slots_(atlas_.slot_count()),
       store_(*source_, window, options.host_bytes, options.threads)
 {
-    const gpu::DeviceTraits& traits = memory.device().traits();
-    const uint64_t slots = slots_for(source_->info(), levels_, options.device_bytes);
-    atlas_slots_ = atlas_layout(slots, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
-    slots_.resize(size_t(atlas_slots_.x) * atlas_slots_.y * atlas_slots_.z);
-    const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
-    atlas_ = memory.create("atlas", options.filtered ? image_desc(Format::r16_unorm, codes)
-                                                     : image_desc(Format::r32_uint, codes / glm::uvec3(2, 1, 1)));
-    cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, atlas_slots_ * gpu::BRICK_CELLS));
-    cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_slots_ * gpu::BRICK_CELLS));
-    for (Staging& staging : staging_)
-        staging.bytes =
-            memory.create("brick staging", buffer_desc(BATCH * (CODE_BYTES + RANGE_BYTES)), gpu::Placement::upload);
+    cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS));
     for (uint32_t slot = uint32_t(slots_.size()) - 1; slot > 0; --slot) unused_.push_back(slot);
     pin_coarse_levels();
 }
@@ -89,13 +72,8 @@ void PagedVolume::pin_coarse_levels()
                  slots_.size(), "; expected a coarser level, as `shvr import` makes");
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
-        flush_uploads();
+        atlas_.flush();
     }
-}
-
-uint32_t PagedVolume::packed(uint32_t slot) const
-{
-    return slot_at(slot, atlas_slots_);
 }
 
 // ---- What is looked at ----------------------------------------------------------------------------------------------
@@ -175,7 +153,7 @@ void PagedVolume::fill_directory()
         for (; key.level < levels_; key = parent_of(key)) {
             const auto there = resident_.find(key);
             if (there == resident_.end()) continue;
-            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | packed(there->second);
+            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(there->second);
             break;
         }
     }
@@ -194,21 +172,21 @@ gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
 {
     return {.brick = glm::uvec3(key.brick),
             .level = uint32_t(key.level),
-            .slot = packed(slot),
+            .slot = atlas_.packed(slot),
             .mask_slot = is_painted(key)};
 }
 
 VolumeBinding PagedVolume::atlas(FrameGraph& graph) const
 {
-    return {.atlas = graph.import("atlas", atlas_.import()), .filtered = options_.filtered};
+    return {.atlas = atlas_.import_codes(graph), .filtered = options_.filtered};
 }
 
 VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& binding,
                                   bool feedback)
 {
     SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
-    VolumeBinding volume{.atlas = graph.import("atlas", atlas_.import()),
-                         .cell_ranges = graph.import("cell ranges", cell_ranges_.import()),
+    VolumeBinding volume{.atlas = atlas_.import_codes(graph),
+                         .cell_ranges = atlas_.import_cell_ranges(graph),
                          .brick_counts = glm::uvec3(brick_counts(info().size)),
                          .filtered = options_.filtered};
     PageBinding pages{.directory = {},
@@ -281,334 +259,6 @@ void PagedVolume::forget_reached()
     ++reached_revision_;
     is_limited_ = false;
     wants_are_stale_ = evictable_is_stale_ = true;
-}
-
-// ---- Bricks come and go ---------------------------------------------------------------------------------------------
-
-bool PagedVolume::leaf_is_reached(const BrickKey& key) const
-{
-    const auto leaf = leaf_index_.find(key);
-    return leaf != leaf_index_.end() && is_reached_[leaf->second];
-}
-
-std::vector<BrickKey> PagedVolume::reached_bricks() const
-{
-    std::vector<BrickKey> keys;
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf)
-        if (is_reached_[leaf] && state_of(tree_->leaves[leaf].key) != LeafState::empty)
-            keys.push_back(tree_->leaves[leaf].key);
-    return keys;
-}
-
-void PagedVolume::want_around(std::unordered_set<BrickKey, BrickKeyHash> keys)
-{
-    if (keys == around_) return;
-    around_ = std::move(keys);
-    wants_are_stale_ = evictable_is_stale_ = true;
-}
-
-std::vector<DeviceVolume::Place> PagedVolume::places() const
-{
-    std::vector<Place> places;
-    for (const auto& [key, slot] : resident_) places.push_back({key, packed(slot), known_ranges_.at(key)});
-    return places;
-}
-
-void PagedVolume::touch(const BrickKey& key)
-{
-    const auto there = resident_.find(key);
-    if (there != resident_.end()) slots_[there->second].used = stamp_;
-}
-
-/// The picture that is looked at, or the work around the probe, would miss it.
-bool PagedVolume::is_needed(const BrickKey& key) const
-{
-    return region_.contains(key) || around_.contains(key) || leaf_is_reached(key);
-}
-
-/// A region of level 0 goes before the picture.
-void PagedVolume::list_evictable(bool for_region)
-{
-    evictable_.clear();
-    for (uint32_t slot = 1; slot < slots_.size(); ++slot) {
-        const Slot& candidate = slots_[slot];
-        if (!candidate.key || candidate.pinned) continue;
-        if (for_region ? !region_.contains(*candidate.key) : !is_needed(*candidate.key)) evictable_.push_back(slot);
-    }
-    std::ranges::sort(evictable_, std::greater(), [this](uint32_t slot) { return slots_[slot].used; });
-    evictable_is_stale_ = for_region;
-}
-
-std::optional<uint32_t> PagedVolume::free_slot(bool for_region)
-{
-    if (unused_.empty()) {
-        if (evictable_is_stale_) list_evictable(false);
-        if (evictable_.empty() && for_region) list_evictable(true);
-        if (evictable_.empty()) return std::nullopt;
-        const uint32_t slot = evictable_.back();
-        evictable_.pop_back();
-        give_up(slot);
-        return slot;
-    }
-    const uint32_t slot = unused_.back();
-    unused_.pop_back();
-    return slot;
-}
-
-bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for_region)
-{
-    known_ranges_[key] = texels.range;
-    if (resident_.contains(key)) return true;
-    if (!for_region && state_of(key) == LeafState::empty) {
-        directory_is_stale_ = true;
-        return true;
-    }
-    const std::optional<uint32_t> slot = free_slot(for_region);
-    if (!slot) return false;
-    slots_[*slot] = {.key = key, .used = stamp_, .pinned = std::ranges::find(coarse_, key) != coarse_.end()};
-    resident_[key] = *slot;
-    stage(key, *slot, texels);
-    return true;
-}
-
-/// Sends a brick to its slot with the next upload.
-void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels)
-{
-    ++places_revision_;
-    Staging& staging = staging_[filling_];
-    if (staging.copy) static_cast<void>(staging.copy.finish());
-    std::byte* bytes = staging.bytes.mapped().data();
-    std::memcpy(bytes + uploads_.size() * CODE_BYTES, texels.codes.data(), CODE_BYTES);
-    std::memcpy(bytes + BATCH * CODE_BYTES + uploads_.size() * RANGE_BYTES, texels.cell_ranges.data(), RANGE_BYTES);
-    uploads_.push_back(slot);
-    leap_jobs_.push_back(key);
-    directory_is_stale_ = true;
-    if (uploads_.size() == BATCH) flush_uploads();
-}
-
-void PagedVolume::give_up(uint32_t slot)
-{
-    resident_.erase(*slots_[slot].key);
-    slots_[slot] = {};
-    ++places_revision_;
-    ++evictions_;
-    directory_is_stale_ = true;
-}
-
-void PagedVolume::renew(std::span<const VoxelBox> changed)
-{
-    std::vector<BrickKey> keys;
-    for (int level = 0; level < levels_; ++level)
-        for (const BrickKey& key : bricks_that_see(changed, info().size, level)) keys.push_back(key);
-    store_.renew(keys);
-    const auto there =
-        size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return resident_.contains(key); }));
-    for (const BrickKey& key : keys) {
-        known_ranges_.erase(key);
-        const auto found = resident_.find(key);
-        if (found == resident_.end()) continue;
-        const uint32_t slot = found->second;
-        const bool now = there <= MOST_RENEWED_NOW || slots_[slot].pinned;
-        if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
-            known_ranges_[key] = texels->range;
-            stage(key, slot, *texels);
-        } else {
-            give_up(slot);
-            unused_.push_back(slot);
-        }
-    }
-    flush_uploads();
-    wants_are_stale_ = evictable_is_stale_ = directory_is_stale_ = true;
-    rebuild_tree();
-}
-
-/// What the source tells of bricks, or what is painted, has changed; what was reached stays so.
-void PagedVolume::rebuild_tree()
-{
-    if (!view_) return;
-    const PageView view = *std::exchange(view_, std::nullopt);
-    look(view, visibility_);
-}
-
-void PagedVolume::flush_uploads()
-{
-    if (uploads_.empty()) return;
-    const glm::uvec3 codes_per_texel(options_.filtered ? 1 : 2, 1, 1);
-    std::vector<ImageRegion> atlas_regions, cell_regions;
-    for (size_t i = 0; i < uploads_.size(); ++i) {
-        const glm::uvec3 slot = gpu::unpack_slot(packed(uploads_[i]));
-        atlas_regions.push_back({i * CODE_BYTES, gpu::BRICK_TEXELS * slot / codes_per_texel,
-                                 glm::uvec3(gpu::BRICK_TEXELS) / codes_per_texel});
-        cell_regions.push_back(
-            {BATCH * CODE_BYTES + i * RANGE_BYTES, gpu::BRICK_CELLS * slot, glm::uvec3(gpu::BRICK_CELLS)});
-    }
-    FrameGraph graph;
-    const Resource staged = graph.import("brick staging", staging_[filling_].bytes.import());
-    static_cast<void>(
-        graph.copy_to_image(staged, graph.import("atlas", atlas_.import()), std::move(atlas_regions), "upload bricks"));
-    static_cast<void>(graph.copy_to_image(staged, graph.import("cell ranges", cell_ranges_.import()),
-                                          std::move(cell_regions), "upload cell ranges"));
-    staging_[filling_].copy = executor_.submit(std::move(graph), {.timestamps = false});
-    filling_ = 1 - filling_;
-    upload_count_ += uploads_.size();
-    uploads_.clear();
-}
-
-void PagedVolume::update_wants()
-{
-    if (!std::exchange(wants_are_stale_, false)) return;
-    std::vector<BrickKey> keys;
-    for (const BrickKey& key : region_)
-        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
-    for (const BrickKey& key : coarse_)
-        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
-    // What has a place, or will have one.
-    size_t room = 0;
-    for (uint32_t slot = 1; slot < slots_.size(); ++slot) {
-        const std::optional<BrickKey>& key = slots_[slot].key;
-        room += !key || (!slots_[slot].pinned && !is_needed(*key));
-    }
-    room -= std::min(room, keys.size());
-    pending_ = 0;
-    is_limited_ = false;
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf) {
-        if (!is_reached_[leaf] || state_of(tree_->leaves[leaf].key) != LeafState::missing) continue;
-        if (pending_ == room) {
-            is_limited_ = true;
-            break;
-        }
-        ++pending_;
-        keys.push_back(tree_->leaves[leaf].key);
-    }
-    for (const BrickKey& key : around_) {
-        if (state_of(key) != LeafState::missing || leaf_is_reached(key)) continue;
-        if (pending_ == room) {
-            is_limited_ = true;
-            break;
-        }
-        ++pending_;
-        keys.push_back(key);
-    }
-    store_.want(std::move(keys));
-}
-
-std::vector<VoxelBox> PagedVolume::advance(bool wait)
-{
-    update_wants();
-    std::vector<VoxelBox> changed;
-    do {
-        for (const BrickStore::Finished& finished : store_.take(BATCH)) {
-            pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
-            const bool for_region =
-                region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
-            if (!finished.texels) {
-                directory_is_stale_ = true;
-                continue;
-            }
-            if (!place(finished.key, *finished.texels, for_region)) {
-                is_limited_ = true;
-                continue;
-            }
-            changed.push_back(voxels_of(finished.key, info().size));
-        }
-    } while (wait && store_.wait());
-    flush_uploads();
-    return changed;
-}
-
-PagedVolume::State PagedVolume::state() const
-{
-    if (is_limited_) return pending_ > 0 && !wants_are_stale_ ? State::loading : State::limited;
-    return pending_ > 0 || wants_are_stale_ ? State::loading : State::complete;
-}
-
-size_t PagedVolume::missing() const
-{
-    size_t count = 0;
-    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf)
-        count += is_reached_[leaf] && state_of(tree_->leaves[leaf].key) == LeafState::failed;
-    return count;
-}
-
-// ---- Work on level 0 ------------------------------------------------------------------------------------------------
-
-std::vector<BrickKey> PagedVolume::set_region(const RegionBricks& region)
-{
-    std::vector<BrickKey> keys;
-    for (uint32_t z = 0; z < region.counts.z; ++z)
-        for (uint32_t y = 0; y < region.counts.y; ++y)
-            for (uint32_t x = 0; x < region.counts.x; ++x)
-                keys.push_back({0, glm::ivec3(region.begin + glm::uvec3(x, y, z))});
-    std::unordered_set<BrickKey, BrickKeyHash> wanted(keys.begin(), keys.end());
-    if (region_ != wanted) {
-        region_ = std::move(wanted);
-        wants_are_stale_ = evictable_is_stale_ = true;
-    }
-    return keys;
-}
-
-void PagedVolume::prefer(const VoxelBox& voxels)
-{
-    const RegionBricks region = bricks_around(voxels);
-    const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
-    if (4 * bricks <= slots_.size()) static_cast<void>(set_region(region));
-}
-
-std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wait)
-{
-    RegionBricks region = bricks_around(voxels);
-    const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
-    if (bricks + coarse_.size() >= slots_.size())
-        fail("the region around the probe needs ", bricks, " bricks on the device and there is room for ",
-             slots_.size() - std::min(slots_.size(), coarse_.size() + 1),
-             "; expected a smaller radius or a larger budget");
-    const std::vector<BrickKey> keys = set_region(region);
-    bool all_there = true;
-    for (const BrickKey& key : keys) {
-        if (!resident_.contains(key) && wait) {
-            const BrickStore::Texels texels = store_.get(key);
-            if (!texels) throw Error(store_.failure_of(key).value_or(info().name + ": a brick cannot be read"));
-            SHVR_CHECK(place(key, *texels, true), "room was counted");
-        }
-        const auto there = resident_.find(key);
-        all_there = all_there && there != resident_.end();
-        region.slots.push_back(there == resident_.end() ? gpu::NO_SLOT : packed(there->second));
-    }
-    flush_uploads();
-    if (!all_there) return std::nullopt;
-    for (const BrickKey& key : keys) touch(key);
-    return region;
-}
-
-void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks)
-{
-    const glm::i64vec3 counts = mask.brick_counts();
-    bool tree_is_stale = false;
-    for (int64_t index : bricks) {
-        BrickKey key{0, glm::ivec3(index % counts.x, index / counts.x % counts.y, index / (counts.x * counts.y))};
-        const bool is = mask.brick(index) != nullptr, was = painted_.contains(key);
-        for (; key.level < levels_; key = parent_of(key)) {
-            if (is != was) {
-                tree_is_stale = true;
-                if ((painted_[key] += is ? 1 : -1) == 0) painted_.erase(key);
-            }
-            if (resident_.contains(key)) leap_jobs_.push_back(key);
-        }
-    }
-    if (tree_is_stale) rebuild_tree();  // what is painted is shown, whatever its density
-}
-
-PagedVolume::Counts PagedVolume::counts() const
-{
-    return {.slots = slots_.size() - 1,
-            .resident = resident_.size(),
-            .uploads = upload_count_,
-            .evictions = evictions_,
-            .leaves = is_reached_.size(),
-            .reached = uint64_t(std::ranges::count(is_reached_, true)),
-            .host_bytes = store_.bytes(),
-            .peak_host_bytes = store_.peak_bytes(),
-            .store = store_.counts()};
 }
 
 }  // namespace shvr

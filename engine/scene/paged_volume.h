@@ -17,6 +17,7 @@
 
 #include "engine/gpu/executor.h"
 #include "engine/passes/brick_leap.h"
+#include "engine/scene/brick_atlas.h"
 #include "engine/scene/device_mask.h"
 #include "engine/scene/device_volume.h"
 #include "engine/scene/page_tree.h"
@@ -71,7 +72,7 @@ public:
     VolumeBinding atlas(FrameGraph& graph) const override;
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
     int levels() const override { return levels_; }
-    glm::uvec3 atlas_slots() const override { return atlas_slots_; }
+    glm::uvec3 atlas_slots() const override { return atlas_.slots(); }
     std::vector<Place> places() const override;
     uint64_t places_revision() const override { return places_revision_; }
     /// These bricks are wanted beside what rays come by: light on bricks that are seen comes past them.
@@ -124,22 +125,19 @@ private:
     void stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels);
     void give_up(uint32_t slot);
     void rebuild_tree();
-    void flush_uploads();
     void update_wants();
     std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
     void fill_directory();
-    uint32_t packed(uint32_t slot) const;
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
     int64_t mask_index(const glm::ivec3& brick) const;
 
-    gpu::Executor& executor_;
     gpu::Memory& memory_;
     std::shared_ptr<const VolumeSource> source_;
     Options options_;
     int levels_;
-    glm::uvec3 atlas_slots_{1};
-    gpu::Storage atlas_, cell_ranges_, cell_leap_, directory_;
+    BrickAtlas atlas_;
+    gpu::Storage cell_leap_, directory_;
 
     std::vector<Slot> slots_;  ///< slot 0 is never used
     std::unordered_map<BrickKey, uint32_t, BrickKeyHash> resident_;
@@ -166,15 +164,7 @@ private:
     std::vector<BrickKey> coarse_;  ///< that are to be there always
     std::vector<BrickKey> leap_jobs_;
 
-    /// Two, of which one is filled while the device copies from the other.
-    struct Staging {
-        gpu::Storage bytes;  ///< codes of all bricks, then their ranges
-        gpu::Submission copy;
-    };
-    std::array<Staging, 2> staging_;
-    size_t filling_ = 0;             ///< of staging_
-    std::vector<uint32_t> uploads_;  ///< slots of the bricks in it
-    uint64_t upload_count_ = 0, evictions_ = 0;
+    uint64_t evictions_ = 0;
 
     BrickStore store_;  ///< last: its loaders end before what they read
 };
