@@ -43,10 +43,13 @@ std::vector<PicturePart> quarters_of(const PicturePart& part)
     const glm::uvec2 middle = part.begin + (part.end - part.begin + 1u) / 2u;
     for (const bool below : {true, false})
         for (const bool right : {true, false}) {
-            PicturePart quarter = part;
-            (right ? quarter.begin.x : quarter.end.x) = middle.x;
-            (below ? quarter.begin.y : quarter.end.y) = middle.y;
-            if (quarter.begin.x < quarter.end.x && quarter.begin.y < quarter.end.y) quarters.push_back(quarter);
+            PixelBox pixels{part.begin, part.end};
+            (right ? pixels.begin.x : pixels.end.x) = middle.x;
+            (below ? pixels.begin.y : pixels.end.y) = middle.y;
+            if (pixels.empty()) continue;
+            quarters.push_back(part);
+            quarters.back().begin = pixels.begin;
+            quarters.back().end = pixels.end;
         }
     return quarters;
 }
