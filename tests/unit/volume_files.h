@@ -156,7 +156,12 @@ private:
     int64_t read_ = read_so_far();
     int64_t touched_ = touched_so_far();
 };
+#ifdef __SANITIZE_ADDRESS__
+// AddressSanitizer hands out no memory a second time soon, and what it knows of each byte is touched, too.
+constexpr int64_t AT_ONCE_BYTES = 64 << 20;
+#else
 constexpr int64_t AT_ONCE_BYTES = 32 << 20;
+#endif
 
 inline bool contains(std::string_view text, std::string_view part)
 {
