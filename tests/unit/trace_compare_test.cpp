@@ -80,7 +80,7 @@ TEST_CASE("a branch stands for a branch, though another node is nearer")
     drawing.line({{0.3, 0, 0}, {15, 0, 0}, {30, 0, 0}}, 1.0, branch);
     drawing.line({{-15, 0, 0}, {-30, 0, 0}}, 1.0, branch);
     drawing.line({{0, 15, 0}, {0, 30, 0}}, 1.0, branch);
-    // A stub that has just begun at the branch is no gap: the branch is what stands there.
+    // A side branch that has just begun at the branch is no gap: the branch is what stands there.
     drawing.line({{0, 0.8, 1.2}}, 1.0, branch);
     const TraceComparison found = compare(drawing.trace, truth.trace, 0.0);
     CHECK(found.segments_found == 3);
