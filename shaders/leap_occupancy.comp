@@ -22,7 +22,7 @@ const uint EMPTY_DISTANCE = LEAP_LIMIT;
 #endif
 #ifdef MASKED
 layout(binding = 4, r8ui) uniform readonly uimage3D mask;
-layout(binding = 5, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
+#define MASK_TABLE_BINDING 5
 layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
 
 #include "mask.glsl"
@@ -51,7 +51,7 @@ void main()
     bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
     uint entry = page_table.slots[brick];
 #ifdef MASKED
-    const uint mask_slot = mask_slot_of(cell / BRICK_CELLS, params.brick_counts);
+    const uint mask_slot = mask_slot_of(cell / BRICK_CELLS);
     if (mask_slot != 0u) {
         const CellPaint paint = paint_in(mask_slot, cell % BRICK_CELLS);
         occupied = occupied || paint.shows;

@@ -1,9 +1,11 @@
-// Finding painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted there. Needs
-// `mask_table`. A volume of a thousand bricks a side has no room for a table of all of them: MASK_TABLE_HASHED is one by
-// open addressing (engine/scene/device_mask.cpp makes it).
+// Finding painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted there. Its
+// table is bound at MASK_TABLE_BINDING. A volume of a thousand bricks a side has no room for a table of all of them:
+// MASK_TABLE_HASHED is one by open addressing (engine/scene/device_mask.cpp makes it).
 
 #ifdef MASK_TABLE_HASHED
-uint mask_slot_of(uvec3 brick, uvec3 brick_counts)
+layout(binding = MASK_TABLE_BINDING, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
+
+uint mask_slot_of(uvec3 brick)
 {
     const uint last = mask_table.slots[0], first = mask_hash(brick);
     uint found = 0u;
@@ -15,8 +17,11 @@ uint mask_slot_of(uvec3 brick, uvec3 brick_counts)
     return found;
 }
 #else
-uint mask_slot_of(uvec3 brick, uvec3 brick_counts)
+// An image, because every sample looks here, and lavapipe reads buffers one lane after another.
+layout(binding = MASK_TABLE_BINDING, r32ui) uniform readonly uimage3D mask_table;
+
+uint mask_slot_of(uvec3 brick)
 {
-    return mask_table.slots[grid_index(brick, brick_counts)];
+    return imageLoad(mask_table, ivec3(brick)).x;
 }
 #endif

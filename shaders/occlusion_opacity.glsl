@@ -1,7 +1,7 @@
 // What stops light in a voxel (occlusion.h). Needs `opacities`; MASKED, `mask` from binding 6 on.
 #ifdef MASKED
 layout(binding = 6, r8ui) uniform readonly uimage3D mask;
-layout(binding = 7, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
+#define MASK_TABLE_BINDING 7
 layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } group_opacities;
 
 #ifdef PAGED
@@ -27,7 +27,7 @@ float opacity_held(const OcclusionCellsParams params, vec3 centre)
 #ifdef MASKED
     // Held inside: what is outside stops nothing, whatever is found here.
     const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
-    const uint slot = mask_slot_of(painted / BRICK_SIZE, params.brick_counts);
+    const uint slot = mask_slot_of(painted / BRICK_SIZE);
     if (slot != 0u) {
         const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + painted % BRICK_SIZE)).x;
         held = group != 0u ? group_opacities.values[group] : -1.0;

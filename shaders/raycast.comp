@@ -53,12 +53,13 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
+// Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after another.
 layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB (PREINTEGRATED: times opacity), opacity of a full step
 layout(binding = 4, rgba32f) uniform writeonly image3D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
-layout(binding = 6, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;   // mask.glsl
-layout(binding = 7, scalar) readonly buffer Groups { GroupLook looks[]; } groups;
+#define MASK_TABLE_BINDING 6
+layout(binding = 7, rgba32f) uniform readonly image3D groups;   // linear RGB, opacity of a full step; by number
 #endif
 
 #ifdef OCCLUDED
@@ -118,7 +119,6 @@ struct Work {
     uint last_entry;
 };
 
-// An image, not a buffer: one load for four components.
 vec4 table_entry(uint entry)
 {
     return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
@@ -167,15 +167,13 @@ vec4 classify_step(const RaycastParams params, float front, float back)
 vec4 painted(const RaycastParams params, vec3 position, vec4 look)
 {
     const uvec3 voxel = uvec3(position);
-    const uint slot = mask_slot_of(voxel / BRICK_SIZE, params.brick_counts);
+    const uint slot = mask_slot_of(voxel / BRICK_SIZE);
     if (slot == 0u) return look;
     const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
-    if (SLICE != 0u) {
-        const float share = groups.looks[group].opacity > 0.0 ? params.slice_paint : 0.0;
-        return vec4(mix(look.rgb, groups.looks[group].color, share), 1.0);
-    }
-    return vec4(groups.looks[group].color, groups.looks[group].opacity);
+    const vec4 of_group = imageLoad(groups, ivec3(group, 0, 0));
+    if (SLICE == 0u) return of_group;
+    return vec4(mix(look.rgb, of_group.rgb, of_group.a > 0.0 ? params.slice_paint : 0.0), 1.0);
 }
 #endif
 

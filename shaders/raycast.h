@@ -65,11 +65,5 @@ struct RaycastParams {
     float shell_opacity;  ///< of one crossing
 };
 
-/// What a voxel of a colour group looks like, for one step.
-struct GroupLook {
-    vec3 color;
-    float opacity;  ///< of one full step
-};
-
 SHARED_END
 #endif

@@ -34,7 +34,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     if (input.mask) {
         pass.read("mask", input.mask->mask);
         pass.read("mask_table", input.mask->mask_table);
-        pass.block("groups", std::span<const gpu::GroupLook>(input.groups));
+        pass.read("groups", input.groups);
     }
     if (input.occlusion) {
         pass.read("occlusion", input.occlusion->values);

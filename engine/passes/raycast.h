@@ -24,7 +24,7 @@ struct RaycastInput {
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image: linear RGB, opacity of a full step; preintegrated: RGB times opacity
     std::optional<MaskBinding> mask;
-    std::vector<gpu::GroupLook> groups;  ///< 256, used with a mask
+    Resource groups;  ///< with a mask: rgba32f image of 256 x 1, linear RGB, opacity of a full step
     std::optional<RaycastOcclusion> occlusion;
     std::optional<Resource> surfaces;  ///< of the same pixels (engine/passes/surfaces.h)
     bool shaded = true;

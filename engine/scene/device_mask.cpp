@@ -96,15 +96,18 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
     }
 
     const std::vector<uint32_t> entries = hashed_ ? hashed_table(mask) : dense_table(mask);
-    const ResourceDesc table = buffer_desc(entries.size() * sizeof(uint32_t));
-    if (!table_ || table_.desc().bytes != table.bytes) {
+    const glm::uvec3 counts(mask.brick_counts());
+    const ResourceDesc desc =
+        hashed_ ? buffer_desc(entries.size() * sizeof(uint32_t)) : image_desc(Format::r32_uint, counts);
+    if (!table_ || table_.desc() != desc) {
         table_.reset();
-        table_ = memory_.create("mask table", table);
+        table_ = memory_.create("mask table", desc);
     }
     FrameGraph graph;
-    static_cast<void>(graph.copy(graph.upload<uint32_t>("mask table entries", entries),
-                                 graph.import("mask table", table_.import()), {{0, 0, table.bytes}},
-                                 "upload mask table"));
+    const Resource from = graph.upload<uint32_t>("mask table entries", entries);
+    const Resource to = graph.import("mask table", table_.import());
+    static_cast<void>(hashed_ ? graph.copy(from, to, {{0, 0, desc.bytes}}, "upload mask table")
+                              : graph.copy_to_image(from, to, {{0, glm::uvec3(0), counts}}, "upload mask table"));
     submit(std::move(graph));
 }
 

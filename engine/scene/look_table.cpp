@@ -1,6 +1,7 @@
 #include "engine/scene/look_table.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/scene/preintegration.h"
 
@@ -34,6 +35,32 @@ LookTable make_look_table(const Session& session, double step_voxels)
         table.visible_intervals = visible_intervals(table.texels);
     }
     return table;
+}
+
+std::vector<glm::vec4> make_group_looks(const Session& session, double step_voxels)
+{
+    std::vector<glm::vec4> looks(256);
+    for (uint32_t group = 1; group < 256; ++group) {
+        const ColorGroup look = group_of(session.groups, uint8_t(group));
+        const double opacity = look.visible ? opacity_of_step(look.opacity, step_voxels) : 0.0;
+        looks[group] = glm::vec4(glm::vec3(look.color), float(opacity));
+    }
+    return looks;
+}
+
+Resource DeviceTable::import(FrameGraph& graph, std::span<const glm::vec4> texels)
+{
+    const uint32_t width = gpu::TABLE_WIDTH;
+    const ResourceDesc desc = image_desc(Format::rgba32_float, {width, uint32_t(texels.size()) / width, 1});
+    if (!image_ || image_.desc() != desc) {
+        image_.reset();
+        image_ = memory_.create(name_, desc);
+        is_sent_ = false;
+    }
+    const Resource on_device = graph.import(name_, image_.import());
+    if (std::exchange(is_sent_, true)) return on_device;
+    return graph.copy_to_image(graph.upload<glm::vec4>(name_ + " entries", texels), on_device,
+                               {{0, glm::uvec3(0), desc.texels}}, "upload " + name_);
 }
 
 }  // namespace shvr

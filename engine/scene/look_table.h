@@ -3,8 +3,10 @@
 // it show anything. Baked in double on the CPU, kept as long as it is the same.
 
 #include <span>
+#include <string>
 #include <vector>
 
+#include "engine/gpu/memory.h"
 #include "engine/scene/session.h"
 #include "shaders/raycast.h"
 
@@ -33,6 +35,24 @@ struct LookTable {
 };
 
 LookTable make_look_table(const Session& session, double step_voxels);
+/// Of all 256 colour groups, by number: linear RGB, opacity of a step; nothing where they are hidden.
+std::vector<glm::vec4> make_group_looks(const Session& session, double step_voxels);
+
+/// A table on the device: an rgba32f image in rows of gpu::TABLE_WIDTH. One thread, the renderer's.
+class DeviceTable {
+public:
+    DeviceTable(gpu::Memory& memory, std::string name) : memory_(memory), name_(std::move(name)) {}
+    /// What was sent is not what is wanted any more.
+    void outdate() { is_sent_ = false; }
+    /// Sends `texels` where they are not there yet.
+    Resource import(FrameGraph& graph, std::span<const glm::vec4> texels);
+
+private:
+    gpu::Memory& memory_;
+    std::string name_;
+    gpu::Storage image_;
+    bool is_sent_ = false;
+};
 
 /// What all parameters of kernels have that look into a table of a function.
 template <class Params>

@@ -45,17 +45,6 @@ std::array<uint32_t, 8> visible_groups(const Session& session)
     return bits;
 }
 
-std::vector<gpu::GroupLook> group_looks(const Session& session, double step_voxels)
-{
-    std::vector<gpu::GroupLook> looks(256);
-    for (uint32_t group = 1; group < 256; ++group) {
-        const ColorGroup look = group_of(session.groups, uint8_t(group));
-        const double opacity = look.visible ? opacity_of_step(look.opacity, step_voxels) : 0.0;
-        looks[group] = {glm::vec3(look.color), float(opacity)};
-    }
-    return looks;
-}
-
 /// What depends on the camera: rays, what they meet of the volume, light and depth.
 void set_rays(gpu::RaycastParams& params, const Session& session, const Camera& camera, const VolumeInfo& info,
               const glm::uvec2& pixels)
@@ -266,22 +255,17 @@ const LookTable& Renderer::table_of(const Session& session, double step_voxels)
 {
     if (table_ && table_->is_of(session, step_voxels)) return *table_;
     table_ = make_look_table(session, step_voxels);
-    table_is_on_device_ = false;
+    table_on_device_.outdate();
     return *table_;
 }
 
-Resource Renderer::upload_table(FrameGraph& graph, const LookTable& table)
+/// Of the groups, sent where they look different than before.
+Resource Renderer::import_group_looks(FrameGraph& graph, const Session& session, double step_voxels)
 {
-    const uint32_t width = gpu::TABLE_WIDTH;
-    const ResourceDesc desc = image_desc(Format::rgba32_float, {width, uint32_t(table.texels.size()) / width, 1});
-    if (!table_image_ || table_image_.desc().texels != desc.texels) {
-        table_image_.reset();
-        table_image_ = memory_.create("transfer function", desc);
-    }
-    const Resource on_device = graph.import("transfer function", table_image_.import());
-    if (std::exchange(table_is_on_device_, true)) return on_device;
-    return graph.copy_to_image(graph.upload<glm::vec4>("transfer function entries", table.texels), on_device,
-                               {{0, glm::uvec3(0), desc.texels}}, "upload transfer function");
+    std::vector<glm::vec4> looks = make_group_looks(session, step_voxels);
+    if (looks != group_looks_) groups_on_device_.outdate();
+    group_looks_ = std::move(looks);
+    return groups_on_device_.import(graph, group_looks_);
 }
 
 LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session)
@@ -428,7 +412,7 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     }
     input.params = raycast_params(session, shot.camera, *volume_, prepared.volume, part, step_voxels);
     input.params.gradient_fade = float(gradient_fade_codes(session));
-    input.table = upload_table(graph, table_of(session, step_voxels));
+    input.table = table_on_device_.import(graph, table_of(session, step_voxels).texels);
     input.shaded = is_shaded;
     input.slice = shot.is_slice;
     input.preintegrated = session.render.preintegration && !shot.is_slice;
@@ -440,9 +424,7 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
         prepared.listed = surfaces_.import(graph);
         input.surfaces = draw_surfaces(graph, prepared, input, shot.camera, part);
     }
-    if (input.mask) {
-        input.groups = group_looks(session, step_voxels);
-    }
+    if (input.mask) input.groups = import_group_looks(graph, session, step_voxels);
     return prepared;
 }
 

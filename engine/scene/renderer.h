@@ -190,7 +190,7 @@ private:
     VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
                                   bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
-    Resource upload_table(FrameGraph& graph, const LookTable& table);
+    Resource import_group_looks(FrameGraph& graph, const Session& session, double step_voxels);
     LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
         VolumeBinding volume;
@@ -222,8 +222,9 @@ private:
     std::vector<std::string> messages_;
     uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen
     std::optional<LookTable> table_;
-    gpu::Storage table_image_;
-    bool table_is_on_device_ = false;
+    DeviceTable table_on_device_{memory_, "transfer function"};
+    std::vector<glm::vec4> group_looks_;
+    DeviceTable groups_on_device_{memory_, "groups"};
     EmptySpace empty_space_;
 };
 

@@ -51,8 +51,9 @@ const std::vector<Feature> FEATURES{
     {"shading", [](Scenery& s) { s.session.light.shaded = true; }, {}},
     {"paint",
      [](Scenery& s) { s.is_painted = true; },
-     {"raycast_masked", "leap_occupancy_masked"},
-     {"mask", "mask bricks", "mask table", "mask table entries", "region bits", "region parents"}},
+     {"raycast_masked", "leap_occupancy_masked", "upload groups"},
+     {"mask", "mask bricks", "mask table", "mask table entries", "groups", "groups entries", "region bits",
+      "region parents"}},
     {"ambient occlusion",
      [](Scenery& s) {
          s.session.light.shaded = true;

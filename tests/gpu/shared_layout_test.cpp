@@ -194,8 +194,6 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         "surfaces_listed", "surface_list",
         {MEMBER(Surface, from), MEMBER(Surface, from_rest), MEMBER(Surface, along), MEMBER(Surface, radius_from),
          MEMBER(Surface, radius_to), MEMBER(Surface, color), MEMBER(Surface, number)});
-    for (const char* kernel : {"raycast_masked", "raycast_filtered_masked"})
-        check_members(kernel, "groups", {MEMBER(GroupLook, color), MEMBER(GroupLook, opacity)});
     for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {
         check_members(kernel, "push", brick_leap_params());
         check_members(kernel, "jobs", brick_leap_jobs());

@@ -69,7 +69,7 @@ Session session_of(const VolumeInfo& volume)
 /// One hundred positions at radius 16, on 512^3.
 void one_stroke(const Folder& folder)
 {
-    constexpr int POSITIONS = 100, ROUNDS = 7;
+    constexpr int POSITIONS = 100, ROUNDS = 15;
     std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = Size3(512)});
     const VolumeInfo& volume = source->info();
     Renderer renderer({});
@@ -98,6 +98,7 @@ void one_stroke(const Folder& folder)
     std::vector<double> selecting, painting, undoing, redoing, before, after, journaling;
     int64_t voxels = 0, bytes = 0;
     for (int round = 0; round < ROUNDS; ++round) {
+        draw();  // what the last undo left to do
         before.push_back(milliseconds_of(draw));
         selecting.push_back(milliseconds_of([&] { annotator.select(op); }));
         annotator.flush();
