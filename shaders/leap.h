@@ -25,7 +25,13 @@ struct OccupancyParams {
     float table_scale;
     uint table_entries;
     uint skipping;        ///< 0: every cell counts as occupied
-    uvec3 changed_begin;  ///< PATCHED: the cells that changed
+    uint empty_distance;  ///< of cells that are not occupied
+};
+
+struct LeapBoundParams {
+    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_end;
+    uvec3 changed_begin;
     uvec3 changed_end;
 };
 

@@ -1,8 +1,6 @@
-// One cell per thread: is anything in it visible? Distance 0 where it is, LEAP_LIMIT where it is not.
-// PATCHED: in a grid that is there, where only some cells changed. They get distance 0 or 1, and those around them no more
-// than to the nearest of them, as if all of those were occupied: a grid that leaps less far than it might, and never too far.
+// One cell per thread: is anything in it visible? Distance 0 where it is, `empty_distance` where it is not.
 // MASKED: a cell is occupied, too, where a voxel of a visible group is; and is it painted at all?
-// variants: MASKED PATCHED
+// variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -13,13 +11,7 @@ layout(push_constant, scalar) uniform Push { OccupancyParams params; };
 layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
 layout(binding = 1, scalar) readonly buffer PageTable { uint slots[]; } page_table;
 layout(binding = 2, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
-#ifdef PATCHED
-layout(binding = 3, r32ui) uniform uimage3D leap;
-const uint EMPTY_DISTANCE = 1u;
-#else
 layout(binding = 3, r32ui) uniform writeonly uimage3D leap;
-const uint EMPTY_DISTANCE = LEAP_LIMIT;
-#endif
 #ifdef MASKED
 layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 5
@@ -37,16 +29,6 @@ void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-#ifdef PATCHED
-    const ivec3 apart = max(ivec3(params.changed_begin) - ivec3(cell), ivec3(cell) - ivec3(params.changed_end) + 1);
-    const int to_changed = max(apart.x, max(apart.y, apart.z));
-    if (to_changed > 0) {
-        const uint before = imageLoad(leap, ivec3(cell)).x;
-        const uint distance = min(before >> LEAP_DISTANCE_SHIFT, uint(to_changed));
-        imageStore(leap, ivec3(cell), uvec4(distance << LEAP_DISTANCE_SHIFT | before & (LEAP_PAINTED | LEAP_SLOT_MASK)));
-        return;
-    }
-#endif
     const uint brick = grid_index(cell / BRICK_CELLS, params.brick_counts);
     bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(cell)).x);
     uint entry = page_table.slots[brick];
@@ -58,5 +40,5 @@ void main()
         entry |= paint.is_there ? LEAP_PAINTED : 0u;
     }
 #endif
-    imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : EMPTY_DISTANCE << LEAP_DISTANCE_SHIFT) | entry));
+    imageStore(leap, ivec3(cell), uvec4((occupied ? 0u : params.empty_distance << LEAP_DISTANCE_SHIFT) | entry));
 }

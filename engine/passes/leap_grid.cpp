@@ -13,12 +13,10 @@ CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_
     return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
 }
 
-/// What decides whether cells are empty, but for where the result goes.
-Pass occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
-               const std::string& name)
+void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
+               uint32_t empty_distance, Resource& to)
 {
-    Pass pass =
-        graph.compute("leap_occupancy" + std::string(input.mask ? "_masked" : "") + name, "leap_occupancy" + name);
+    Pass pass = graph.compute(input.mask ? "leap_occupancy_masked" : "leap_occupancy", "leap_occupancy");
     pass.read("cell_ranges", volume.cell_ranges);
     pass.read("page_table", volume.page_table);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
@@ -30,11 +28,10 @@ Pass occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInp
     gpu::OccupancyParams params = input.params;
     params.cell_begin = cells.begin;
     params.cell_end = cells.end;
-    params.changed_begin = input.changed.begin;
-    params.changed_end = input.changed.end;
+    params.empty_distance = empty_distance;
     pass.push(params);
     pass.dispatch(cells.end - cells.begin);
-    return pass;
+    to = pass.write("leap", to);
 }
 
 void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, const CellBox& cells, Resource from,
@@ -54,9 +51,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 {
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, stage);
     switch (stage) {
-        case 0:
-            volume.leap_scratch[0] = occupancy(graph, volume, input, cells, "").write("leap", volume.leap_scratch[0]);
-            return;
+        case 0: return occupancy(graph, volume, input, cells, gpu::LEAP_LIMIT, volume.leap_scratch[0]);
         case 1: return distance(graph, volume, 0, cells, volume.leap_scratch[0], volume.leap_scratch[1]);
         case 2: return distance(graph, volume, 1, cells, volume.leap_scratch[1], volume.leap_scratch[0]);
         case 3: return distance(graph, volume, 2, cells, volume.leap_scratch[0], volume.leap);
@@ -68,7 +63,12 @@ void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 {
     // As the last stage: the cells whose distance the changed ones may bound.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
-    volume.leap = occupancy(graph, volume, input, cells, "_patched").modify("leap", volume.leap);
+    Pass pass = graph.compute("leap_bound", "leap_bound");
+    pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});
+    pass.dispatch(cells.end - cells.begin);
+    volume.leap = pass.modify("leap", volume.leap);
+    const CellBox inside{input.changed.begin, glm::min(input.changed.end, volume.cell_counts)};
+    occupancy(graph, volume, input, inside, 1, volume.leap);
 }
 
 }  // namespace shvr

@@ -3,7 +3,7 @@
 //
 //   [look changed]            upload transfer function
 //   [look changed]            leap_occupancy -> leap_distance x, y, z      (one thread a cell)
-//   [paint or offsets]        leap_occupancy_patched, the above when idle  (one thread a cell around them)
+//   [paint or offsets]        leap_bound, leap_occupancy; when idle, the above     (one thread a cell around them)
 //   [surfaces or a probe]     surfaces                                     (one thread a pixel)
 //   every part of a picture   raycast                                      (one thread a pixel)
 //

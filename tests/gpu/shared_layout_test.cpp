@@ -75,7 +75,7 @@ Members occupancy_params()
             MEMBER(OccupancyParams, brick_counts),  MEMBER(OccupancyParams, table_lower),
             MEMBER(OccupancyParams, table_upper),   MEMBER(OccupancyParams, table_scale),
             MEMBER(OccupancyParams, table_entries), MEMBER(OccupancyParams, skipping),
-            MEMBER(OccupancyParams, changed_begin), MEMBER(OccupancyParams, changed_end)};
+            MEMBER(OccupancyParams, empty_distance)};
 }
 
 Members region_params()
@@ -203,6 +203,9 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members("leap_distance", "push",
                   {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, cell_begin),
                    MEMBER(LeapDistanceParams, cell_end), MEMBER(LeapDistanceParams, axis)});
+    check_members("leap_bound", "push",
+                  {MEMBER(LeapBoundParams, cell_begin), MEMBER(LeapBoundParams, cell_end),
+                   MEMBER(LeapBoundParams, changed_begin), MEMBER(LeapBoundParams, changed_end)});
     for (const char* kernel : {"region_bits", "region_bits_filtered", "region_merge", "region_mark", "region_select"})
         check_members(kernel, "push", region_params());
     for (const char* kernel : {"region_bits", "region_bits_filtered", "region_mark"})
