@@ -15,7 +15,7 @@ struct Surface {
     float radius_from;
     float radius_to;  ///< neither ball lies in the other
     vec3 color;       ///< linear light
-    uint number;      ///< its place in the list; of two at the same length, the lower one is seen
+    uint number;      ///< of two at the same length, the lower one is seen
 };
 
 /// A box around surfaces. Nodes lie in depth-first order: the next one is the first child, or where there is none `skip`.

@@ -369,9 +369,14 @@ void Renderer::show_always(const std::optional<VoxelBox>& voxels)
     always_shown_ = VoxelBox{lower * side, glm::max(upper, lower) * side};
 }
 
-void Renderer::set_surfaces(const std::vector<SurfaceLook>& surfaces)
+void Renderer::set_keyed_surfaces(std::vector<KeyedSurface> surfaces)
 {
-    surfaces_.set(surface_tree(surfaces, volume().info()));
+    surfaces_.set(SurfaceForest(std::move(surfaces), volume().info()));
+}
+
+bool Renderer::replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces)
+{
+    return surfaces_.replace(keys, surfaces, volume().info());
 }
 
 /// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.

@@ -135,7 +135,11 @@ public:
 
     /// Opaque balls and rods that rays stop at, instead of those before; `load` forgets them. Fails as `surface_tree` and
     /// gpu::Memory::create do; then the ones before stay.
-    void set_surfaces(const std::vector<SurfaceLook>& surfaces);
+    void set_surfaces(const std::vector<SurfaceLook>& surfaces) { set_keyed_surfaces(keyed(surfaces)); }
+    void set_keyed_surfaces(std::vector<KeyedSurface> surfaces);
+    /// The same with those of `keys` gone and `surfaces` there, at a cost that follows the change. False: nothing happened,
+    /// `set_keyed_surfaces` is as cheap.
+    bool replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces);
 
     /// The picture of `session` (its light, transfer function, groups, cut, panes) from `camera`.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});

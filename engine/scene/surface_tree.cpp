@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
+#include <string>
 
 #include "engine/base/error.h"
 
@@ -41,21 +41,31 @@ bool is_within(const glm::dvec3& v)
            glm::all(glm::lessThanEqual(v, glm::dvec3(FARTHEST)));
 }
 
-void check(const SurfaceLook& surface, size_t number, double reference_length)
+std::string name_of(uint64_t key)
+{
+    constexpr const char* KINDS[] = {"surface ", "node ", "internode "};
+    return KINDS[key >> 32] + std::to_string(uint32_t(key));
+}
+
+/// For the device, where kinds are told apart as well. Numbers above 2^30 share some, which matters to ties alone.
+uint32_t order_of(uint64_t key)
+{
+    return uint32_t(key >> 32) << 30 | (uint32_t(key) & 0x3fffffffu);
+}
+
+void check(const SurfaceLook& surface, uint64_t key, double reference_length)
 {
     for (const glm::dvec3& point : {surface.from, surface.to})
         if (!is_within(point / reference_length))
-            fail("surface ", number, ": an end is at (", point.x, ", ", point.y, ", ", point.z, "); expected ",
+            fail(name_of(key), ": an end is at (", point.x, ", ", point.y, ", ", point.z, "); expected ",
                  NEAREST * reference_length, " ... ", FARTHEST * reference_length, " along each axis");
     for (const double radius : {surface.radius_from, surface.radius_to})
         if (!(radius > 0.0 && radius / reference_length <= LARGEST))
-            fail("surface ", number, ": a radius is ", radius, "; expected above 0 and at most ",
-                 LARGEST * reference_length);
-    if (!is_finite(surface.color))
-        fail("surface ", number, ": its colour is not finite; expected three finite numbers");
+            fail(name_of(key), ": a radius is ", radius, "; expected above 0 and at most ", LARGEST * reference_length);
+    if (!is_finite(surface.color)) fail(name_of(key), ": its colour is not finite; expected three finite numbers");
 }
 
-gpu::Surface on_device(const SurfaceLook& look, size_t number, double reference_length)
+gpu::Surface on_device(const SurfaceLook& look, uint64_t key, double reference_length)
 {
     glm::dvec3 from = look.from / reference_length, to = look.to / reference_length;
     double radius_from = look.radius_from / reference_length, radius_to = look.radius_to / reference_length;
@@ -71,7 +81,7 @@ gpu::Surface on_device(const SurfaceLook& look, size_t number, double reference_
     surface.radius_from = float(radius_from);
     surface.radius_to = float(radius_to);
     surface.color = look.color;
-    surface.number = uint32_t(number);
+    surface.number = order_of(key);
     return surface;
 }
 
@@ -187,7 +197,16 @@ private:
 
 }  // namespace
 
-SurfaceTree surface_tree(const std::vector<SurfaceLook>& surfaces, const VolumeInfo& volume, size_t most_in_leaf)
+std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces)
+{
+    std::vector<KeyedSurface> all;
+    all.reserve(surfaces.size());
+    for (const SurfaceLook& look : surfaces)
+        all.push_back({surface_key(SurfaceKind::session, uint32_t(all.size())), look});
+    return all;
+}
+
+SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf)
 {
     if (surfaces.size() > MOST_SURFACES)
         fail(surfaces.size(), " surfaces are to be drawn; expected at most ", MOST_SURFACES);
@@ -197,8 +216,8 @@ SurfaceTree surface_tree(const std::vector<SurfaceLook>& surfaces, const VolumeI
     all.reserve(surfaces.size());
     items.reserve(surfaces.size());
     for (size_t i = 0; i < surfaces.size(); ++i) {
-        check(surfaces[i], i, reference_length);
-        all.push_back(on_device(surfaces[i], i, reference_length));
+        check(surfaces[i].look, surfaces[i].key, reference_length);
+        all.push_back(on_device(surfaces[i].look, surfaces[i].key, reference_length));
         const Box box = box_of(all.back());
         items.push_back({box, 0.5 * (box.lower + box.upper), uint32_t(i)});
     }
@@ -206,7 +225,11 @@ SurfaceTree surface_tree(const std::vector<SurfaceLook>& surfaces, const VolumeI
     if (items.empty()) return tree;
     Builder(items, std::max<size_t>(most_in_leaf, 1), tree.nodes).add(0, items.size());
     tree.list.reserve(all.size());
-    for (const Item& item : items) tree.list.push_back(all[item.surface]);
+    tree.keys.reserve(all.size());
+    for (const Item& item : items) {
+        tree.list.push_back(all[item.surface]);
+        tree.keys.push_back(surfaces[item.surface].key);
+    }
     return tree;
 }
 

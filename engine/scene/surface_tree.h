@@ -2,6 +2,8 @@
 // Opaque surfaces of a scene as a person gives them, and as the device searches them: a hierarchy of boxes in depth-first
 // order with a way past each. Plain data; any thread.
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -19,6 +21,22 @@ struct SurfaceLook {
     bool operator==(const SurfaceLook&) const = default;
 };
 
+/// What a surface is of: those of a session go by their place, then nodes and internodes of the trace by their numbers. Of two
+/// at the same length along a ray the one before is seen.
+enum class SurfaceKind : uint8_t { session, node, internode };
+constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
+{
+    return uint64_t(kind) << 32 | number;
+}
+
+struct KeyedSurface {
+    uint64_t key = 0;
+    SurfaceLook look;
+};
+
+/// Keys by their place.
+std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
+
 /// 60 bytes each, and at most as many of nodes: below what any device takes for one buffer, 128 MiB.
 inline constexpr size_t MOST_SURFACES = 1'000'000;
 
@@ -28,11 +46,12 @@ inline constexpr size_t SURFACES_IN_LEAF = 4;
 struct SurfaceTree {
     std::vector<gpu::SurfaceNode> nodes;
     std::vector<gpu::Surface> list;  ///< in the order of the leaves
+    std::vector<uint64_t> keys;      ///< of `list`
 };
 
 /// Fails, naming the surface, where there are more than MOST_SURFACES, or one of them is not finite, is no larger than
 /// nothing, or is farther than 2^20 reference lengths from where the volume may be. `most_in_leaf` is for tests.
-SurfaceTree surface_tree(const std::vector<SurfaceLook>& surfaces, const VolumeInfo& volume,
+SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t most_in_leaf = SURFACES_IN_LEAF);
 
 }  // namespace shvr

@@ -14,18 +14,31 @@ constexpr double ROUNDING = 0x1p-20;
 constexpr double FAR = 1e20;
 
 template <class Value>
-gpu::Storage reserve(gpu::Memory& memory, const char* name, const std::vector<Value>& values)
+Resource send_all(FrameGraph& graph, const std::string& name, const std::vector<Value>& values, Resource target)
 {
-    return memory.create(name, buffer_desc(values.size() * sizeof(Value)));
+    return graph.copy(graph.upload<Value>(name + " to upload", values), target, {{0, 0, values.size() * sizeof(Value)}},
+                      "upload " + name);
 }
 
 template <class Value>
-Resource uploaded(FrameGraph& graph, const char* name, const std::vector<Value>& values, const gpu::Storage& storage)
+Resource send(FrameGraph& graph, const std::string& name, const std::vector<Value>& values,
+              std::vector<uint32_t> places, Resource target)
 {
-    const Resource target = graph.import(name, storage.import());
-    if (values.empty()) return target;
-    return graph.copy(graph.upload<Value>(std::string(name) + " to upload", values), target,
-                      {{0, 0, values.size() * sizeof(Value)}}, std::string("upload ") + name);
+    std::ranges::sort(places);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // was there for a while
+    if (places.empty()) return target;
+    std::vector<Value> written;
+    std::vector<BufferRegion> regions;
+    for (const uint32_t place : places) {
+        const uint64_t from = written.size() * sizeof(Value), to = place * sizeof(Value);
+        if (!regions.empty() && regions.back().target_offset + regions.back().bytes == to)
+            regions.back().bytes += sizeof(Value);
+        else
+            regions.push_back({from, to, sizeof(Value)});
+        written.push_back(values[place]);
+    }
+    return graph.copy(graph.upload<Value>(name + " to upload", written), target, std::move(regions), "upload " + name);
 }
 
 double largest(const glm::dvec3& v)
@@ -35,26 +48,45 @@ double largest(const glm::dvec3& v)
 
 }  // namespace
 
-void SurfaceScene::set(SurfaceTree tree)
+void SurfaceScene::set(SurfaceForest forest)
 {
     gpu::Storage nodes, list;
-    if (!tree.nodes.empty()) {
-        nodes = reserve(memory_, "surface nodes", tree.nodes);
-        list = reserve(memory_, "surface list", tree.list);
+    if (!forest.nodes().empty()) {
+        nodes = memory_.create("surface nodes", buffer_desc(forest.most_nodes() * sizeof(gpu::SurfaceNode)));
+        list = memory_.create("surface list", buffer_desc(forest.most_surfaces() * sizeof(gpu::Surface)));
     }
     nodes_ = std::move(nodes);
     list_ = std::move(list);
-    node_count_ = uint32_t(tree.nodes.size());
-    largest_ = tree.nodes.empty() ? 0.0 : std::max(largest(tree.nodes[0].lower), largest(tree.nodes[0].upper));
-    waiting_ = std::move(tree);
+    forest_ = std::move(forest);
+    is_sent_ = false;
+}
+
+bool SurfaceScene::replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces,
+                           const VolumeInfo& volume)
+{
+    return forest_.replace(keys, surfaces, volume);
 }
 
 std::optional<SurfaceList> SurfaceScene::import(FrameGraph& graph)
 {
     if (empty()) return std::nullopt;
-    const SurfaceTree tree = std::exchange(waiting_, {});
-    return SurfaceList{uploaded(graph, "surface nodes", tree.nodes, nodes_),
-                       uploaded(graph, "surface list", tree.list, list_)};
+    const Resource nodes = graph.import("surface nodes", nodes_.import());
+    const Resource list = graph.import("surface list", list_.import());
+    SurfaceForest::Written written = forest_.take_written();
+    if (!std::exchange(is_sent_, true))
+        return SurfaceList{send_all(graph, "surface nodes", forest_.nodes(), nodes),
+                           send_all(graph, "surface list", forest_.list(), list)};
+    return SurfaceList{send(graph, "surface nodes", forest_.nodes(), std::move(written.nodes), nodes),
+                       send(graph, "surface list", forest_.list(), std::move(written.list), list)};
+}
+
+/// Of the coordinates, in reference lengths.
+double SurfaceScene::largest() const
+{
+    double most = 0.0;
+    for (size_t root = 0; root < forest_.nodes().size(); root = forest_.nodes()[root].skip)
+        most = std::max({most, shvr::largest(forest_.nodes()[root].lower), shvr::largest(forest_.nodes()[root].upper)});
+    return most;
 }
 
 gpu::SurfaceParams SurfaceScene::params(const RayPlanes& planes, const glm::uvec2& pixels,
@@ -80,8 +112,8 @@ gpu::SurfaceParams SurfaceScene::params(const RayPlanes& planes, const glm::uvec
     params.begin = float(std::max(planes.begin, -FAR));
     params.middle = float(planes.middle);
     params.end = float(std::min(planes.end, FAR));
-    params.slack = float(ROUNDING * (largest_ + largest(origin) + largest(corner - origin)));
-    params.node_count = node_count_;
+    params.slack = float(ROUNDING * (largest() + shvr::largest(origin) + shvr::largest(corner - origin)));
+    params.node_count = uint32_t(forest_.nodes().size());
     return params;
 }
 

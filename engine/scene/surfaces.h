@@ -7,7 +7,7 @@
 #include "engine/gpu/memory.h"
 #include "engine/passes/surfaces.h"
 #include "engine/scene/camera.h"
-#include "engine/scene/surface_tree.h"
+#include "engine/scene/surface_forest.h"
 
 namespace shvr {
 
@@ -15,10 +15,12 @@ class SurfaceScene {
 public:
     explicit SurfaceScene(gpu::Memory& memory) : memory_(memory) {}
 
-    /// Replaces all of them. Fails as `surface_tree` does, and where the budget does not hold them; then the ones before
-    /// stay. Waits for the device where there were some.
-    void set(SurfaceTree tree);
-    bool empty() const { return node_count_ == 0; }
+    /// Replaces all of them. Fails where the budget does not hold them; then the ones before stay. Waits for the device
+    /// where there were some.
+    void set(SurfaceForest forest);
+    /// Replaces a few: as SurfaceForest::replace.
+    bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
+    bool empty() const { return forest_.nodes().empty(); }
 
     /// Handles for a graph that must be submitted; nothing where there are none.
     std::optional<SurfaceList> import(FrameGraph& graph);
@@ -26,11 +28,11 @@ public:
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 
 private:
+    double largest() const;
     gpu::Memory& memory_;
-    SurfaceTree waiting_;  ///< for the device
+    SurfaceForest forest_;
     gpu::Storage nodes_, list_;
-    uint32_t node_count_ = 0;
-    double largest_ = 0.0;  ///< of the coordinates, in reference lengths
+    bool is_sent_ = false;  ///< but for what `replace` wrote
 };
 
 }  // namespace shvr

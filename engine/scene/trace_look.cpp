@@ -1,42 +1,117 @@
 #include "engine/scene/trace_look.h"
 
 #include <algorithm>
+#include <array>
+#include <set>
 
 namespace shvr {
 
-std::vector<SurfaceLook> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
-{
-    const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    const auto shown = [least](double radius) { return radius > 0.0 ? radius : least; };
-    std::vector<SurfaceLook> surfaces;
-    surfaces.reserve(trace.nodes().size() + trace.internodes().size());
-    for (const auto& [number, node] : trace.nodes()) {
-        const ColorGroup group = group_of(groups, node.group);
+namespace {
+
+/// Finds the look of a group once.
+class TraceLook {
+public:
+    TraceLook(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
+        : trace_(trace), groups_(groups), least_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
+    {}
+
+    /// Nothing where the group is hidden.
+    std::optional<KeyedSurface> of(uint32_t number, const TraceNode& node)
+    {
+        const Look& look = look_of(node.group);
+        if (!look.visible) return std::nullopt;
         const double radius = shown(node.radius);
-        if (group.visible)
-            surfaces.push_back({.from = node.position,
-                                .to = node.position,
-                                .radius_from = radius,
-                                .radius_to = radius,
-                                .color = group.color});
+        return KeyedSurface{surface_key(SurfaceKind::node, number),
+                            {node.position, node.position, radius, radius, look.color}};
     }
-    for (const auto& [number, internode] : trace.internodes()) {
-        const ColorGroup group = group_of(groups, internode.group);
-        if (!group.visible) continue;
-        surfaces.push_back({.from = trace.node(internode.a).position,
-                            .to = trace.node(internode.b).position,
-                            .radius_from = shown(trace.radius_of(internode, 0.0)),
-                            .radius_to = shown(trace.radius_of(internode, 1.0)),
-                            .color = group.color});
+    std::optional<KeyedSurface> of(uint32_t number, const TraceInternode& internode)
+    {
+        const Look& look = look_of(internode.group);
+        if (!look.visible) return std::nullopt;
+        return KeyedSurface{
+            surface_key(SurfaceKind::internode, number),
+            {trace_.node(internode.a).position, trace_.node(internode.b).position,
+             shown(trace_.radius_of(internode, 0.0)), shown(trace_.radius_of(internode, 1.0)), look.color}};
     }
+
+private:
+    struct Look {
+        bool visible;
+        glm::dvec3 color;
+    };
+    double shown(double radius) const { return radius > 0.0 ? radius : least_; }
+    const Look& look_of(uint8_t group)
+    {
+        std::optional<Look>& look = looks_[group];
+        if (!look) {
+            const ColorGroup found = group_of(groups_, group);
+            look = Look{found.visible, found.color};
+        }
+        return *look;
+    }
+
+    const TraceGraph& trace_;
+    const Groups& groups_;
+    double least_;
+    std::array<std::optional<Look>, 256> looks_{};
+};
+
+}  // namespace
+
+std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
+{
+    TraceLook look(trace, groups, spacing);
+    std::vector<KeyedSurface> surfaces;
+    surfaces.reserve(trace.nodes().size() + trace.internodes().size());
+    const auto add = [&](const auto& numbered) {
+        for (const auto& [number, what] : numbered)
+            if (const auto surface = look.of(number, what)) surfaces.push_back(*surface);
+    };
+    add(trace.nodes());
+    add(trace.internodes());
     return surfaces;
 }
 
-void show_surfaces(Renderer& renderer, std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups)
+void show_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
+                   const Groups& groups)
 {
-    const std::vector<SurfaceLook> of_trace = surfaces_of(trace, groups, renderer.volume().info().spacing);
-    surfaces.insert(surfaces.end(), of_trace.begin(), of_trace.end());
-    renderer.set_surfaces(surfaces);
+    std::vector<KeyedSurface> all = keyed(surfaces);
+    const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, renderer.volume().info().spacing);
+    all.insert(all.end(), of_trace.begin(), of_trace.end());
+    renderer.set_keyed_surfaces(std::move(all));
+}
+
+void show_changed_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
+                           const Groups& groups, std::span<const Change> changes)
+{
+    std::set<uint32_t> nodes, internodes;
+    for (const Change& change : changes) {
+        const auto* const of_trace = std::get_if<TraceChange>(&change);
+        if (!of_trace) continue;
+        if (const auto* node = std::get_if<TraceNodeChange>(of_trace)) {
+            nodes.insert(node->node);
+            const std::span<const uint32_t> around = trace.internodes_of(node->node);
+            internodes.insert(around.begin(), around.end());
+        } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
+            internodes.insert(internode->internode);
+        } else if (std::holds_alternative<TraceSizeChange>(*of_trace)) {
+            return show_surfaces(renderer, surfaces, trace, groups);
+        }
+    }
+    TraceLook look(trace, groups, renderer.volume().info().spacing);
+    std::vector<uint64_t> keys;
+    std::vector<KeyedSurface> now;
+    const auto add = [&](SurfaceKind kind, const std::set<uint32_t>& changed, const auto& numbered) {
+        for (const uint32_t number : changed) {
+            keys.push_back(surface_key(kind, number));
+            const auto found = numbered.find(number);
+            if (found == numbered.end()) continue;
+            if (const auto surface = look.of(number, found->second)) now.push_back(*surface);
+        }
+    };
+    add(SurfaceKind::node, nodes, trace.nodes());
+    add(SurfaceKind::internode, internodes, trace.internodes());
+    if (!renderer.replace_surfaces(keys, now)) show_surfaces(renderer, surfaces, trace, groups);
 }
 
 namespace {

@@ -13,11 +13,15 @@ namespace shvr {
 
 /// Hidden groups are left out. `spacing`: of the volume; what has no radius is drawn with half a voxel's, along the finest
 /// axis.
-std::vector<SurfaceLook> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
+std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
 /// Pictures show these surfaces and those of the trace, from now on.
-void show_surfaces(Renderer& renderer, std::vector<SurfaceLook> surfaces, const TraceGraph& trace,
+void show_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
                    const Groups& groups);
+/// The same after these changes, of which the trace holds the result. What it costs follows the changes, but for those of
+/// thousands of nodes, and of a group's size.
+void show_changed_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
+                           const Groups& groups, std::span<const Change> changes);
 
 /// What may look different after these changes, of which the trace holds the result; empty where none is of a trace.
 VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing);

@@ -89,7 +89,7 @@ public:
     {
         const RayPlanes planes = ray_planes(camera, pixels, info);
         SurfaceScene scene(renderer().memory());
-        scene.set(surface_tree(surfaces, info, most_in_leaf));
+        scene.set(SurfaceForest(keyed(surfaces), info, most_in_leaf));
         FrameGraph graph;
         SurfacesInput input{.params = {},
                             .scene = scene.params(planes, pixels, info),

@@ -37,6 +37,11 @@ std::vector<SurfaceLook> rods(size_t count, double extent, uint32_t seed)
     return surfaces;
 }
 
+SurfaceTree tree_of(const std::vector<SurfaceLook>& surfaces)
+{
+    return surface_tree(keyed(surfaces), volume());
+}
+
 /// Every surface in one leaf, inside the boxes above it; children within their parent, one after the other.
 void check_tree(const SurfaceTree& tree, size_t most_in_leaf)
 {
@@ -77,7 +82,7 @@ void check_tree(const SurfaceTree& tree, size_t most_in_leaf)
 std::string refusal(const SurfaceLook& surface)
 {
     try {
-        static_cast<void>(surface_tree({SurfaceLook{}, surface}, volume()));
+        static_cast<void>(tree_of({SurfaceLook{}, surface}));
     } catch (const Error& error) {
         return error.what();
     }
@@ -89,7 +94,7 @@ std::string refusal(const SurfaceLook& surface)
 TEST_CASE("every surface is in one leaf, inside every box around it")
 {
     for (const size_t count : {1, 4, 5, 37, 3000}) {
-        const SurfaceTree tree = surface_tree(rods(count, 100.0, 21), volume());
+        const SurfaceTree tree = tree_of(rods(count, 100.0, 21));
         CHECK(tree.list.size() == count);
         check_tree(tree, SURFACES_IN_LEAF);
         std::vector<bool> seen(count);
@@ -97,18 +102,18 @@ TEST_CASE("every surface is in one leaf, inside every box around it")
         CHECK(std::ranges::count(seen, true) == ptrdiff_t(count));
     }
     // Nothing to tell them apart by, and one that outweighs all others.
-    check_tree(surface_tree(std::vector<SurfaceLook>(5000), volume()), SURFACES_IN_LEAF);
+    check_tree(tree_of(std::vector<SurfaceLook>(5000)), SURFACES_IN_LEAF);
     std::vector<SurfaceLook> uneven = rods(2000, 1e-3, 22);
     uneven.push_back({.from = glm::dvec3(5e5), .to = glm::dvec3(5e5), .radius_from = 3.0, .radius_to = 3.0});
-    check_tree(surface_tree(uneven, volume()), SURFACES_IN_LEAF);
-    CHECK(surface_tree({}, volume()).nodes.empty());
+    check_tree(tree_of(uneven), SURFACES_IN_LEAF);
+    CHECK(tree_of({}).nodes.empty());
 }
 
 TEST_CASE("a hundred thousand rods are sorted in far less than a second")
 {
     const std::vector<SurfaceLook> many = rods(100'000, 500.0, 23);
     const std::clock_t begun = std::clock();
-    const SurfaceTree tree = surface_tree(many, volume());
+    const SurfaceTree tree = tree_of(many);
     const double seconds = double(std::clock() - begun) / CLOCKS_PER_SEC;  // of the processor, however busy it is
     MESSAGE("100000 rods: " << seconds * 1e3 << " ms, " << tree.nodes.size() << " nodes");
     CHECK(seconds < 1.0);
@@ -119,7 +124,7 @@ TEST_CASE("a hundred thousand rods are sorted in far less than a second")
 TEST_CASE("positions keep what a float of their size loses, in units of the finest axis")
 {
     const glm::dvec3 from(30000.123456, 20000.7654321, 0.1), to(30001.0, 20000.0, 2.3);
-    const SurfaceTree tree = surface_tree({{from, to, 0.25, 0.125, glm::dvec3(0.5)}}, volume());
+    const SurfaceTree tree = tree_of({{from, to, 0.25, 0.125, glm::dvec3(0.5)}});
     const gpu::Surface& surface = tree.list.at(0);
     CHECK(glm::distance(glm::dvec3(surface.from) + glm::dvec3(surface.from_rest), from / 0.5) < 1e-9);
     CHECK(glm::distance(glm::dvec3(surface.along), (to - from) / 0.5) < 1e-6);
@@ -132,12 +137,12 @@ TEST_CASE("a ball in the other end's ball leaves that one alone")
     for (const bool swapped : {false, true}) {
         SurfaceLook rod{{10, 10, 10}, {11, 10, 10}, 5.0, 1.0};
         if (swapped) std::swap(rod.from, rod.to), std::swap(rod.radius_from, rod.radius_to);
-        const gpu::Surface surface = surface_tree({rod}, volume()).list.at(0);
+        const gpu::Surface surface = tree_of({rod}).list.at(0);
         CHECK(surface.along == glm::vec3(0.0f));
         CHECK(surface.from == glm::vec3(20.0f));
         CHECK(surface.radius_from == 10.0f);
     }
-    CHECK(surface_tree({{{10, 10, 10}, {14.1, 10, 10}, 5.0, 1.0}}, volume()).list.at(0).along.x > 8.0f);
+    CHECK(tree_of({{{10, 10, 10}, {14.1, 10, 10}, 5.0, 1.0}}).list.at(0).along.x > 8.0f);
 }
 
 TEST_CASE("surfaces that cannot be drawn are refused with what is wrong about them")
@@ -148,5 +153,5 @@ TEST_CASE("surfaces that cannot be drawn are refused with what is wrong about th
     CHECK(refusal({.radius_to = INFINITY}).starts_with("surface 1: a radius is inf; expected"));
     CHECK(refusal({.color = {0, NAN, 0}}).starts_with("surface 1: its colour is not finite"));
     CHECK(refusal({}) == "(accepted)");
-    CHECK_THROWS_AS(surface_tree(std::vector<SurfaceLook>(MOST_SURFACES + 1), volume()), Error);
+    CHECK_THROWS_AS(tree_of(std::vector<SurfaceLook>(MOST_SURFACES + 1)), Error);
 }

@@ -21,11 +21,11 @@ TEST_CASE("nodes are balls and internodes rods, as thick and as coloured as they
     groups[1] = {.color = glm::dvec3(1.0, 0.0, 0.0)};
     groups[2] = {.parent = 1};
     groups[3] = {.visible = false};
-    const std::vector<SurfaceLook> surfaces = surfaces_of(trace, groups, {0.4, 0.5, 2.0});
+    const std::vector<KeyedSurface> surfaces = surfaces_of(trace, groups, {0.4, 0.5, 2.0});
     REQUIRE(surfaces.size() == 3);  // nothing of group 3
     const glm::dvec3 red(1.0, 0.0, 0.0);
-    CHECK((surfaces[0] == SurfaceLook{{1, 2, 3}, {1, 2, 3}, 0.5, 0.5, red}));
-    CHECK((surfaces[1] ==
+    CHECK((surfaces[0].look == SurfaceLook{{1, 2, 3}, {1, 2, 3}, 0.5, 0.5, red}));
+    CHECK((surfaces[1].look ==
            SurfaceLook{{4, 6, 3}, {4, 6, 3}, 0.2, 0.2, red}));  // no radius: half a voxel; its parent's colour
-    CHECK((surfaces[2] == SurfaceLook{{1, 2, 3}, {4, 6, 3}, 0.5, 0.2, red}));
+    CHECK((surfaces[2].look == SurfaceLook{{1, 2, 3}, {4, 6, 3}, 0.5, 0.2, red}));
 }
