@@ -24,19 +24,20 @@ TEST_CASE_FIXTURE(OnDevice, "a trace that changed is drawn as one that always wa
             .position = {below(60), below(60), below(60)}, .radius = 0.25 * below(5), .group = uint8_t(1 + below(3))};
     };
     TraceGraph trace;
-    for (uint32_t i = 0; i < 2400; ++i) {  // pairs, with room between numbers
+    for (uint32_t i = 0; i < 4800; ++i) {  // pairs, with room between numbers
         trace.apply(TraceNodeChange{2 * i, {}, node()}, Direction::forwards);
         if (i % 2 == 1)
             trace.apply(TraceInternodeChange{i, {}, TraceInternode{2 * i - 2, 2 * i, uint8_t(1 + i % 3)}},
                         Direction::forwards);
     }
-    for (uint32_t i = 0; i < 1200; ++i)
-        if (!trace.internode_between(4 * i, (4 * i + 4) % 4800))
-            trace.apply(TraceInternodeChange{4000 + i, {}, TraceInternode{4 * i, (4 * i + 4) % 4800, 1}},
+    for (uint32_t i = 0; i < 2400; ++i)
+        if (!trace.internode_between(4 * i, (4 * i + 4) % 9600))
+            trace.apply(TraceInternodeChange{5000 + i, {}, TraceInternode{4 * i, (4 * i + 4) % 9600, 1}},
                         Direction::forwards);
     const std::vector<SurfaceLook> of_session{{{30, 30, 30}, {30, 30, 30}, 3.0, 3.0, glm::dvec3(0.0, 0.0, 1.0)}};
     show_surfaces(renderer(), of_session, trace, session.groups);
     draw(session, camera);
+    REQUIRE(renderer().replace_surfaces({}, {}));  // they are enough to be patched
 
     const auto copied = [](const Picture& picture) {
         for (const gpu::PassReport& pass : picture.passes)
@@ -58,12 +59,12 @@ TEST_CASE_FIXTURE(OnDevice, "a trace that changed is drawn as one that always wa
             changes = done;
         } else {
             for (uint32_t i = 0; i < 8; ++i) {
-                const uint32_t number = 2 * below(2400);
+                const uint32_t number = 2 * below(4800);
                 change(TraceNodeChange{number, trace.node(number), node()});
-                const uint32_t internode = 1 + 2 * below(1200);
+                const uint32_t internode = 1 + 2 * below(2400);
                 if (trace.internodes().contains(internode))
                     change(TraceInternodeChange{internode, trace.internode(internode), {}});
-                const uint32_t added = 8000 + uint32_t(turn) * 8 + i;
+                const uint32_t added = 10000 + uint32_t(turn) * 8 + i;
                 change(TraceNodeChange{added, {}, node()});
                 change(TraceInternodeChange{added, {}, TraceInternode{added, number, 2}});
             }
