@@ -16,6 +16,8 @@ SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInf
     base_nodes_ = nodes_.size();
     base_list_ = list_.size();
     if (!may_grow()) return;
+    nodes_.reserve(most_nodes());
+    list_.reserve(most_surfaces());
     leaves_.resize(base_list_);
     for (uint32_t node = 0; node < base_nodes_; ++node)
         for (uint32_t i = nodes_[node].begin; i < nodes_[node].end; ++i) leaves_[i] = node;

@@ -1,5 +1,5 @@
-// What annotating costs: a stroke on a device, the picture after it, undoing it, its journal, and ten thousand strokes on a
-// volume of 1024^3 voxels. Times are of this machine, and of this run; bytes and voxels are always the same.
+// What annotating costs: a stroke on a device, the picture after it, undoing it, its journal, a node more in a long trace, and ten
+// thousand strokes on a volume of 1024^3 voxels. Times are of this machine, and of this run; bytes and voxels are always the same.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -11,8 +11,10 @@
 #include <memory>
 #include <random>
 
+#include "engine/annotation/trace_command.h"
 #include "engine/base/error.h"
 #include "engine/scene/annotator.h"
+#include "engine/scene/trace_look.h"
 #include "engine/volume/source_procedural.h"
 
 namespace shvr {
@@ -124,6 +126,45 @@ void one_stroke(const Folder& folder)
                     double(bytes) / double(voxels));
 }
 
+/// A hundred thousand nodes in branches of a hundred, to which one is added at a time.
+void long_trace()
+{
+    constexpr uint32_t NODES = 100'000, BRANCH = 100, ADDED = 200;
+    Renderer renderer({});
+    const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = Size3(64)});
+    renderer.load(source, {.minimum = 0.0, .maximum = 255.0}, session_of(source->info()).render);
+    std::mt19937 random(1);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    TraceGraph trace;
+    glm::dvec3 at(0.0);
+    const auto add = [&](uint32_t number) {
+        std::vector<Change> changes{TraceNodeChange{number, {}, TraceNode{.position = at}}};
+        if (number % BRANCH > 0) changes.push_back(TraceInternodeChange{number, {}, {{number - 1, number, 1}}});
+        for (const Change& change : changes) trace.apply(std::get<TraceChange>(change), Direction::forwards);
+        return changes;
+    };
+    for (uint32_t number = 0; number < NODES; ++number) {
+        if (number % BRANCH == 0) at = {uniform(0, 1000), uniform(0, 1000), uniform(0, 1000)};
+        at += glm::dvec3(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
+        add(number);
+    }
+    const double all = milliseconds_of([&] { show_surfaces(renderer, {}, trace, {}); });
+    std::vector<double> finding, showing, counting;
+    for (uint32_t i = 0; i < ADDED; ++i) {
+        at = {uniform(0, 1000), uniform(0, 1000), uniform(0, 1000)};
+        finding.push_back(milliseconds_of([&] { trace.nearest_node(at); }));
+        const std::vector<Change> changes = add(NODES + i);
+        showing.push_back(milliseconds_of([&] { show_changed_surfaces(renderer, {}, trace, {}, changes); }));
+        counting.push_back(milliseconds_of([&] { summary_of(trace); }));
+    }
+    std::printf(
+        "a node more in a trace of %u: nearest node %.3f ms, its surfaces %.2f ms (all of them %.0f ms), "
+        "lengths and segments %.0f ms\n",
+        NODES, median(finding), median(showing), all, median(counting));
+}
+
 /// Without a device, which does not take part in it: every voxel of the brush is selected.
 void many_strokes(const Folder& folder)
 {
@@ -183,6 +224,7 @@ int main()
     try {
         const shvr::Folder folder;
         shvr::one_stroke(folder);
+        shvr::long_trace();
         shvr::many_strokes(folder);
         return 0;
     } catch (const shvr::Error& error) {

@@ -3,8 +3,12 @@
 
 #include "engine/annotation/trace_command.h"
 
+#include <algorithm>
+#include <random>
+
 #include <doctest/doctest.h>
 
+#include "engine/annotation/trace_segments.h"
 #include "engine/base/error.h"
 #include "engine/scene/trace_look.h"
 
@@ -120,6 +124,47 @@ TEST_CASE("a summary counts segments and adds lengths up by group")
     CHECK(summary.length == doctest::Approx(70.0));
     CHECK(summary.group_length.at(7) == doctest::Approx(40.0));
     CHECK(summary.group_length.at(2) == doctest::Approx(30.0));
+}
+
+TEST_CASE("a summary of any trace has the segments that there are")
+{
+    std::mt19937 random(91);  // seed 91
+    const auto below = [&](uint32_t end) { return uint32_t(random() % end); };
+    size_t most_loops = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        CAPTURE(trial);
+        TraceGraph trace;
+        const uint32_t nodes = 1 + below(14), links = below(nodes + 4);
+        std::vector<uint32_t> numbers;
+        for (uint32_t i = 0, number = below(5); i < nodes; ++i, number += 1 + below(trial % 2 ? 1 : 3)) {
+            const TraceNode node{.position = {below(50), below(50), below(50)}, .radius = 1.0};
+            trace.apply(TraceNodeChange{number, {}, node}, Direction::forwards);
+            numbers.push_back(number);
+        }
+        uint32_t next = 0;
+        const auto link = [&](uint32_t a, uint32_t b) {
+            if (a == b || trace.internode_between(a, b)) return;
+            trace.apply(TraceInternodeChange{next++, {}, TraceInternode{a, b, uint8_t(1 + below(3))}},
+                        Direction::forwards);
+        };
+        for (size_t i = 2; i < nodes && trial % 3 == 0; i += 3) {  // triangles
+            link(numbers[i], numbers[i - 1]);
+            link(numbers[i - 1], numbers[i - 2]);
+            link(numbers[i - 2], numbers[i]);
+        }
+        for (uint32_t i = below(links + 1); i < links; ++i) link(numbers[below(nodes)], numbers[below(nodes)]);
+        const std::vector<TraceSegment> segments = segments_of(trace);
+        const TraceSummary summary = summary_of(trace);
+        CHECK(summary.segments == segments.size());
+        double length = 0.0;
+        for (const auto& [number, internode] : trace.internodes()) length += trace.length_of(internode);
+        CHECK(summary.length == length);
+        size_t loops = 0;
+        for (const TraceSegment& segment : segments)
+            loops += segment.is_loop() && trace.internodes_of(segment.nodes.front()).size() == 2;
+        most_loops = std::max(most_loops, loops);
+    }
+    CHECK(most_loops > 1);
 }
 
 TEST_CASE("what is drawn again holds what was there and what is there")
