@@ -119,6 +119,12 @@ double pixel_size(const Camera& camera, const glm::uvec2& pixels, double depth)
     return 2.0 * std::tan(radians(0.5 * camera.fov_y_degrees)) * depth / pixels.y;
 }
 
+PixelBox united(const PixelBox& a, const PixelBox& b)
+{
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    return {glm::min(a.begin, b.begin), glm::max(a.end, b.end)};
+}
+
 PixelBox pixels_of_box(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper)
 {
     std::array<glm::dvec3, 8> corners;

@@ -43,6 +43,8 @@ struct PixelBox {
     uint64_t area() const { return empty() ? 0 : uint64_t(end.x - begin.x) * (end.y - begin.y); }
     bool operator==(const PixelBox&) const = default;
 };
+/// The smallest box around both.
+PixelBox united(const PixelBox& a, const PixelBox& b);
 /// The pixels that may show something of a box (volume space), a pixel to spare; the whole picture where the box reaches
 /// behind the eye.
 PixelBox pixels_of_box(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower,

@@ -428,6 +428,20 @@ def make_states():
          ("shvr/ranges-0", table), ("shvr/session.json", "{}"))
 
 
+def make_label_looks():
+    colors = [{"label-value": 1, "rgba": [255, 0, 8, 255]}, {"label-value": 255, "rgba": [1, 2, 3, 0]},
+              {"label-value": 300, "rgba": [9, 9, 9, 9]}]
+    properties = [{"label-value": 2, "name": "phloem \u00fc", "area": 12.5}, {"label-value": 1, "name": ""}]
+    image = {"version": "0.4", "colors": colors, "properties": properties, "source": {"image": "../../"}}
+    for name, content in {
+            "both": image, "colors": {"colors": colors}, "properties": {"properties": properties}, "empty": {},
+            "twice": {"colors": colors[:1] * 2}, "not_lists": {"colors": {}, "properties": "x"},
+            "not_entries": {"colors": [1, {"label-value": 1.5, "rgba": [0, 0, 0]}, {"rgba": [256, -1, 0, 0]}],
+                            "properties": [{"label-value": "1", "name": 5}]}}.items():
+        seed("label_looks", name, json.dumps({"image-label": content}))
+    seed("label_looks", "no_image", "{}")
+
+
 def make_project():
     with tempfile.TemporaryDirectory() as folder:
         project = Path(folder) / "p"
@@ -545,6 +559,7 @@ def main():
     make_tiff()
     make_dicom()
     make_zarr()
+    make_label_looks()
     make_project()
     make_states()
     make_text()

@@ -3,6 +3,7 @@
 
 #include "engine/annotation/offset_export.h"
 #include "engine/annotation/offset_file.h"
+#include "engine/annotation/offset_import.h"
 #include "engine/volume/open_volume.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
@@ -27,6 +28,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             expect(*again.brick(brick) == *field.brick(brick), "a brick of offsets that is not the one that was saved");
         export_offsets(folder.path() / "b.nrrd", field, {.size = sides});
         expect(open_volume(folder.path() / "b.nrrd")->info().size == sides, "offsets of another size");
+        const DensityField imported = import_offsets(folder.path() / "b.nrrd", {.size = sides}, type);
+        expect(imported.voxels() == field.voxels(), "offsets that come back from a volume as others");
+        for (const int64_t brick : imported.painted_bricks())
+            expect(*imported.brick(brick) == *field.brick(brick), "a brick of offsets that comes back as another");
     });
     return 0;
 }
