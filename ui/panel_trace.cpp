@@ -36,8 +36,9 @@ void summary(const Model& model)
     const TraceSummary& trace = model.trace_summary;
     text_label("Trace");
     count(trace.nodes, "node", true);
-    count(trace.internodes, "internode", true);
-    count(trace.segments, "segment", false);
+    count(trace.internodes, "internode", false);
+    text_label("Segments");
+    ImGui::Text("%zu", trace.segments);
     hint("A segment is a chain of internodes between two branches or ends.");
     text_label("Length");
     const auto group = trace.group_length.find(model.brush.group);
