@@ -220,3 +220,49 @@ TEST_CASE("going along a segment twice is an error whichever way it is done")
         CHECK(compare(drawing.trace, truth, 0.0).doubled == 1);
     }
 }
+
+TEST_CASE("a way through the node that stands for another end is none")
+{
+    Drawing truth;
+    truth.line(steps(0, 20, 2));
+    truth.line({{10, 1, 0}, {10, 10, 0}});  // ends near the first one, and is not joined to it
+    for (const bool joined : {true, false}) {
+        CAPTURE(joined);
+        Drawing drawing;
+        const uint32_t begin = drawing.node({0, 0, 0}), end = drawing.node({20, 0, 0});
+        const uint32_t other = drawing.line({{10, 10, 0}, {10, 0.6, 0}});
+        const uint32_t middle = joined ? other : drawing.node({10, 0, 0});
+        drawing.link(begin, middle);
+        drawing.link(middle, end);
+        CHECK(compare(drawing.trace, truth.trace, 0.0).segments_found == (joined ? 1 : 2));
+    }
+}
+
+TEST_CASE("a part of a segment that hangs loose is no part of the way")
+{
+    const Drawing open = ring(0, 58, 60);
+    Drawing drawing = ring(0, 57, 60);
+    const uint32_t end = drawing.node(open.trace.node(58).position);
+    drawing.link(0, end);  // a short cut, near the segment at both of its ends
+    CHECK(compare(drawing.trace, open.trace, 0.5).segments_found == 0);
+    drawing.link(57, end);
+    CHECK(compare(drawing.trace, open.trace, 0.5).segments_found == 1);
+}
+
+TEST_CASE("of two segments side by side each is gone along once by a trace of both")
+{
+    const auto line_at = [](double y) {
+        Places places = steps(0, 40, 2);
+        for (glm::dvec3& place : places) place.y = y;
+        return places;
+    };
+    for (const bool other_first : {true, false}) {
+        CAPTURE(other_first);
+        Drawing truth, drawing;
+        for (const double y : {0.0, 1.2}) truth.line(line_at(y));
+        for (const double y : {0.0, 1.2}) drawing.line(line_at(other_first ? 1.2 - y : y));
+        const TraceComparison found = compare(drawing.trace, truth.trace, 0.0);
+        CHECK(found.segments_found == 2);
+        CHECK(found.topological_errors() == 0);
+    }
+}
