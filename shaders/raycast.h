@@ -33,8 +33,6 @@ struct RaycastParams {
     vec3 position_limit;  ///< an ulp before the end of the volume: samples in its upper faces belong to the last voxel
     vec3 spacing;         ///< reference lengths per voxel
     vec3 inverse_spacing;
-    uvec3 cell_counts;
-    uvec3 brick_counts;
     uvec3 page_counts;    ///< cells of the directory's grid, see pages.h
     uint page_shift;      ///< log2 of such a cell's side in voxels
     uint page_depth;      ///< how far the directory's nodes go down

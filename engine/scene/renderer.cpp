@@ -108,8 +108,6 @@ gpu::RaycastParams raycast_params(const Session& session, const Camera& camera, 
     set_rays(params, session, camera, info, part.pixels);
     params.spacing = info.spacing / reference_length(info);
     params.inverse_spacing = reference_length(info) / info.spacing;
-    params.cell_counts = binding.cell_counts;
-    params.brick_counts = binding.brick_counts;
     if (binding.pages) {
         params.page_counts = binding.pages->counts;
         params.page_shift = binding.pages->cell_shift;

@@ -33,7 +33,6 @@ Members raycast_params()
             MEMBER(RaycastParams, target),        MEMBER(RaycastParams, box_lower),
             MEMBER(RaycastParams, box_upper),     MEMBER(RaycastParams, position_limit),
             MEMBER(RaycastParams, spacing),       MEMBER(RaycastParams, inverse_spacing),
-            MEMBER(RaycastParams, cell_counts),   MEMBER(RaycastParams, brick_counts),
             MEMBER(RaycastParams, page_counts),   MEMBER(RaycastParams, page_shift),
             MEMBER(RaycastParams, page_depth),    MEMBER(RaycastParams, step),
             MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
