@@ -10,6 +10,8 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "engine/base/finite.h"
+
 namespace shvr {
 
 struct DeviceState {

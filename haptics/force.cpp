@@ -11,11 +11,6 @@ constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// A servo that was held up for longer fades on as if it had been only that long.
 constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
 
-bool is_finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 bool is_place(const DeviceState& state)
 {
     const glm::dquat& q = state.rotation;

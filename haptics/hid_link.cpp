@@ -24,7 +24,7 @@ using std::chrono::milliseconds;
 constexpr int READ_TIMEOUT_MS = 10;  ///< so that the end of the program never has to break a read
 constexpr milliseconds REOPEN_EVERY{50};
 constexpr int MOST_REPORTS_A_DRAIN = 256;  ///< a device that babbles must not keep the newest from the servo
-constexpr int REALTIME_PRIORITY = 81;      ///< above the servo's: both are short and then wait
+constexpr int LINK_PRIORITY = 81;          ///< above the servo's: both are short and then wait
 
 /// What the reader hands to the servo.
 struct Reading {
@@ -128,7 +128,7 @@ private:
     {
         ::pthread_setname_np(thread.native_handle(), name);
         sched_param parameters{};
-        parameters.sched_priority = REALTIME_PRIORITY;
+        parameters.sched_priority = LINK_PRIORITY;
         if (realtime) ::pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters);
     }
     /// A futex call, which does not wait.

@@ -14,7 +14,7 @@
 namespace shvr {
 namespace {
 
-constexpr int REALTIME_PRIORITY = 80;
+constexpr int SERVO_PRIORITY = 80;
 constexpr uint64_t SECOND_NS = 1'000'000'000;
 
 class RealPacing : public Pacing {
@@ -84,7 +84,7 @@ Servo::Servo(std::unique_ptr<HapticDevice> device, std::unique_ptr<Pacing> pacin
     ::pthread_setname_np(thread_.native_handle(), "servo");
     if (options.realtime) {
         sched_param parameters{};
-        parameters.sched_priority = REALTIME_PRIORITY;
+        parameters.sched_priority = SERVO_PRIORITY;
         is_realtime_ = ::pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &parameters) == 0;
     }
 }

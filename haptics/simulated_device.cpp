@@ -33,11 +33,6 @@ glm::dmat2 propagator_of(const HandModel& hand)
     return {decay, 0.0, 0.0, 0.0};
 }
 
-bool is_finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 }  // namespace
 
 SimulatedDevice::SimulatedDevice(const HandModel& model) : model_(model)

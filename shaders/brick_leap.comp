@@ -18,12 +18,12 @@ layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 layout(binding = 5, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
 #endif
 
-#include "occupancy.glsl"
+#include "library/occupancy.glsl"
 
 shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 
 #ifdef MASKED
-#include "cell_paint.glsl"
+#include "library/cell_paint.glsl"
 
 CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {

@@ -17,12 +17,12 @@ layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 5
 layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
 
-#include "mask.glsl"
+#include "library/mask.glsl"
 #endif
-#include "occupancy.glsl"
+#include "library/occupancy.glsl"
 
 #ifdef MASKED
-#include "cell_paint.glsl"
+#include "library/cell_paint.glsl"
 #endif
 
 void main()

@@ -28,8 +28,8 @@ layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
 
-#include "occlusion_around.glsl"
-#include "voxel_code.glsl"
+#include "library/occlusion_around.glsl"
+#include "library/voxel_code.glsl"
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];

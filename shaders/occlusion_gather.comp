@@ -28,9 +28,9 @@ layout(binding = 11, r32ui) uniform writeonly uimage3D near;
 layout(binding = 12, r8ui) uniform writeonly uimage3D around_2;
 layout(binding = 13, r8ui) uniform writeonly uimage3D around_4;
 
-#include "occlusion_around.glsl"
-#include "occlusion_opacity.glsl"
-#include "voxel_code.glsl"
+#include "library/occlusion_around.glsl"
+#include "library/occlusion_opacity.glsl"
+#include "library/voxel_code.glsl"
 
 const uint CELLS_A_SIDE = OCCLUSION_NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;

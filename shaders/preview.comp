@@ -28,8 +28,8 @@ layout(binding = 4, rgba32f) uniform writeonly image3D seen;      // linear RGB,
 layout(binding = 5, rgba32f) uniform readonly image3D surfaces;
 #endif
 
-#include "rays.glsl"
-#include "shade.glsl"
+#include "library/rays.glsl"
+#include "library/shade.glsl"
 
 bool is_set(const PreviewParams preview, ivec3 voxel)
 {

@@ -70,26 +70,26 @@ layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlus
 layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
 #endif
 
-#include "rays.glsl"
-#include "counters.glsl"
+#include "library/rays.glsl"
+#include "library/counters.glsl"
 #ifdef MASKED
 #ifdef PAGED
 #define MASK_TABLE_HASHED
 #endif
-#include "mask.glsl"
+#include "library/mask.glsl"
 #endif
 #ifdef FILTERED
-#include "density_filtered.glsl"
+#include "library/density_filtered.glsl"
 #else
-#include "density_exact.glsl"
+#include "library/density_exact.glsl"
 #endif
-#include "shade.glsl"
+#include "library/shade.glsl"
 #ifdef OCCLUDED
-#include "occlusion.glsl"
+#include "library/occlusion.glsl"
 #endif
 
 #ifdef PAGED
-#include "pages.glsl"
+#include "library/pages.glsl"
 #else
 // Where a position is: in nothing visible (distance > 0), or in a brick.
 struct Place {
@@ -296,7 +296,7 @@ void accumulate(inout vec4 sum, vec4 look)
 }
 
 #ifdef SHELLED
-#include "shell.glsl"
+#include "library/shell.glsl"
 #endif
 
 uint bricks_between(vec3 a, vec3 b)

@@ -18,7 +18,7 @@ layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) writeonly buffer Bits { uint words[]; } bits;
 layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
-#include "region.glsl"
+#include "library/region.glsl"
 
 uint code_at(uvec3 voxel)
 {

@@ -11,8 +11,8 @@ layout(binding = 1, scalar) readonly buffer Parents { uint of[]; } parents;
 layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) buffer Marked { uint words[]; } marked;   // one bit per voxel, set at roots
 
-#include "forest.glsl"
-#include "region.glsl"
+#include "library/forest.glsl"
+#include "library/region.glsl"
 
 uint row_bits(ivec2 row, int first)
 {

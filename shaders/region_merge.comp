@@ -9,8 +9,8 @@ layout(push_constant, scalar) uniform Push { RegionParams params; };
 layout(binding = 0, scalar) readonly buffer Bits { uint words[]; } bits;
 layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 
-#include "forest.glsl"
-#include "region.glsl"
+#include "library/forest.glsl"
+#include "library/region.glsl"
 
 // Links the higher root below the lower one; another thread may have moved a root meanwhile, then it tries again.
 void unite(uint a, uint b)

@@ -12,8 +12,8 @@ layout(binding = 1, scalar) readonly buffer Parents { uint of[]; } parents;
 layout(binding = 2, scalar) readonly buffer Marked { uint words[]; } marked;
 layout(binding = 3, scalar) writeonly buffer Selected { uint words[]; } selected;
 
-#include "forest.glsl"
-#include "region.glsl"
+#include "library/forest.glsl"
+#include "library/region.glsl"
 
 void main()
 {

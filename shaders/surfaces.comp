@@ -25,9 +25,9 @@ layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surfa
 layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
 #endif
 
-#include "rays.glsl"
-#include "round_cone.glsl"
-#include "shade.glsl"
+#include "library/rays.glsl"
+#include "library/round_cone.glsl"
+#include "library/shade.glsl"
 
 struct Hit {
     float at;       // length along the line

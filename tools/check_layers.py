@@ -12,23 +12,51 @@ from pathlib import Path, PurePosixPath
 
 # ---- The rules, as data ---------------------------------------------------------------------------------------------
 
-ENGINE = "engine/base engine/graph engine/volume engine/gpu engine/passes engine/annotation engine/scene shaders"
-
-# module: the modules whose files it may include, besides its own. What is not listed here may not exist.
+# Room: the rooms whose files it may include, besides its own. Exactly what is in use: a new arrow is a decision, made here.
+# A file belongs to the longest of these paths that is a prefix of its own; what has none may not exist. From the ground up:
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",
-    "engine/graph": "engine/base shaders",
     "engine/volume": "engine/base shaders",
+    "engine/graph": "engine/base",
+    "engine/gpu": "engine/base engine/graph",
+    "engine/passes": "engine/graph shaders",
+    "engine/look": "engine/base engine/volume shaders",
+    "engine/components": "engine/base engine/volume shaders",
+    "engine/annotation": "engine/base engine/volume shaders",
+    "engine/formats": "engine/base engine/volume",
+    "engine/formats/raw": "engine/base engine/volume engine/formats",
+    "engine/formats/tiff": "engine/base engine/volume engine/formats",
+    "engine/formats/dicom": "engine/base engine/formats",
+    "engine/formats/zarr": "engine/base engine/volume engine/formats shaders",
+    "engine/formats/headers": "engine/base engine/volume engine/formats engine/formats/raw",
+    "engine/formats/export": "engine/base engine/volume",
+    "engine/bricks": "engine/base engine/volume engine/look shaders",
+    "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
+    "engine/annotation/trace": "engine/base engine/volume engine/annotation engine/components",
+    "engine/annotation/measures": "engine/base engine/volume engine/annotation/trace",
+    "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
+    "engine/formats/export engine/formats/zarr engine/projects shaders",
+    "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
+    "engine/annotation/trace engine/projects",
+    "engine/session": "engine/base engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
+    "engine/formats/zarr engine/projects",
+    "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation shaders",
+    "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation engine/annotation/work "
+    "engine/session engine/device shaders",
+    "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
+    "engine/session engine/picture shaders",
     "haptics": "engine/base",
-    "engine/gpu": "engine/graph engine/base shaders",
-    "engine/passes": "engine/graph engine/volume engine/base shaders",
-    "engine/annotation": "engine/volume engine/base shaders",
-    "engine/scene": ENGINE,
-    "ui": f"{ENGINE} haptics",
-    "tools": f"{ENGINE} haptics ui",
-    "tests": f"{ENGINE} haptics ui tools",
+    "ui": "engine/base engine/gpu engine/look engine/annotation/trace engine/session engine/picture engine/live haptics",
+    "tests": "*",
+    "tools": "engine/base engine/volume engine/graph engine/components engine/formats/export engine/projects "
+    "engine/annotation/files engine/annotation/measures engine/annotation/trace engine/annotation/work engine/session "
+    "engine/live shaders ui",
 }
+# What knows no device: none of these rooms may come to include one that does, through however many others.
+WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "haptics"]
+WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
+MOST_SOURCES = 30  # in a folder
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
@@ -38,12 +66,12 @@ THIRD_PARTIES = {
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/"),
     # 25,000 lines that every reader of a header would compile; json_fwd.hpp is small.
     "nlohmann/json": (r"nlohmann/(?!json_fwd\.hpp)", r".*\.cpp|tools/|tests/"),
-    "GDCM": (r"gdcm", r"engine/volume/dicom_file\.cpp|tests/unit/source_dicom_test\.cpp"),
-    "zlib": (r"zlib\.h", r"engine/volume/.*\.cpp|tests/"),
-    "blosc": (r"blosc", r"engine/volume/zarr_codec\.cpp"),
-    "libtiff": (r"tiff(io)?\.h", r"engine/volume/.*tiff.*\.cpp|tests/unit/tiff_files\.h"),
-    "pugixml": (r"pugixml", r"engine/volume/.*\.cpp|engine/annotation/trace_.*\.cpp"),
-    "xxHash": (r"xxhash", r"engine/volume/|engine/annotation/journal_file\.cpp"),
+    "GDCM": (r"gdcm", r"engine/formats/dicom/|tests/unit/formats/dicom/"),
+    "zlib": (r"zlib\.h", r"engine/formats/|tests/"),
+    "blosc": (r"blosc", r"engine/formats/zarr/"),
+    "libtiff": (r"tiff(io)?\.h", r"engine/formats/(tiff|export)/|tests/support/tiff_files\.h"),
+    "pugixml": (r"pugixml", r"engine/formats/tiff/|engine/annotation/trace/"),
+    "xxHash": (r"xxhash", r"engine/(volume|formats/zarr|projects|annotation/work)/"),
     "CLI11": (r"CLI/", r"tools/cli/"),
     "doctest": (r"doctest", r"tests/"),
 }
@@ -58,9 +86,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 # ---- The checks, each a list of findings ----------------------------------------------------------------------------
 
 
-def module_of(path):
-    """engine/gpu/device.h -> engine/gpu; tools/cli/main.cpp -> tools"""
-    return "/".join(path.parts[:2]) if path.parts[0] == "engine" else path.parts[0]
+def room_of(path, rooms=MAY_INCLUDE):
+    """engine/formats/tiff/tiff_page.h -> engine/formats/tiff; tools/cli/main.cpp -> tools; engine/new/x.h -> engine/new"""
+    for folder in path.parents:
+        if str(folder) in rooms or len(folder.parts) == (2 if path.parts[0] == "engine" else 1):
+            return str(folder)
+    return str(path.parent)
 
 
 def files_below(root):
@@ -91,21 +122,43 @@ def read_includes(root, files):
     return includes, findings
 
 
-def check_arrows(includes):
+def check_arrows(includes, rooms):
     for file, lines in includes.items():
-        module = module_of(file)
-        if module not in MAY_INCLUDE:
-            yield f"{file}: module {module} is not in the table of tools/check_layers.py"
+        room = room_of(file, rooms)
+        if room not in rooms:
+            yield f"{file}: room {room} is not in the table of tools/check_layers.py"
             continue
-        allowed = [module, *MAY_INCLUDE[module].split()]
+        allowed = [room, *rooms[room].split()]
         for line, spelled, target in lines:
             if target is not None:
-                if module_of(target) not in allowed:
-                    yield f"{file}:{line}: {module} may not include {target}; it may use {', '.join(allowed)}"
+                if room_of(target, rooms) not in allowed and allowed[1:] != ["*"]:
+                    yield f"{file}:{line}: {room} may not include {target}; it may use {', '.join(allowed)}"
                 continue
             for name, (header, place) in THIRD_PARTIES.items():
                 if re.match(header, spelled) and not re.match(place, str(file)):
                     yield f"{file}:{line}: {name} ({spelled}) may be included only in {place}"
+
+
+def check_table(includes, rooms):
+    """What the table grants and nobody uses; circles of rooms; rooms that must not know a device and could."""
+    in_use = {
+        (room_of(file, rooms), room_of(target, rooms)) for file, lines in includes.items() for _, _, target in lines if target
+    }
+    for room, allowed in rooms.items():
+        for other in allowed.split():
+            if other != "*" and (room, other) not in in_use:
+                yield f"tools/check_layers.py: {room} may include {other}, but does not; take it out of the table"
+
+    def reached(room, path):
+        for other in rooms.get(room, "").split():
+            if other in path:
+                yield f"tools/check_layers.py: rooms in a circle: {' -> '.join([*path[path.index(other):], other])}"
+            else:
+                yield from reached(other, [*path, other])
+                if other in WITH_DEVICE and path[0] in WITHOUT_DEVICE:
+                    yield f"tools/check_layers.py: {path[0]} may know no device, but {' -> '.join([*path, other])}"
+
+    yield from sorted({finding for room in rooms for finding in reached(room, [room])})
 
 
 def check_cycles(includes):
@@ -133,7 +186,7 @@ def is_source(root, file):
         return content.read(2) == b"#!"
 
 
-def check_tree(root, files):
+def check_tree(root, files, rooms):
     for entry in sorted(root.iterdir()):
         allowed = TOP_LEVEL_FOLDERS if entry.is_dir() else TOP_LEVEL_FILES
         if not entry.name.startswith(".") and entry.name not in allowed | {"build"}:
@@ -143,72 +196,122 @@ def check_tree(root, files):
             yield f"{name}: is missing at the top level"
     folders = {parent for file in files if is_source(root, file) for parent in file.parents if parent.parts}
     for folder in sorted(folders):
-        if len(folder.parts) <= 2 and not (root / folder / "README.md").is_file():
+        is_room = len(folder.parts) <= 2 or str(folder) in rooms
+        if is_room and not str(folder).startswith("tests/unit/") and not (root / folder / "README.md").is_file():
             yield f"{folder}: holds sources but no README.md"
+        sources = [file for file in files if file.parent == folder and is_source(root, file)]
+        if len(sources) > MOST_SOURCES:
+            yield f"{folder}: holds {len(sources)} sources; expected at most {MOST_SOURCES}: cut it along an idea"
 
 
-def check(root):
+def check(root, rooms=MAY_INCLUDE):
     files = list(files_below(root))
     includes, findings = read_includes(root, files)
-    return [*findings, *check_arrows(includes), *check_cycles(includes), *check_tree(root, files)]
+    return [
+        *findings,
+        *check_arrows(includes, rooms),
+        *check_table(includes, rooms),
+        *check_cycles(includes),
+        *check_tree(root, files, rooms),
+    ]
 
 
 # ---- The self-test --------------------------------------------------------------------------------------------------
 
-# file with its content -> what the one finding must contain
-FORBIDDEN = [
-    ("engine/base/bad.h", '#include "engine/volume/volume.h"', "engine/base may not include engine/volume/volume.h"),
-    ("engine/graph/bad.cpp", "#include <vulkan/vulkan.h>", "Vulkan (vulkan/vulkan.h) may be included only in"),
-    ("engine/graph/bad.cpp", '# include "engine/gpu/device.h"', "engine/graph may not include engine/gpu/device.h"),
-    ("shaders/bad.comp", '#include "../engine/base/error.h"', "shaders may not include engine/base/error.h"),
-    ("haptics/bad.cpp", '\n#include "engine/volume/volume.h"', "haptics/bad.cpp:2: haptics may not include"),
-    ("haptics/bad.cpp", "#include <hidapi/hidapi.h>", "hidapi"),
-    ("engine/scene/bad.h", "#include <nlohmann/json.hpp>", "nlohmann/json"),
-    ("engine/scene/bad.cpp", '#include "ui/window.h"', '"ui/window.h" is no file of ours'),
-    ("tools/bad.cpp", "#include <CLI/CLI.hpp>", "CLI11"),
-    ("engine/base/error.h", '#include "error.h"', "cycle of includes: engine/base/error.h -> engine/base/error.h"),
-    ("engine/new/bad.h", "", "module engine/new is not in the table"),
-    ("notes.txt", "", "notes.txt: does not belong at the top level"),
-    ("scripts/README.md", "", "scripts: does not belong at the top level"),
-    ("tests/cli/test_bad.py", "", "tests/cli: holds sources but no README.md"),
-    ("ui/bad.cpp", "", "ui: holds sources but no README.md"),
-]
+# The rooms of a made-up tree.
+ROOMS = {
+    "shaders": "",
+    "engine/base": "",
+    "engine/volume": "engine/base shaders",
+    "engine/formats": "engine/volume",
+    "engine/formats/tiff": "engine/formats",
+    "engine/gpu": "",
+    "engine/session": "engine/formats/tiff",
+    "haptics": "",
+    "ui": "engine/gpu",
+    "tests": "*",
+    "tools": "",
+}
 
 ALLOWED = {
     "engine/base/error.h": "#include <string>",
     "engine/volume/volume.h": '#include "engine/base/error.h"\n#include "shaders/bricks.h"',
+    "engine/formats/readers.h": '#include "engine/volume/volume.h"',
+    "engine/formats/tiff/tiff.h": '#include "engine/formats/readers.h"',
     "engine/gpu/device.h": "#include <vulkan/vulkan.h>",
-    "engine/scene/session.cpp": '#include <nlohmann/json.hpp>\n#include "engine/gpu/device.h"',
+    "engine/session/session.cpp": '#include <nlohmann/json.hpp>\n#include "engine/formats/tiff/tiff.h"',
+    "haptics/device.h": "",
     "shaders/bricks.h": "",
     "shaders/raycast.comp": '#include "bricks.h"',
     "tools/cli/main.cpp": "#include <CLI/CLI.hpp>",
+    "tests/unit/test.cpp": '#include "engine/session/session.cpp"\n#include "engine/gpu/device.h"',
+    "ui/panels/panel.cpp": '#include "engine/gpu/device.h"',
     "build/made.cpp": '#include "nowhere.h"',
 }
 
+# file with its content -> what the one finding must contain
+FORBIDDEN = [
+    ("engine/base/bad.h", '#include "engine/volume/volume.h"', "engine/base may not include engine/volume/volume.h"),
+    ("engine/volume/bad.cpp", "#include <vulkan/vulkan.h>", "Vulkan (vulkan/vulkan.h) may be included only in"),
+    ("engine/formats/bad.cpp", '# include "tiff/tiff.h"', "engine/formats may not include engine/formats/tiff/tiff.h"),
+    ("engine/formats/tiff/bad.h", '#include "engine/volume/volume.h"', "engine/formats/tiff may not include"),
+    ("engine/session/bad.cpp", '#include "engine/gpu/device.h"', "engine/session may not include engine/gpu/device.h"),
+    ("shaders/bad.comp", '#include "../engine/base/error.h"', "shaders may not include engine/base/error.h"),
+    ("haptics/bad.cpp", '\n#include "engine/volume/volume.h"', "haptics/bad.cpp:2: haptics may not include"),
+    ("haptics/bad.cpp", "#include <hidapi/hidapi.h>", "hidapi"),
+    ("engine/volume/bad.h", "#include <nlohmann/json.hpp>", "nlohmann/json"),
+    ("engine/volume/bad.cpp", '#include "ui/window.h"', '"ui/window.h" is no file of ours'),
+    ("tools/bad.cpp", "#include <CLI/CLI.hpp>", "CLI11"),
+    ("engine/base/error.h", '#include "error.h"', "cycle of includes: engine/base/error.h -> engine/base/error.h"),
+    ("engine/new/bad.h", "", "room engine/new is not in the table"),
+    ("notes.txt", "", "notes.txt: does not belong at the top level"),
+    ("scripts/README.md", "", "scripts: does not belong at the top level"),
+    ("tests/cli/test_bad.py", "", "tests/cli: holds sources but no README.md"),
+    ("engine/formats/tiff/tiff.h", "", "engine/formats/tiff may include engine/formats, but does not"),
+]
+
+# a change of the table -> what one of the findings must contain
+FORBIDDEN_TABLES = [
+    ({"engine/base": "engine/volume"}, "rooms in a circle: engine/base -> engine/volume -> engine/base"),
+    ({"engine/volume": "engine/base shaders engine/gpu"},
+     "engine/session may know no device, but engine/session -> engine/formats/tiff -> engine/formats -> engine/volume"),
+]
+
+
+def findings_of(tree, rooms):
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, content in (dict.fromkeys(TOP_LEVEL_FILES, "") | ALLOWED | tree).items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(content, encoding="utf-8")
+        for name in ["engine", *rooms, "engine/new", "tools/cli", "tests/unit", "ui/panels"]:
+            if (root / name).is_dir():
+                (root / name / "README.md").touch()
+        return check(root, rooms)
+
 
 def self_test():
-    failures = 0
-    for path, content, expected in [(None, None, None), *FORBIDDEN]:
-        with tempfile.TemporaryDirectory() as folder:
-            root = Path(folder)
-            tree = dict.fromkeys(TOP_LEVEL_FILES, "") | ALLOWED | ({path: content} if path else {})
-            for name in tree:
-                (root / name).parent.mkdir(parents=True, exist_ok=True)
-                (root / name).write_text(tree[name], encoding="utf-8")
-            for name in ["engine", *MAY_INCLUDE, "engine/new", "tools/cli"]:
-                if (root / name).is_dir() and name != "ui":  # ui is where a README is missed
-                    (root / name / "README.md").touch()
-            findings = check(root)
-        if (expected is None and findings) or (expected and (len(findings) != 1 or expected not in findings[0])):
-            print(f"self-test: {path} {content!r}: expected {expected or 'no finding'}, found {findings}")
-            failures += 1
-    return failures
+    failures = []
+    if findings := findings_of({}, ROOMS):
+        failures.append(f"the allowed tree: {findings}")
+    for path, content, expected in FORBIDDEN:
+        findings = findings_of({path: content}, ROOMS)
+        if len(findings) != 1 or expected not in findings[0]:
+            failures.append(f"{path} {content!r}: expected {expected}, found {findings}")
+    for change, expected in FORBIDDEN_TABLES:
+        if not any(expected in finding for finding in findings_of({}, ROOMS | change)):
+            failures.append(f"{change}: expected {expected}")
+    crowd = {f"shaders/kernel_{number}.comp": "" for number in range(MOST_SOURCES)}
+    if not any("shaders: holds" in finding for finding in findings_of(crowd, ROOMS)):
+        failures.append("a crowded folder is not reported")
+    print("\n".join(f"self-test: {failure}" for failure in failures))
+    return len(failures), len(FORBIDDEN) + len(FORBIDDEN_TABLES) + 2
 
 
 def main():
     if sys.argv[1:] == ["--self-test"]:
-        failures = self_test()
-        print(f"{len(FORBIDDEN) + 1} cases, {failures} failed")
+        failures, cases = self_test()
+        print(f"{cases} cases, {failures} failed")
         return 1 if failures else 0
     if sys.argv[1:]:
         print(__doc__.strip(), file=sys.stderr)

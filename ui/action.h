@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/annotation/trace_command.h"
-#include "engine/scene/session.h"
+#include "engine/annotation/trace/trace_command.h"
+#include "engine/session/session.h"
 #include "haptics/proxy.h"
 
 namespace shvr::ui {

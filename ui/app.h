@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "ui/document.h"
-#include "ui/panels.h"
+#include "ui/panels/panels.h"
 #include "ui/viewport.h"
 
 namespace shvr::ui {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/scene/label_looks.h"
-#include "engine/scene/trace_look.h"
+#include "engine/live/trace_look.h"
+#include "engine/session/label_looks.h"
 
 namespace shvr::ui {
 

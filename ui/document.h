@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/annotation/trace_command.h"
-#include "engine/scene/picture_job.h"
-#include "engine/scene/previewer.h"
-#include "engine/scene/screen.h"
-#include "engine/scene/session.h"
+#include "engine/annotation/trace/trace_command.h"
+#include "engine/live/previewer.h"
+#include "engine/live/screen.h"
+#include "engine/picture/picture_job.h"
+#include "engine/session/session.h"
 #include "ui/action.h"
 #include "ui/touch.h"
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/annotation/trace_command.h"
-#include "engine/scene/annotator.h"
-#include "engine/scene/screen.h"
-#include "engine/scene/session.h"
-#include "engine/scene/transfer_presets.h"
+#include "engine/annotation/trace/trace_command.h"
+#include "engine/live/annotator.h"
+#include "engine/live/screen.h"
+#include "engine/session/session.h"
+#include "engine/session/transfer_presets.h"
 #include "haptics/servo.h"
 #include "ui/action.h"
 

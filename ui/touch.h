@@ -11,8 +11,8 @@
 #include <memory>
 #include <string>
 
-#include "engine/scene/camera_motion.h"
-#include "engine/scene/relevance.h"
+#include "engine/live/relevance.h"
+#include "engine/look/camera_motion.h"
 #include "haptics/servo.h"
 #include "haptics/simulated_device.h"
 

@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "ui/keys.h"
-#include "ui/panels.h"
+#include "ui/panels/panels.h"
 
 namespace shvr::ui {
 

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "engine/gpu/memory.h"
-#include "engine/scene/view.h"
+#include "engine/live/view.h"
 
 namespace shvr::ui {
 

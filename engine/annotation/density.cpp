@@ -5,14 +5,11 @@
 
 #include "engine/annotation/brick_run.h"
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
-namespace {
-
-constexpr int64_t SIDE = gpu::BRICK_SIZE;
-
-}  // namespace
+namespace {}  // namespace
 
 int64_t DensityBrickChange::voxels() const
 {
@@ -22,7 +19,7 @@ int64_t DensityBrickChange::voxels() const
 }
 
 DensityField::DensityField(Size3 size, VoxelType type)
-    : size_(size), type_(type), counts_((size + Size3(SIDE - 1)) / Size3(SIDE))
+    : size_(size), type_(type), counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE))
 {}
 
 glm::ivec3 DensityField::position_of(int64_t brick) const
@@ -33,17 +30,18 @@ glm::ivec3 DensityField::position_of(int64_t brick) const
 Size3 DensityField::extent_of(int64_t brick) const
 {
     SHVR_CHECK(brick >= 0 && brick < counts_.x * counts_.y * counts_.z, "brick ", brick);
-    return glm::min(Size3(SIDE), size_ - SIDE * Size3(position_of(brick)));
+    return glm::min(Size3(BRICK_SIDE), size_ - BRICK_SIDE * Size3(position_of(brick)));
 }
 
 double DensityField::at(const Size3& voxel) const
 {
     SHVR_CHECK(glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size_)), "voxel ",
                voxel.x, ", ", voxel.y, ", ", voxel.z);
-    const Size3 where = voxel / SIDE, in = voxel % SIDE;
-    const auto found = bricks_.find(where.x + counts_.x * (where.y + counts_.y * where.z));
-    return found == bricks_.end() ? 0.0
-                                  : offset_of(type_, (*found->second)[size_t(in.x + SIDE * (in.y + SIDE * in.z))]);
+    const Size3 where = voxel / BRICK_SIDE, in = voxel % BRICK_SIDE;
+    const auto found = bricks_.find(index_of(where, counts_));
+    return found == bricks_.end()
+               ? 0.0
+               : offset_of(type_, (*found->second)[size_t(in.x + BRICK_SIDE * (in.y + BRICK_SIDE * in.z))]);
 }
 
 std::shared_ptr<const OffsetBrick> DensityField::brick(int64_t index) const
@@ -108,7 +106,7 @@ void DensityField::put(int64_t index, OffsetBrick offsets)
     const Size3 extent = extent_of(index);
     int64_t voxels = 0;
     for (int64_t i = 0; i < int64_t(offsets.size()); ++i) {
-        const Size3 in(i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE));
+        const Size3 in(i % BRICK_SIDE, i / BRICK_SIDE % BRICK_SIDE, i / (BRICK_SIDE * BRICK_SIDE));
         uint32_t& bits = offsets[size_t(i)];
         if (!glm::all(glm::lessThan(in, extent))) bits = 0;
         voxels += bits != 0;
@@ -120,17 +118,17 @@ void DensityField::put(int64_t index, OffsetBrick offsets)
 
 VoxelBox DensityField::reach_of(const DensityBrickChange& change) const
 {
-    Size3 lower(SIDE), upper(0);
+    Size3 lower(BRICK_SIDE), upper(0);
     for (const DensityRun& run : change.runs) {
-        Size3 first(run.first % SIDE, run.first / SIDE % SIDE, run.first / (SIDE * SIDE));
-        Size3 last(run.last % SIDE, run.last / SIDE % SIDE, run.last / (SIDE * SIDE));
+        Size3 first(run.first % BRICK_SIDE, run.first / BRICK_SIDE % BRICK_SIDE, run.first / (BRICK_SIDE * BRICK_SIDE));
+        Size3 last(run.last % BRICK_SIDE, run.last / BRICK_SIDE % BRICK_SIDE, run.last / (BRICK_SIDE * BRICK_SIDE));
         // A run that goes on in the next row, or slice, may hold all columns, or rows.
-        if (first.z != last.z) first.y = 0, last.y = SIDE - 1;
-        if (run.first / SIDE != run.last / SIDE) first.x = 0, last.x = SIDE - 1;
+        if (first.z != last.z) first.y = 0, last.y = BRICK_SIDE - 1;
+        if (run.first / BRICK_SIDE != run.last / BRICK_SIDE) first.x = 0, last.x = BRICK_SIDE - 1;
         lower = glm::min(lower, first);
         upper = glm::max(upper, last + int64_t{1});
     }
-    const Size3 corner = SIDE * Size3(position_of(change.brick));
+    const Size3 corner = BRICK_SIDE * Size3(position_of(change.brick));
     return {corner + lower, glm::min(corner + upper, size_)};
 }
 

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
 namespace {
-
-constexpr int64_t SIDE = gpu::BRICK_SIZE;
 
 /// Appends voxel `at`, or makes the last run longer.
 void append(std::vector<DensityRun>& runs, uint16_t at, uint32_t before, uint32_t after)
@@ -41,7 +40,7 @@ uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t he
 
 DensityStroke::DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff)
     : size_(size),
-      counts_((size + Size3(SIDE - 1)) / Size3(SIDE)),
+      counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE)),
       spacing_(spacing),
       type_(type),
       offset_(offset),
@@ -70,21 +69,20 @@ void DensityStroke::add(const BrushRegion& region, std::span<const uint32_t> wor
                     const double distance = glm::length((glm::dvec3(voxel) + 0.5 - centre_voxel) * spacing_);
                     const uint32_t here = offset_bits(type_, offset_ * std::max(0.0, 1.0 - distance / radius));
                     if (here == 0) continue;
-                    const Size3 where = voxel / SIDE, in = voxel % SIDE;
-                    std::unique_ptr<OffsetBrick>& brick =
-                        strongest_[where.x + counts_.x * (where.y + counts_.y * where.z)];
+                    const Size3 where = voxel / BRICK_SIDE, in = voxel % BRICK_SIDE;
+                    std::unique_ptr<OffsetBrick>& brick = strongest_[index_of(where, counts_)];
                     if (!brick) brick = std::make_unique<OffsetBrick>(OffsetBrick{});
-                    uint32_t& strongest = (*brick)[size_t(in.x + SIDE * (in.y + SIDE * in.z))];
+                    uint32_t& strongest = (*brick)[size_t(in.x + BRICK_SIDE * (in.y + BRICK_SIDE * in.z))];
                     if (std::abs(offset_of(type_, here)) > std::abs(offset_of(type_, strongest))) strongest = here;
                 }
         }
 }
 
-std::vector<Change> DensityStroke::changes(const DensityField& field) const
+std::vector<DensityBrickChange> DensityStroke::changes(const DensityField& field) const
 {
     SHVR_CHECK(field.size() == size_ && field.type() == type_, "the offsets are of another volume");
     const uint32_t most = offset_bits(type_, offset_);
-    std::vector<Change> changes;
+    std::vector<DensityBrickChange> changes;
     for (const auto& [index, bits] : selection_.bricks()) {
         const std::shared_ptr<const OffsetBrick> before = field.brick(index);
         const auto strongest = strongest_.find(index);
@@ -100,7 +98,7 @@ std::vector<Change> DensityStroke::changes(const DensityField& field) const
             }
         if (change.runs.empty()) continue;
         change.runs.shrink_to_fit();  // the history keeps it
-        changes.emplace_back(std::move(change));
+        changes.push_back(std::move(change));
     }
     return changes;
 }

@@ -9,6 +9,7 @@
 
 #include <memory>
 
+#include "engine/annotation/density.h"
 #include "engine/annotation/region.h"
 
 namespace shvr {
@@ -38,7 +39,7 @@ public:
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
     /// The records that paint all that was added; voxels that stay as they are are left out.
-    std::vector<Change> changes(const DensityField& field) const;
+    std::vector<DensityBrickChange> changes(const DensityField& field) const;
 
 private:
     Size3 size_;

@@ -4,14 +4,11 @@
 
 #include "engine/annotation/brick_run.h"
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
-namespace {
-
-constexpr int64_t SIDE = gpu::BRICK_SIZE;
-
-}  // namespace
+namespace {}  // namespace
 
 int64_t MaskBrickChange::voxels() const
 {
@@ -37,7 +34,7 @@ void append_painted_runs(std::vector<MaskRun>& runs, std::span<const uint8_t> ro
     }
 }
 
-Mask::Mask(Size3 size) : size_(size), counts_((size + Size3(SIDE - 1)) / Size3(SIDE))
+Mask::Mask(Size3 size) : size_(size), counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE))
 {
     voxels_by_group_[0] = size.x * size.y * size.z;
 }
@@ -46,9 +43,9 @@ uint8_t Mask::at(const Size3& voxel) const
 {
     SHVR_CHECK(glm::all(glm::greaterThanEqual(voxel, Size3(0))) && glm::all(glm::lessThan(voxel, size_)), "voxel ",
                voxel.x, ", ", voxel.y, ", ", voxel.z);
-    const Size3 where = voxel / Size3(SIDE), in = voxel % Size3(SIDE);
-    const MaskBrick* found = brick(where.x + counts_.x * (where.y + counts_.y * where.z));
-    return found ? (*found)[size_t(in.x + SIDE * (in.y + SIDE * in.z))] : uint8_t{0};
+    const Size3 where = voxel / Size3(BRICK_SIDE), in = voxel % Size3(BRICK_SIDE);
+    const MaskBrick* found = brick(index_of(where, counts_));
+    return found ? (*found)[size_t(in.x + BRICK_SIDE * (in.y + BRICK_SIDE * in.z))] : uint8_t{0};
 }
 
 const MaskBrick* Mask::brick(int64_t index) const
@@ -73,9 +70,8 @@ std::string Mask::misfit(const MaskBrickChange& change, Direction direction) con
 {
     if (change.brick < 0 || change.brick >= counts_.x * counts_.y * counts_.z)
         return sentence("there is no brick ", change.brick);
-    const Size3 where(change.brick % counts_.x, change.brick / counts_.x % counts_.y,
-                      change.brick / (counts_.x * counts_.y));
-    const Size3 extent = glm::min(Size3(SIDE), size_ - SIDE * where);
+    const Size3 where = position_of(change.brick, counts_);
+    const Size3 extent = glm::min(Size3(BRICK_SIDE), size_ - BRICK_SIDE * where);
     const MaskBrick* const held = brick(change.brick);
     int64_t free_from = 0;  // where the next run may begin
     for (const MaskRun& run : change.runs) {

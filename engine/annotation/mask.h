@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/annotation/direction.h"
 #include "engine/volume/volume.h"
 #include "shaders/bricks.h"
 
@@ -41,8 +42,6 @@ struct MaskBrickChange {
 
 /// Appends a row of groups that begins at voxel `first` of an unpainted brick. Joins the last run where it can.
 void append_painted_runs(std::vector<MaskRun>& runs, std::span<const uint8_t> row, size_t first);
-
-enum class Direction { forwards, backwards };
 
 class Mask {
 public:

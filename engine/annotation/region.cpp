@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
 namespace {
 
-constexpr int64_t SIDE = gpu::BRICK_SIZE;
 constexpr int64_t MOST_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count in whole words
 
 struct Range {
@@ -60,6 +60,24 @@ void refuse_size(double radius_voxels, const Size3& size)
         fail("brush radius is ", radius_voxels, " voxels: its region is ", size.x, " x ", size.y, " x ", size.z,
              " voxels; expected at most ", MOST_REGION_VOXELS,
              " (256 x 256 x 256), each row filled up to a multiple of 32");
+}
+
+/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`. Joins the last run where it can.
+void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, uint8_t group)
+{
+    while (first < end) {
+        const uint8_t old = before[first];
+        size_t next = first + 1;
+        while (next < end && before[next] == old) ++next;
+        if (old != group) {
+            const auto last = uint16_t(next - 1);
+            if (!runs.empty() && runs.back().last + size_t{1} == first && runs.back().before == old)
+                runs.back().last = last;
+            else
+                runs.push_back({uint16_t(first), last, old, group});
+        }
+        first = next;
+    }
 }
 
 }  // namespace
@@ -141,7 +159,7 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
     return positions;
 }
 
-VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_((size + Size3(SIDE - 1)) / Size3(SIDE)) {}
+VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE)) {}
 
 // A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks that
 // a row of the region goes through are looked up once for all rows that go through the same ones.
@@ -152,24 +170,24 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
     SHVR_CHECK(int64_t(words.size()) == per_row * size.y * size.z, words.size(), " words");
     SHVR_CHECK(glm::all(glm::lessThanEqual(region.box.upper, size_)), "the region is of another volume");
     if (words.empty()) return;
-    const int64_t first_brick = region.box.lower.x / SIDE, shift = region.box.lower.x % SIDE;
+    const int64_t first_brick = region.box.lower.x / BRICK_SIDE, shift = region.box.lower.x % BRICK_SIDE;
     std::vector<Bits*> row_of_bricks(size_t(per_row + 1));
     const auto merge = [&](int64_t i, int64_t y, int64_t z, uint32_t bits) {
         if (bits == 0) return;
         Bits*& brick = row_of_bricks[size_t(i)];
-        if (!brick) brick = &bricks_[first_brick + i + counts_.x * (y / SIDE + counts_.y * (z / SIDE))];
-        (*brick)[size_t(y % SIDE + SIDE * (z % SIDE))] |= bits;
+        if (!brick) brick = &bricks_[first_brick + i + counts_.x * (y / BRICK_SIDE + counts_.y * (z / BRICK_SIDE))];
+        (*brick)[size_t(y % BRICK_SIDE + BRICK_SIDE * (z % BRICK_SIDE))] |= bits;
     };
     size_t row = 0;
     for (int64_t z = region.box.lower.z; z < region.box.upper.z; ++z)
         for (int64_t y = region.box.lower.y; y < region.box.upper.y; ++y, ++row) {
-            if (y == region.box.lower.y || y % SIDE == 0)
+            if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
                 // Where spans were honoured already this changes nothing; where not, nothing is selected outside.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
-                if (shift > 0) merge(w + 1, y, z, word >> (SIDE - shift));
+                if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));
             }
         }
 }
@@ -177,9 +195,9 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
 bool VoxelSelection::contains(const Size3& voxel) const
 {
     if (!is_inside(voxel, size_)) return false;
-    const Size3 where = voxel / Size3(SIDE), in = voxel % Size3(SIDE);
-    const auto found = bricks_.find(where.x + counts_.x * (where.y + counts_.y * where.z));
-    return found != bricks_.end() && (found->second[size_t(in.y + SIDE * in.z)] >> in.x & 1) != 0;
+    const Size3 where = voxel / Size3(BRICK_SIDE), in = voxel % Size3(BRICK_SIDE);
+    const auto found = bricks_.find(index_of(where, counts_));
+    return found != bricks_.end() && (found->second[size_t(in.y + BRICK_SIDE * in.z)] >> in.x & 1) != 0;
 }
 
 int64_t VoxelSelection::count() const
@@ -190,32 +208,12 @@ int64_t VoxelSelection::count() const
     return sum;
 }
 
-namespace {
+namespace {}  // namespace
 
-/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`. Joins the last run where it can.
-void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, uint8_t group)
-{
-    while (first < end) {
-        const uint8_t old = before[first];
-        size_t next = first + 1;
-        while (next < end && before[next] == old) ++next;
-        if (old != group) {
-            const auto last = uint16_t(next - 1);
-            if (!runs.empty() && runs.back().last + size_t{1} == first && runs.back().before == old)
-                runs.back().last = last;
-            else
-                runs.push_back({uint16_t(first), last, old, group});
-        }
-        first = next;
-    }
-}
-
-}  // namespace
-
-std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group)
+std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group)
 {
     static constexpr MaskBrick UNPAINTED{};
-    std::vector<Change> changes;
+    std::vector<MaskBrickChange> changes;
     for (const auto& [index, bits] : selection.bricks()) {
         const MaskBrick* painted = mask.brick(index);
         if (!painted && group == 0) continue;
@@ -230,7 +228,7 @@ std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& select
             }
         if (change.runs.empty()) continue;
         change.runs.shrink_to_fit();  // the history keeps it
-        changes.emplace_back(std::move(change));
+        changes.push_back(std::move(change));
     }
     return changes;
 }

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/annotation/history.h"
+#include "engine/annotation/mask.h"
 #include "engine/volume/volume.h"
 #include "shaders/paint.h"
 
@@ -61,6 +61,6 @@ private:
 };
 
 /// The records that give every selected voxel `group`; voxels that have it already are left out.
-std::vector<Change> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group);
+std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group);
 
 }  // namespace shvr

@@ -56,6 +56,12 @@ std::string read_text(const std::filesystem::path& path, int64_t max_bytes)
     return read_whole<std::string>(path, max_bytes);
 }
 
+bool is_file(const std::filesystem::path& path)
+{
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+}
+
 std::string reason_of(int error_number)
 {
     return std::generic_category().message(error_number);

@@ -16,6 +16,9 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, int64_t max_
 /// The same bytes as text; neither encoding nor line ends are changed.
 std::string read_text(const std::filesystem::path& path, int64_t max_bytes);
 
+/// Whether there is a regular file; whatever keeps that from being known means no.
+bool is_file(const std::filesystem::path& path);
+
 /// "No space left on device" for ENOSPC; unlike strerror free of shared state.
 std::string reason_of(int error_number);
 

@@ -14,9 +14,9 @@ namespace shvr {
 /// What decides whether a range of codes shows anything.
 struct Visibility {
     gpu::BrickLeapParams params{};
-    std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
+    std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::array<uint32_t, 8> visible_groups{};
-    /// As the kernels do it (shaders/occupancy.glsl).
+    /// As the kernels do it (shaders/library/occupancy.glsl).
     bool shows(double lower_code, double upper_code) const;
 };
 bool operator==(const Visibility& a, const Visibility& b);

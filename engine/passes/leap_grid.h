@@ -28,7 +28,7 @@ struct CellBox {
 struct LeapGridInput {
     gpu::OccupancyParams params;              ///< but for the cells
     CellBox changed;                          ///< cells whose occupancy may have changed
-    std::vector<uint32_t> visible_intervals;  ///< engine/scene/transfer_function.h
+    std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::optional<MaskBinding> mask;
     std::array<uint32_t, 8> visible_groups{};  ///< bit per group; used with a mask
 };

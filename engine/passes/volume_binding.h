@@ -43,7 +43,7 @@ struct RegionBricks {
 /// The painted voxels on the device; absent while nothing is painted.
 struct MaskBinding {
     Resource mask;        ///< r8ui, bricks without aprons
-    Resource mask_table;  ///< slots of painted bricks, see shaders/mask.glsl
+    Resource mask_table;  ///< slots of painted bricks, see shaders/library/mask.glsl
 };
 
 }  // namespace shvr

@@ -8,14 +8,13 @@
 #include <unordered_set>
 
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/halving.h"
 #include "engine/volume/voxel_dispatch.h"
 
 namespace shvr {
 
 namespace {
-
-constexpr int64_t SIDE = gpu::BRICK_SIZE;
 
 template <class T>
 using OffsetOf = std::conditional_t<std::is_floating_point_v<T>, float, int32_t>;
@@ -65,20 +64,21 @@ void halve(const OffsetBrick& brick, const Size3& extent, const Size3& octant, O
 {
     std::array<Offset, std::tuple_size_v<OffsetBrick>> finer;
     std::memcpy(finer.data(), brick.data(), sizeof finer);
-    std::array<Offset, SIDE> row;
+    std::array<Offset, BRICK_SIDE> row;
     const int64_t half = (extent.x + 1) / 2;
     for (int64_t z = 0; z < extent.z; z += 2)
         for (int64_t y = 0; y < extent.y; y += 2) {
             HalvingRows<Offset> rows;
             for (int64_t slice = z; slice < std::min(z + 2, extent.z); ++slice)
                 for (int64_t line = y; line < std::min(y + 2, extent.y); ++line)
-                    rows.first[static_cast<size_t>(rows.count++)] = finer.data() + SIDE * (line + SIDE * slice);
+                    rows.first[static_cast<size_t>(rows.count++)] =
+                        finer.data() + BRICK_SIDE * (line + BRICK_SIDE * slice);
             halve_rows(rows, extent.x, row.data());
             for (int64_t x = 0; x < half; ++x)
                 if (row[static_cast<size_t>(x)] == Offset{0})
                     row[static_cast<size_t>(x)] = Offset{0};  // -0 is no offset
-            const Size3 to = octant * (SIDE / 2) + Size3(0, y / 2, z / 2);
-            std::memcpy(above.data() + to.x + SIDE * (to.y + SIDE * to.z), row.data(),
+            const Size3 to = octant * (BRICK_SIDE / 2) + Size3(0, y / 2, z / 2);
+            std::memcpy(above.data() + to.x + BRICK_SIDE * (to.y + BRICK_SIDE * to.z), row.data(),
                         static_cast<size_t>(half) * sizeof(Offset));
         }
 }
@@ -142,7 +142,7 @@ OffsetSource::Entry OffsetSource::parent(const Entries& changed, const BrickKey&
         entry.range = {std::min(entry.range.lower, finer->range.lower),
                        std::max(entry.range.upper, finer->range.upper)};
         if (!finer->offsets) continue;
-        const Size3 extent = glm::min(Size3(SIDE), size - SIDE * Size3(below.brick));
+        const Size3 extent = glm::min(Size3(BRICK_SIDE), size - BRICK_SIDE * Size3(below.brick));
         if (is_float(info().type))
             halve<float>(*finer->offsets, extent, Size3(octant), *offsets);
         else
@@ -189,7 +189,7 @@ void OffsetSource::read_level(int level, const VoxelBox& box, std::span<std::byt
     base_->read_level(level, box, voxels);
     if (empty() || voxels.empty()) return;
     std::vector<std::pair<Size3, std::shared_ptr<const OffsetBrick>>> found;
-    const Size3 first = box.lower / SIDE, last = (box.upper - int64_t{1}) / SIDE;
+    const Size3 first = box.lower / BRICK_SIDE, last = (box.upper - int64_t{1}) / BRICK_SIDE;
     {
         const std::shared_lock lock(mutex_);
         for (int64_t z = first.z; z <= last.z; ++z)
@@ -197,18 +197,18 @@ void OffsetSource::read_level(int level, const VoxelBox& box, std::span<std::byt
                 for (int64_t x = first.x; x <= last.x; ++x)
                     if (const auto at = entries_.find({level, glm::ivec3(x, y, z)});
                         at != entries_.end() && at->second.offsets)
-                        found.emplace_back(SIDE * Size3(x, y, z), at->second.offsets);
+                        found.emplace_back(BRICK_SIDE * Size3(x, y, z), at->second.offsets);
     }
     const Size3 extent = box.size();
     with_voxel_type(info().type, [&]<class T>(T) {
         for (const auto& [corner, offsets] : found) {
-            const Size3 lower = glm::max(corner, box.lower), upper = glm::min(corner + SIDE, box.upper);
+            const Size3 lower = glm::max(corner, box.lower), upper = glm::min(corner + BRICK_SIDE, box.upper);
             for (int64_t z = lower.z; z < upper.z; ++z)
                 for (int64_t y = lower.y; y < upper.y; ++y) {
                     const Size3 to = Size3(lower.x, y, z) - box.lower, from = Size3(lower.x, y, z) - corner;
-                    add_row<T>(
-                        voxels.data() + static_cast<int64_t>(sizeof(T)) * (to.x + extent.x * (to.y + extent.y * to.z)),
-                        offsets->data() + from.x + SIDE * (from.y + SIDE * from.z), upper.x - lower.x);
+                    add_row<T>(voxels.data() + static_cast<int64_t>(sizeof(T)) * index_of(to, extent),
+                               offsets->data() + from.x + BRICK_SIDE * (from.y + BRICK_SIDE * from.z),
+                               upper.x - lower.x);
                 }
         }
     });

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 namespace {
 
-constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
 constexpr double LARGEST_CODE = 65535.0;
 constexpr double LARGEST_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <random>
 
-#include "engine/annotation/work.h"
+#include "engine/annotation/work/work.h"
 #include "tests/support/random_annotation.h"
 
 namespace shvr::test {

@@ -13,7 +13,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/durability/desk.h"
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;

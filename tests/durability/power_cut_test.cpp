@@ -9,7 +9,7 @@
 
 #include "tests/durability/desk.h"
 #include "tests/durability/power_cut.h"
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -10,7 +10,7 @@
 
 #include "tests/durability/desk.h"
 #include "tests/durability/watched_calls.h"
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -1,6 +1,6 @@
 // What an import that was stopped left to go on from: such a file, or behind a "w" what is to be kept in one.
 
-#include "engine/volume/import_state.h"
+#include "engine/projects/import_state.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -1,7 +1,7 @@
 // A journal. The first byte says what the rest is: 0, the file's bytes; 1, records (kind 1, about 1, length 2, content)
 // that get the frames and checksums they need, so that what is inside them is reached, too.
 
-#include "engine/annotation/work.h"
+#include "engine/annotation/work/work.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

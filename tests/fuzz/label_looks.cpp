@@ -1,9 +1,9 @@
 // The .zattrs of a label image: what it says of its labels.
 
-#include "engine/scene/label_looks.h"
+#include "engine/session/label_looks.h"
 
 #include "engine/base/error.h"
-#include "engine/volume/ome_zarr_labels.h"
+#include "engine/formats/zarr/ome_zarr_labels.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

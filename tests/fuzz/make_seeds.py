@@ -467,7 +467,7 @@ def make_text():
         seed("session", name, (ROOT / f"assets/examples/{name}.session.json").read_bytes())
         script = (ROOT / f"assets/examples/{name}.jsonl").read_bytes().splitlines(True)
         seed("script", name, b"".join(script[:6])[:1500].rsplit(b"\n", 1)[0] + b"\n")
-    text = (ROOT / "tests/unit/session_test.cpp").read_text(encoding="utf-8")
+    text = (ROOT / "tests/unit/session/session_test.cpp").read_text(encoding="utf-8")
     begin = text.index("EVERYTHING = R\"(") + len("EVERYTHING = R\"(")
     seed("session", "everything", text[begin:text.index(")\"", begin)])
     seed("session", "controls", '{"shvr_session": 1, "volume": {"path": "scan_5x4x3_int16.ra\x7f", "unit": "\\u001b[31m"}}')

@@ -1,6 +1,6 @@
 // A .mask file: the first three bytes are the sides of the volume it is for, the rest is the file.
 
-#include "engine/annotation/mask_file.h"
+#include "engine/annotation/files/mask_file.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -1,10 +1,10 @@
 // A .offset file: the first three bytes are the sides of the volume it is for, the fourth says its type, the rest is the
 // file.
 
-#include "engine/annotation/offset_export.h"
-#include "engine/annotation/offset_file.h"
-#include "engine/annotation/offset_import.h"
-#include "engine/volume/open_volume.h"
+#include "engine/annotation/files/offset_export.h"
+#include "engine/annotation/files/offset_file.h"
+#include "engine/annotation/files/offset_import.h"
+#include "engine/formats/open_volume.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -1,6 +1,6 @@
 // The parameters of a procedural volume, as a session states them.
 
-#include "engine/scene/session.h"
+#include "engine/session/session.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/volume/project.h"
+#include "engine/formats/zarr/project.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

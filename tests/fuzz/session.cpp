@@ -1,7 +1,7 @@
 // Session files: what is read is written, and that says the same again. The volume is opened where it is procedural or
 // beside the session.
 
-#include "engine/scene/session.h"
+#include "engine/session/session.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/scene/session.h"
+#include "engine/session/session.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -1,7 +1,7 @@
 // A trace: the first byte says which form the rest is. What opens is written in every form and read again.
 
-#include "engine/annotation/measures.h"
-#include "engine/annotation/trace_file.h"
+#include "engine/annotation/measures/measures.h"
+#include "engine/annotation/trace/trace_file.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/annotator.h"
+#include "engine/live/annotator.h"
 #include "engine/volume/pyramid_source.h"
 #include "tests/support/gpu.h"
 

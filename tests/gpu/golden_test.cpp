@@ -19,7 +19,7 @@
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
-#include "engine/scene/previewer.h"
+#include "engine/live/previewer.h"
 
 using namespace shvr;
 using Json = nlohmann::ordered_json;

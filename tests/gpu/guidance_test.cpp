@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/relevance.h"
+#include "engine/live/relevance.h"
 #include "haptics/force.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"

@@ -1,5 +1,5 @@
 // Local ambient occlusion as the device makes it: its values against the definition in double, and what makes them stale. What
-// the definition is worth is for tests/unit/occlusion_test.cpp.
+// the definition is worth is for tests/unit/device/occlusion_test.cpp.
 
 #include "engine/passes/occlusion.h"
 
@@ -10,8 +10,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/image_metrics.h"
-#include "engine/scene/annotator.h"
-#include "engine/scene/view.h"
+#include "engine/live/annotator.h"
+#include "engine/live/view.h"
 #include "engine/volume/source_procedural.h"
 #include "tests/reference/occlusion.h"
 #include "tests/support/gpu.h"

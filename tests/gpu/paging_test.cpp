@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/annotator.h"
-#include "engine/scene/view.h"
+#include "engine/live/annotator.h"
+#include "engine/live/view.h"
 #include "engine/volume/pyramid_source.h"
 #include "shaders/counters.h"
 #include "tests/support/gpu.h"

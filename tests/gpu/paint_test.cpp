@@ -11,9 +11,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/annotator.h"
+#include "engine/live/annotator.h"
 #include "tests/reference/components.h"
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -1,6 +1,6 @@
 // Pictures made part by part: the same bits as made whole, with everything that may be in them.
 
-#include "engine/scene/picture_job.h"
+#include "engine/picture/picture_job.h"
 
 #include <doctest/doctest.h>
 

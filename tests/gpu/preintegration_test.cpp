@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/look_table.h"
+#include "engine/device/look_table.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/previewer.h"
+#include "engine/live/previewer.h"
 #include "tests/support/gpu.h"
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -1,7 +1,7 @@
 // The panes that a person looks at come to rest on the picture that `shvr render` makes, share the device, and do no more
 // than that takes.
 
-#include "engine/scene/screen.h"
+#include "engine/live/screen.h"
 
 #include <doctest/doctest.h>
 

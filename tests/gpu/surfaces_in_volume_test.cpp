@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/annotator.h"
+#include "engine/live/annotator.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

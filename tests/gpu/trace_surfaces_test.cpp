@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/trace_look.h"
+#include "engine/live/trace_look.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/live/annotator.h"
+#include "engine/live/view.h"
 #include "engine/passes/encode.h"
-#include "engine/scene/annotator.h"
-#include "engine/scene/view.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

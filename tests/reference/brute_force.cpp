@@ -36,7 +36,7 @@ glm::dvec4 transfer(const std::vector<ControlPoint>& points, double u)
     return glm::dvec4(0.0);
 }
 
-glm::dvec3 lit(const Scene& scene, glm::dvec3 p, glm::dvec3 to_eye, glm::dvec3 color)
+glm::dvec3 lit_by_differences(const Scene& scene, glm::dvec3 p, glm::dvec3 to_eye, glm::dvec3 color)
 {
     const Shading& k = *scene.shading;
     const double reference = std::min({scene.spacing.x, scene.spacing.y, scene.spacing.z});
@@ -74,7 +74,7 @@ glm::dvec4 brute_force(const Scene& scene, const Ray& ray, double t_in, double t
         }
         if (material.a == 0.0) continue;
         glm::dvec3 color(material);
-        if (scene.shading) color = lit(scene, p, -glm::normalize(physical), color);
+        if (scene.shading) color = lit_by_differences(scene, p, -glm::normalize(physical), color);
         const double passed = -step_length * std::log1p(-material.a);
         light += color * (std::exp(-depth) * -std::expm1(-passed));
         depth += passed;

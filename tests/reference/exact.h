@@ -1,7 +1,7 @@
 #pragma once
 // The picture as the equations of scene.h define it, with no step size: the ray is cut wherever the integrand stops
 // being smooth (cell borders, voxel borders, transfer-function knots) and integrated adaptively in between. No early
-// termination. Measured error: below 1e-12 (tests/unit/reference_test.cpp).
+// termination. Measured error: below 1e-12 (tests/unit/reference/reference_test.cpp).
 //
 // A control point of opacity 1 between points of less ends the ray too, though a stepped renderer, whose samples miss
 // that single density, sees through it.

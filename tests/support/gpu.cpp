@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/unit/volume_files.h"
+#include "tests/support/volume_files.h"
 
 namespace shvr::test {
 

@@ -14,7 +14,7 @@
 #include <functional>
 #include <string>
 
-#include "engine/scene/renderer.h"
+#include "engine/picture/renderer.h"
 #include "tests/reference/render.h"
 
 namespace shvr::test {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/annotation/density_brush.h"
-#include "engine/annotation/trace_edit.h"
+#include "engine/annotation/trace/trace_edit.h"
 
 namespace shvr::test {
 
@@ -99,9 +99,10 @@ Command random_painting(const Document& document, std::mt19937& random)
     }
     const auto group = uint8_t(random() % 3 == 0 ? 0 : random() % 256);
     Command command{"random", {}};
-    if (what != 1) command.changes = paint_changes(document.mask, selection, group);
+    if (what != 1) command.changes = as_changes(paint_changes(document.mask, selection, group));
     if (what != 0)
-        for (Change& change : density.changes(document.density)) command.changes.push_back(std::move(change));
+        for (DensityBrickChange& change : density.changes(document.density))
+            command.changes.emplace_back(std::move(change));
     return command;
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "engine/annotation/history.h"
+#include "engine/annotation/work/history.h"
 
 namespace shvr::test {
 

@@ -11,10 +11,10 @@
 #include <memory>
 #include <random>
 
-#include "engine/annotation/trace_command.h"
+#include "engine/annotation/trace/trace_command.h"
 #include "engine/base/error.h"
-#include "engine/scene/annotator.h"
-#include "engine/scene/trace_look.h"
+#include "engine/live/annotator.h"
+#include "engine/live/trace_look.h"
 #include "engine/volume/source_procedural.h"
 
 namespace shvr {
@@ -188,7 +188,8 @@ void many_strokes(const Folder& folder)
                 const BrushRegion region = make_region(RegionShape::ball, at, 6.0, glm::dvec3(1.0), size);
                 selection.add(region, std::vector<uint32_t>(size_t(region.words_per_row()) * region.rows.size(), ~0u));
             }
-            Command command{"fill, group 3", paint_changes(work->document().mask, selection, uint8_t(1 + stroke % 7))};
+            Command command{"fill, group 3",
+                            as_changes(paint_changes(work->document().mask, selection, uint8_t(1 + stroke % 7)))};
             for (const Change& change : command.changes) voxels += std::get<MaskBrickChange>(change).voxels();
             work->perform(std::move(command));
         }

@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/annotation/files/mask_file.h"
 #include "engine/annotation/mask.h"
-#include "engine/annotation/mask_file.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
-#include "engine/scene/session.h"
-#include "engine/volume/code_rows.h"
+#include "engine/bricks/code_rows.h"
+#include "engine/session/session.h"
 #include "shaders/raycast.h"
 #include "tests/reference/render.h"
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "engine/scene/trace_look.h"
+#include "engine/live/trace_look.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {

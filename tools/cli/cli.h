@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "engine/scene/annotator.h"
-#include "engine/scene/session.h"
+#include "engine/live/annotator.h"
+#include "engine/session/session.h"
 
 namespace shvr::cli {
 

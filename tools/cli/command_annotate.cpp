@@ -2,8 +2,8 @@
 
 #include <concepts>
 
-#include "engine/annotation/trace_command.h"
-#include "engine/scene/label_looks.h"
+#include "engine/annotation/trace/trace_command.h"
+#include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

@@ -4,10 +4,11 @@
 #include <fstream>
 #include <iostream>
 
-#include "engine/annotation/mask_file.h"
-#include "engine/annotation/mask_source.h"
-#include "engine/annotation/measures.h"
-#include "engine/annotation/trace_score.h"
+#include "engine/annotation/files/mask_file.h"
+#include "engine/annotation/files/mask_source.h"
+#include "engine/annotation/measures/measures.h"
+#include "engine/annotation/measures/trace_score.h"
+#include "engine/volume/unit.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

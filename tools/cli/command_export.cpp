@@ -1,13 +1,14 @@
 // shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
 
-#include "engine/annotation/mask_image.h"
-#include "engine/annotation/mask_import.h"
-#include "engine/annotation/measures.h"
-#include "engine/annotation/offset_export.h"
-#include "engine/annotation/offset_file.h"
-#include "engine/annotation/trace_mesh.h"
+#include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/files/mask_import.h"
+#include "engine/annotation/files/offset_export.h"
+#include "engine/annotation/files/offset_file.h"
+#include "engine/annotation/measures/measures.h"
+#include "engine/annotation/trace/trace_mesh.h"
 #include "engine/base/atomic_file.h"
-#include "engine/scene/label_looks.h"
+#include "engine/session/label_looks.h"
+#include "engine/volume/unit.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

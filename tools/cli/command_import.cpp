@@ -11,7 +11,7 @@
 #include <iomanip>
 #include <iostream>
 
-#include "engine/volume/import_volume.h"
+#include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

@@ -3,12 +3,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "engine/annotation/work_offsets.h"
+#include "engine/annotation/work/work_offsets.h"
 #include "engine/base/atomic_writer.h"
-#include "engine/volume/components.h"
-#include "engine/volume/header_text.h"
-#include "engine/volume/import_volume.h"
-#include "engine/volume/volume_export.h"
+#include "engine/base/text.h"
+#include "engine/components/components.h"
+#include "engine/formats/export/volume_export.h"
+#include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

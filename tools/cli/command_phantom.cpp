@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "engine/base/atomic_writer.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/source_procedural.h"
 #include "tools/cli/cli.h"
 
@@ -26,13 +27,12 @@ struct Options {
 /// "64" or "64x32x16"
 Size3 parse_volume_size(const std::string& text)
 {
-    constexpr int LARGEST_SIDE = 1 << 20;
     glm::ivec3 size{0};
     char end = 0;
     const int numbers = std::sscanf(text.c_str(), "%7dx%7dx%7d%c", &size.x, &size.y, &size.z, &end);
     if (numbers == 1 && text.find_first_not_of("0123456789") == std::string::npos) size = glm::ivec3(size.x);
     if ((numbers != 1 && numbers != 3) || glm::any(glm::lessThan(size, glm::ivec3(1))) ||
-        glm::any(glm::greaterThan(size, glm::ivec3(LARGEST_SIDE))))
+        glm::any(glm::greaterThan(size, glm::ivec3(int{LARGEST_SIDE}))))
         throw UsageError(
             sentence("--size is '", text, "'; expected N or WIDTHxHEIGHTxDEPTH, each 1 ... ", LARGEST_SIDE));
     return size;

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "engine/base/file.h"
-#include "engine/scene/previewer.h"
+#include "engine/live/previewer.h"
 #include "tools/cli/profile_report.h"
 
 namespace shvr::cli {

@@ -2,7 +2,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
-#include "engine/scene/previewer.h"
+#include "engine/live/previewer.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {

@@ -15,7 +15,7 @@ import time
 from array import array
 from pathlib import Path
 
-# Of a session that says nothing else (engine/scene/README.md).
+# Of a session that says nothing else (engine/session/README.md).
 LIGHT = {"shaded": True, "ambient": 0.3, "diffuse": 0.7, "specular": 0.2, "shininess": 32, "direction": [0, 0, 0]}
 RENDER = {"size": [512, 512], "step_voxels": 0.5, "background": "#ffffff"}
 

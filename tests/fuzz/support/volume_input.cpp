@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/volume/project.h"
+#include "engine/base/finite.h"
+#include "engine/formats/zarr/project.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 
@@ -16,11 +17,6 @@ constexpr int64_t MOST_SIDE = int64_t{1} << 20;
 constexpr int64_t MOST_VOXELS_READ = int64_t{1} << 16;
 constexpr int MOST_LEVELS_READ = 4;
 constexpr int64_t BOX_SIDE = 8;
-
-bool is_finite(const glm::dvec3& vector)
-{
-    return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
-}
 
 bool is_plain(const std::string& text)
 {

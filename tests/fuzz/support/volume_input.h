@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "engine/volume/open_volume.h"
+#include "engine/formats/open_volume.h"
 
 namespace shvr::fuzz {
 

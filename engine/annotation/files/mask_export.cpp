@@ -1,0 +1,41 @@
+#include "engine/annotation/files/mask_export.h"
+
+#include "engine/annotation/files/mask_file.h"
+#include "engine/annotation/files/mask_source.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/formats/export/volume_export.h"
+
+namespace shvr {
+
+namespace {
+
+bool is_label_image(const std::filesystem::path& path)
+{
+    const std::filesystem::path plain = path.has_filename() ? path : path.parent_path();
+    const std::string form = lower_case(plain.extension().string());
+    return form == ".zarr" || (form.empty() && plain.parent_path().filename() == "labels");
+}
+
+}  // namespace
+
+bool is_mask_export(const std::filesystem::path& path)
+{
+    return is_label_image(path) || is_volume_export(path) || lower_case(path.extension().string()) == ".mask";
+}
+
+void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume, const LabelImage& image)
+{
+    if (!is_mask_export(path))
+        fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
+             "; expected .mask, .nrrd, .tif or .zarr");
+    const MaskSource groups(mask, volume);
+    if (is_label_image(path))
+        static_cast<void>(export_label_image(groups, path, image));
+    else if (is_volume_export(path))
+        export_volume(path, groups);
+    else
+        save_mask(path, mask);
+}
+
+}  // namespace shvr

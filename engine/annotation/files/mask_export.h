@@ -1,0 +1,23 @@
+#pragma once
+// A mask in forms that other programs read. Any thread may call this.
+//
+//   .mask        the thesis's raw bytes (mask_file.h)
+//   .nrrd .tif   engine/formats/export/volume_export.h
+//   .zarr        an OME-Zarr 0.4 label image with its levels; so is PROJECT/labels/NAME
+
+#include <filesystem>
+
+#include "engine/annotation/mask.h"
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/projects/import_volume.h"
+
+namespace shvr {
+
+bool is_mask_export(const std::filesystem::path& path);
+
+/// Replaces an old file (or label image) at once or not at all. `volume`, of the mask's size, says where voxels lie; `image`
+/// is what a label image says besides.
+void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                 const LabelImage& image = {});
+
+}  // namespace shvr

@@ -1,0 +1,61 @@
+#include "engine/annotation/files/mask_image.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/error.h"
+#include "engine/formats/zarr/zarr_json.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr int64_t LARGEST_RECORD = int64_t{1} << 16;
+constexpr int VERSION = 1;
+
+bool is_folder(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored);
+}
+
+}  // namespace
+
+std::filesystem::path mask_image_path(const std::filesystem::path& mask)
+{
+    std::filesystem::path path = mask;
+    path += ".json";
+    return path;
+}
+
+void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
+{
+    if (content_hash.empty() || is_folder(mask)) return;
+    const nlohmann::ordered_json record = {{"shvr_mask", VERSION}, {"image", content_hash}};
+    const std::string text = record.dump(2) + "\n";
+    write_file_atomically(mask_image_path(mask), std::as_bytes(std::span(text)));
+}
+
+void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
+{
+    const bool is_label_image = is_folder(mask);
+    const std::filesystem::path path = is_label_image ? mask / ".zattrs" : mask_image_path(mask);
+    std::error_code ignored;
+    if (content_hash.empty() || !std::filesystem::exists(path, ignored)) return;
+    nlohmann::json record = read_json_object(path, is_label_image ? LARGEST_ZARR_ATTRIBUTES : LARGEST_RECORD);
+    if (is_label_image) {
+        if (!record.contains("shvr")) return;
+        record = nlohmann::json(record["shvr"]);
+        if (!record.is_object()) refuse_json(path, "shvr", record, "an object");
+    }
+    const nlohmann::json& version = required(path, record, "shvr_mask", sentence(VERSION));
+    if (version != VERSION) refuse_json(path, "shvr_mask", version, sentence(VERSION));
+    const nlohmann::json& image = required(path, record, "image", "the hash of an image");
+    if (image != content_hash) {
+        refuse_json(path, "image", image,
+                    shown(content_hash) + ", the volume's: the mask was painted on other voxels (without this " +
+                        (is_label_image ? "member" : "file") + " only its size is compared)");
+    }
+}
+
+}  // namespace shvr

@@ -1,0 +1,28 @@
+#include "engine/annotation/files/mask_import.h"
+
+#include "engine/annotation/files/mask_file.h"
+#include "engine/annotation/files/mask_source.h"
+#include "engine/annotation/files/volume_place.h"
+#include "engine/base/error.h"
+#include "engine/formats/open_volume.h"
+
+namespace shvr {
+
+std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space)
+{
+    if (!states_its_size(path)) return load_mask(path, space.size);
+    const std::unique_ptr<VolumeSource> source = open_volume(path);
+    check_place(path, "a mask", source->info(), space);
+    return mask_changes(*source, path.string());
+}
+
+void save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                  const LabelImage& image)
+{
+    if (is_mask_export(path)) return export_mask(path, mask, volume, image);
+    if (states_its_size(path))
+        fail(path.string(), ": is a form in which masks are only read; expected .mask, .nrrd, .tif or .zarr");
+    save_mask(path, mask);
+}
+
+}  // namespace shvr

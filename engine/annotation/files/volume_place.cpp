@@ -1,0 +1,45 @@
+#include "engine/annotation/files/volume_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/volume/unit.h"
+
+namespace shvr {
+
+namespace {
+
+/// TIFFs hold spacings as fractions of 32 bits.
+constexpr double SPACING_TOLERANCE = 1e-5;
+
+}  // namespace
+
+bool states_its_size(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    std::string name = lower_case(path.filename().string());
+    if (name.ends_with(".gz")) name.resize(name.size() - 3);
+    constexpr const char* FORMS[] = {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".tif", ".tiff"};
+    return std::filesystem::is_directory(path, ignored) ||
+           std::ranges::any_of(FORMS, [&](const char* form) { return name.ends_with(form); });
+}
+
+void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space)
+{
+    if (found.size != space.size)
+        fail(path.string(), ": is ", what, " of ", digits_of(found.size), " voxels; expected ", digits_of(space.size),
+             ", the size of this volume");
+    const std::string unit = plain_unit(found.unit);
+    // What is not stated cannot be wrong.
+    if (unit == "voxel" || space.unit == "voxel") return;
+    const std::optional<double> from = micrometres_in(unit), to = micrometres_in(space.unit);
+    const double factor = from && to ? *from / *to : 1.0;
+    const glm::dvec3 away = glm::abs(factor * found.spacing - space.spacing);
+    const bool is_equal = glm::all(glm::lessThanEqual(away, SPACING_TOLERANCE * space.spacing));
+    if (!is_equal || (unit != space.unit && !(from && to)))
+        fail(path.string(), ": is ", what, " with voxels of ", digits_of(found.spacing), " ", unit, "; expected ",
+             digits_of(space.spacing), " ", space.unit, ", the spacing of this volume");
+}
+
+}  // namespace shvr

@@ -1,0 +1,45 @@
+#include "engine/annotation/files/voxel_strips.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
+                           const char* kind)
+{
+    // Without O_NONBLOCK, opening a FIFO waits for a writer before we can see that it is one.
+    FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
+    struct stat status {};
+    if (::fstat(file.number(), &status) != 0) fail(path.string(), ": cannot be examined: ", reason_of(errno));
+    if (!S_ISREG(status.st_mode))
+        fail(path.string(), ": is a folder, device, pipe or socket; expected a ", kind, " file");
+    int64_t bytes = 0;
+    const bool is_too_large = __builtin_mul_overflow(size.x * size.y, size.z, &bytes) ||
+                              __builtin_mul_overflow(bytes, bytes_per_voxel, &bytes);
+    const std::string count = bytes_per_voxel == 1 ? "one" : std::to_string(bytes_per_voxel);
+    if (is_too_large || status.st_size != bytes)
+        fail(path.string(), ": holds ", status.st_size, " bytes; expected ",
+             is_too_large ? std::string("more than 63 bits count") : std::to_string(bytes), ", ", count,
+             " for each voxel of ", size.x, " x ", size.y, " x ", size.z);
+    return file;
+}
+
+void read_next(const FileDescriptor& file, const std::filesystem::path& path, std::span<std::byte> bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t count = ::read(file.number(), bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
+        if (count == 0) fail(path.string(), ": became shorter while it was read; expected its size to stay");
+        bytes = bytes.subspan(size_t(count));
+    }
+}
+
+}  // namespace shvr

@@ -1,0 +1,56 @@
+#pragma once
+// Files of one value for each voxel, x fastest, without a header, gone through in strips: the rows of one slice that go
+// through one row of bricks. They are consecutive in the file, and even the largest volume's hold only 2^25 voxels.
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "engine/base/file.h"
+#include "engine/volume/grid.h"
+#include "engine/volume/volume.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+
+/// A layer of bricks is read at once where it is no larger, else brick by brick.
+inline constexpr int64_t LAYER_BYTES = int64_t{64} << 20;
+
+struct VoxelStrip {
+    Size3 size;  ///< of the volume
+    int64_t z, brick_y;
+    int64_t height() const { return std::min<int64_t>(gpu::BRICK_SIZE, size.y - brick_y * gpu::BRICK_SIZE); }
+    size_t voxels() const { return size_t(size.x * height()); }
+    /// The last of its layer of bricks.
+    bool ends_layer() const
+    {
+        const bool is_last_slice = z % gpu::BRICK_SIZE == gpu::BRICK_SIZE - 1 || z == size.z - 1;
+        return is_last_slice && (brick_y + 1) * gpu::BRICK_SIZE >= size.y;
+    }
+};
+
+template <class Visit>
+void for_each_strip(const Size3& size, const Visit& visit)
+{
+    for (int64_t z = 0; z < size.z; ++z)
+        for (int64_t brick_y = 0; brick_y * gpu::BRICK_SIZE < size.y; ++brick_y) visit(VoxelStrip{size, z, brick_y});
+}
+
+/// The strip's rows within one brick: first voxel in the strip, first voxel in the brick, length.
+template <class Visit>
+void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
+{
+    const int64_t width = std::min(BRICK_SIDE, strip.size.x - brick_x * BRICK_SIDE);
+    for (int64_t y = 0; y < strip.height(); ++y)
+        visit(size_t(brick_x * BRICK_SIDE + strip.size.x * y),
+              size_t(BRICK_SIDE * (y + BRICK_SIDE * (strip.z % BRICK_SIDE))), size_t(width));
+}
+
+/// Opens what holds exactly that many bytes for each voxel. `kind`: the suffix that was expected, for messages.
+FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
+                           const char* kind);
+/// Fills `bytes` from where the last read ended.
+void read_next(const FileDescriptor& file, const std::filesystem::path& path, std::span<std::byte> bytes);
+
+}  // namespace shvr

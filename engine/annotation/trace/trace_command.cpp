@@ -1,0 +1,133 @@
+#include "engine/annotation/trace/trace_command.h"
+
+#include <algorithm>
+
+#include "engine/annotation/trace/trace_edit.h"
+#include "engine/base/error.h"
+#include "engine/components/label_forest.h"
+
+namespace shvr {
+
+namespace {
+
+class Effects {
+public:
+    Effects(const TraceGraph& trace, const TraceDefaults& defaults) : trace_(trace), defaults_(defaults) {}
+
+    TraceEffect operator()(const NodeOp& op) const
+    {
+        const TraceNode node{at(op.at), length(op.radius_voxels.value_or(defaults_.radius_voxels)),
+                             op.group.value_or(defaults_.group)};
+        return {sentence("node, group ", int(node.group)), add_node(trace_, node), {}};
+    }
+    TraceEffect operator()(const SelectOp& op) const
+    {
+        const char* const what = op.is_internode ? "internode" : "node";
+        TraceSelection selection;
+        if (op.number) {
+            const bool is_there =
+                op.is_internode ? trace_.internodes().contains(*op.number) : trace_.nodes().contains(*op.number);
+            if (!is_there) fail("there is no ", what, " ", *op.number, "; expected one that the trace has");
+            (op.is_internode ? selection.internodes : selection.nodes) = {*op.number};
+        }
+        if (op.near) {
+            const glm::dvec3 near = at(*op.near);
+            selection =
+                op.is_internode ? nearest_internode_selection(trace_, near) : nearest_node_selection(trace_, near);
+            const double away = op.is_internode ? distance_to(trace_, trace_.internode(selection.internodes[0]), near)
+                                                : glm::length(trace_.node(selection.nodes[0]).position - near);
+            check_distance(what, away, op.within_voxels);
+        }
+        return {"select", {}, std::move(selection)};
+    }
+    TraceEffect operator()(const SelectSegmentOp&) const { return {"select", {}, segment_selection(trace_)}; }
+    TraceEffect operator()(const DeselectOp&) const { return {"deselect", {}, TraceSelection{}}; }
+    TraceEffect operator()(const LinkOp& op) const
+    {
+        if (op.node && !trace_.nodes().contains(*op.node))
+            fail("there is no node ", *op.node, "; expected one that the trace has");
+        std::optional<uint32_t> to = op.node;
+        if (!to) {
+            to = trace_.nearest_node(at(*op.near), trace_.selection().node());
+            if (!to) fail("there is no other node; expected one to link with");
+            check_distance("other node", glm::length(trace_.node(*to).position - at(*op.near)), op.within_voxels);
+        }
+        return {"link", link_selected(trace_, *to), {}};
+    }
+    TraceEffect operator()(const MoveOp& op) const { return {"move", move_selected(trace_, at(op.to)), {}}; }
+    TraceEffect operator()(const DeleteOp&) const { return {"delete", delete_selected(trace_), {}}; }
+    TraceEffect operator()(const GroupOp& op) const
+    {
+        return {sentence("group ", int(op.group)), set_group_of_selected(trace_, op.group), {}};
+    }
+    TraceEffect operator()(const RadiusOp& op) const
+    {
+        const std::optional<double> radius = op.radius_voxels ? std::optional(length(*op.radius_voxels)) : std::nullopt;
+        switch (op.of) {
+            case RadiusOp::Of::nodes: return {"size", set_node_radii(trace_, op.group, radius.value()), {}};
+            case RadiusOp::Of::internodes: return {"size", set_internode_radius(trace_, op.group, radius), {}};
+            case RadiusOp::Of::selected: break;
+        }
+        return {"size", set_radius_of_selected(trace_, radius.value()), {}};
+    }
+
+private:
+    glm::dvec3 at(const glm::dvec3& voxel) const { return voxel * defaults_.spacing; }
+    double length(double voxels) const { return voxels * defaults_.spacing.x; }
+    void check_distance(const char* what, double away, const std::optional<double>& within_voxels) const
+    {
+        if (within_voxels && away > length(*within_voxels))
+            fail("the nearest ", what, " is ", away / length(1.0), " voxels away; expected one within ",
+                 *within_voxels);
+    }
+
+    const TraceGraph& trace_;
+    const TraceDefaults& defaults_;
+};
+
+}  // namespace
+
+TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults)
+{
+    return std::visit(Effects(trace, defaults), op);
+}
+
+TraceSummary summary_of(const TraceGraph& trace)
+{
+    TraceSummary summary{.nodes = trace.nodes().size(), .internodes = trace.internodes().size()};
+    // In arrays, since looking up a node of 100,000 in their map takes as long as all the rest of it.
+    std::vector<uint32_t> numbers;
+    std::vector<glm::dvec3> positions;
+    LabelForest parts;
+    for (const auto& [number, node] : trace.nodes()) {
+        numbers.push_back(number);
+        positions.push_back(node.position);
+        parts.add();
+    }
+    const auto place_of = [&](uint32_t number) {
+        const size_t guess = number - numbers.front();  // right where none was removed
+        if (guess < numbers.size() && numbers[guess] == number) return uint32_t(guess);
+        return uint32_t(std::ranges::lower_bound(numbers, number) - numbers.begin());
+    };
+    std::vector<uint32_t> degrees(numbers.size());
+    for (const auto& [number, internode] : trace.internodes()) {
+        const uint32_t a = place_of(internode.a), b = place_of(internode.b);
+        const double length = glm::length(positions[b] - positions[a]);
+        summary.length += length;
+        summary.group_length[internode.group] += length;
+        ++degrees[a], ++degrees[b];
+        parts.join(a, b);
+    }
+    // A segment has one internode more than nodes that it goes through; a loop without a branch has as many.
+    size_t through = 0, loops = 0;
+    std::vector<bool> is_loop(numbers.size(), true);
+    for (uint32_t i = 0; i < numbers.size(); ++i) {
+        through += degrees[i] == 2;
+        if (degrees[i] != 2) is_loop[parts.root_of(i)] = false;
+    }
+    for (uint32_t i = 0; i < numbers.size(); ++i) loops += parts.root_of(i) == i && is_loop[i];
+    summary.segments = summary.internodes - through + loops;
+    return summary;
+}
+
+}  // namespace shvr

@@ -1,0 +1,100 @@
+#include "engine/annotation/trace/trace_file.h"
+
+#include <cmath>
+#include <span>
+
+#include "engine/annotation/trace/trace_forms.h"
+#include "engine/base/atomic_file.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/volume/unit.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr int64_t MOST_BYTES = int64_t{256} << 20;
+
+std::string extension_of(const std::filesystem::path& path)
+{
+    return lower_case(path.extension().string());
+}
+
+[[noreturn]] void refuse_extension(const std::filesystem::path& path, const char* expected)
+{
+    fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected ", expected);
+}
+
+/// Spacings that were written and read by different programs.
+bool is_equal(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return glm::all(glm::lessThanEqual(glm::abs(a - b), 1e-6 * glm::abs(b)));
+}
+
+void check_space(const std::string& file, const StatedSpace& stated, const TraceSpace& expected)
+{
+    if (stated.size && *stated.size != expected.size)
+        fail(file, ": is of a volume of ", digits_of(*stated.size), " voxels; expected ", digits_of(expected.size),
+             ", the size of this one");
+    if (stated.unit && *stated.unit != expected.unit)
+        fail(file, ": is in the unit ", in_quotes(*stated.unit), "; expected ", in_quotes(expected.unit),
+             ", the unit of this volume");
+    if (stated.spacing && !is_equal(*stated.spacing, expected.spacing))
+        fail(file, ": is of a volume with voxels of ", digits_of(*stated.spacing), "; expected ",
+             digits_of(expected.spacing), ", the spacing of this one");
+}
+
+}  // namespace
+
+TraceSpace space_of(const VolumeInfo& volume)
+{
+    return {volume.size, volume.spacing, plain_unit(volume.unit)};
+}
+
+std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
+                                    Loops loops)
+{
+    const std::string form = extension_of(path);
+    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
+    std::vector<std::string> notes;
+    std::string text;
+    try {
+        text = form == ".graphml" ? write_trace_graphml(trace, space)
+               : form == ".txt"   ? write_trace_text(trace)
+               : form == ".swc"   ? write_trace_swc(trace, space, loops, notes)
+                                  : write_trace_rsml(trace, space, loops, notes);
+    } catch (const Error& error) {
+        fail(path.string(), ": ", error.what());
+    }
+    write_file_atomically(path, std::as_bytes(std::span(text)));
+    return notes;
+}
+
+TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected)
+{
+    const std::string form = extension_of(path);
+    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
+    const std::string text = read_text(path, MOST_BYTES);
+    TraceReader reader(path.string());
+    if (form == ".graphml")
+        read_trace_graphml(reader, text);
+    else if (form == ".txt")
+        read_trace_text(reader, text);
+    else if (form == ".rsml")
+        read_trace_rsml(reader, text, expected);
+    else
+        read_trace_swc(reader, text);
+    const StatedSpace& stated = reader.stated;
+    if (expected) check_space(path.string(), stated, *expected);
+    TraceFile file{std::move(reader.trace), std::nullopt};
+    if (stated.size && stated.spacing && stated.unit) file.space = {*stated.size, *stated.spacing, *stated.unit};
+    return file;
+}
+
+bool is_trace_file(const std::filesystem::path& path)
+{
+    const std::string form = extension_of(path);
+    return form == ".graphml" || form == ".txt" || form == ".swc" || form == ".rsml";
+}
+
+}  // namespace shvr

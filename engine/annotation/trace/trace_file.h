@@ -1,0 +1,52 @@
+#pragma once
+// Traces in files. The extension says which form:
+//
+//   .graphml  all there is, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
+//   .txt      the thesis's lines "-v x, y, z, group, radius" and "-l node, node, group"; nodes count from 0
+//   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
+//   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
+//
+// Positions and radii are in the volume's unit, but RSML counts in pixels: we write voxels along x, and convert from other
+// units of length. The way there and back costs the last bit or two. An internode has no group of its own in SWC and RSML,
+// and only GraphML keeps numbers and the sizes of groups.
+//
+// Files come from strangers: every refusal is one sentence with file, line or element, value and what was expected.
+// Any thread may call these.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/annotation/trace/tracing.h"
+
+namespace shvr {
+
+/// The volume that a trace belongs to.
+struct TraceSpace {
+    Size3 size{0};
+    glm::dvec3 spacing{1.0};
+    std::string unit = "voxel";
+    bool operator==(const TraceSpace&) const = default;
+};
+TraceSpace space_of(const VolumeInfo& volume);
+
+/// What to do with loops in a form that holds trees. Broken: of each loop the internode with the largest number is left
+/// out, so that the earliest drawn stay; which ones is said in a comment of the file and returned.
+enum class Loops { refuse, break_open };
+
+/// Written as `write_file_atomically` does. Returns a sentence for each thing that was left out.
+std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
+                                    Loops loops = Loops::refuse);
+
+struct TraceFile {
+    TraceGraph trace;
+    std::optional<TraceSpace> space;  ///< where the file states all of it
+};
+/// At most 256 MiB and 4 million nodes. Fails where a stated size, spacing or unit (RSML: no length) is not `expected`'s.
+TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
+
+/// Whether `load_trace` knows the extension.
+bool is_trace_file(const std::filesystem::path& path);
+
+}  // namespace shvr

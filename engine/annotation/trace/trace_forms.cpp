@@ -1,0 +1,160 @@
+#include "engine/annotation/trace/trace_forms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr size_t MOST_NODES = 4'000'000;
+/// Far beyond any volume in any unit, and far below where squares overflow.
+constexpr double FARTHEST = 1e15;
+
+std::optional<double> finite_of(std::string_view word)
+{
+    const std::optional<double> value = number_of(word);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// Sets of nodes that are joined (union by linking roots, halving paths).
+class Joined {
+public:
+    uint32_t root_of(uint32_t node)
+    {
+        auto at = parents_.try_emplace(node, node).first;
+        while (at->second != at->first) {
+            const auto above = parents_.find(at->second);
+            at->second = above->second;
+            at = above;
+        }
+        return at->first;
+    }
+    /// False where the two were joined already.
+    bool join(uint32_t a, uint32_t b)
+    {
+        const uint32_t low = std::min(root_of(a), root_of(b)), high = std::max(root_of(a), root_of(b));
+        parents_[high] = low;
+        return low != high;
+    }
+
+private:
+    std::map<uint32_t, uint32_t> parents_;
+};
+
+}  // namespace
+
+uint32_t TraceReader::add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number)
+{
+    if (trace.nodes().size() == MOST_NODES) fail(where, ": is one node too many; expected at most ", MOST_NODES);
+    if (!number && trace.next_node() >> 32 != 0) fail(where, ": no number is left for this node");
+    const uint32_t given = number.value_or(uint32_t(trace.next_node()));
+    if (trace.nodes().contains(given)) fail(where, ": node ", given, " is there already; expected each node once");
+    trace.apply(TraceNodeChange{given, {}, node}, Direction::forwards);
+    return given;
+}
+
+void TraceReader::add_internode(const std::string& where, const TraceInternode& internode,
+                                std::optional<uint32_t> number)
+{
+    for (const uint32_t end : {internode.a, internode.b})
+        if (!trace.nodes().contains(end))
+            fail(where, ": node ", end, " does not exist; expected one of the file's ", trace.nodes().size(), " nodes");
+    if (internode.a == internode.b)
+        fail(where, ": joins node ", internode.a, " with itself; expected two different nodes");
+    if (trace.internode_between(internode.a, internode.b))
+        fail(where, ": joins nodes ", internode.a, " and ", internode.b, " a second time; expected each link once");
+    if (!number && trace.next_internode() >> 32 != 0) fail(where, ": no number is left for this internode");
+    const uint32_t given = number.value_or(uint32_t(trace.next_internode()));
+    if (trace.internodes().contains(given))
+        fail(where, ": internode ", given, " is there already; expected each internode once");
+    trace.apply(TraceInternodeChange{given, {}, internode}, Direction::forwards);
+}
+
+double TraceReader::coordinate(const std::string& where, const char* field, std::string_view word) const
+{
+    const std::optional<double> value = finite_of(word);
+    if (!value || std::abs(*value) > FARTHEST)
+        fail(where, ": ", field, " is ", in_quotes(word), "; expected a number from -1e15 to 1e15");
+    return *value;
+}
+
+double TraceReader::radius(const std::string& where, std::string_view word) const
+{
+    const std::optional<double> value = finite_of(word);
+    if (!value || *value < 0.0 || *value > FARTHEST)
+        fail(where, ": radius is ", in_quotes(word), "; expected a number from 0 to 1e15");
+    return *value;
+}
+
+uint8_t TraceReader::group(const std::string& where, std::string_view word) const
+{
+    const std::optional<int64_t> value = whole_of(word);
+    if (!value || *value < 0 || *value > 255)
+        fail(where, ": group is ", in_quotes(word), "; expected a whole number from 0 to 255");
+    return uint8_t(*value);
+}
+
+Size3 TraceReader::size(const std::string& where, std::string_view text) const
+{
+    const std::vector<std::string_view> words = words_of(text);
+    Size3 size{0};
+    for (int axis = 0; axis < 3 && words.size() == 3; ++axis) size[axis] = whole_of(words[size_t(axis)]).value_or(0);
+    if (glm::any(glm::lessThan(size, Size3(1))) || glm::any(glm::greaterThan(size, Size3(LARGEST_SIDE))))
+        fail(where, ": size is ", in_quotes(text), "; expected three whole numbers from 1 to ", LARGEST_SIDE);
+    return size;
+}
+
+glm::dvec3 TraceReader::spacing(const std::string& where, std::string_view text) const
+{
+    const std::vector<std::string_view> words = words_of(text);
+    glm::dvec3 spacing{0.0};
+    for (int axis = 0; axis < 3 && words.size() == 3; ++axis)
+        spacing[axis] = finite_of(words[size_t(axis)]).value_or(0.0);
+    if (!glm::all(glm::greaterThan(spacing, glm::dvec3(0.0))))
+        fail(where, ": spacing is ", in_quotes(text), "; expected three numbers above 0");
+    return spacing;
+}
+
+TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes)
+{
+    TraceTrees trees;
+    Joined joined;
+    for (const auto& [number, internode] : trace.internodes())
+        if (!joined.join(internode.a, internode.b)) trees.left_out.push_back(number);
+    for (const uint32_t number : trees.left_out) {
+        const TraceInternode& internode = trace.internode(number);
+        if (loops == Loops::refuse)
+            fail("the trace has ", trees.left_out.size(), " loops, one of them closed by internode ", number,
+                 " between nodes ", internode.a, " and ", internode.b, ", and ", form,
+                 " holds trees; expected no loop, or leave to break loops open");
+        notes.push_back(sentence("internode ", number, " between nodes ", internode.a, " and ", internode.b,
+                                 " is left out: it closes a loop, and ", form, " holds trees"));
+    }
+    std::set<uint32_t> seen;
+    std::vector<TraceTrees::Place> waiting;
+    for (const auto& [root, node] : trace.nodes()) {
+        if (seen.contains(root)) continue;
+        waiting.push_back({root, {}});
+        while (!waiting.empty()) {
+            const TraceTrees::Place place = waiting.back();
+            waiting.pop_back();
+            trees.places.push_back(place);
+            seen.insert(place.node);
+            const std::span<const uint32_t> internodes = trace.internodes_of(place.node);
+            for (auto number = internodes.rbegin(); number != internodes.rend(); ++number)
+                if (*number != place.internode && !std::ranges::binary_search(trees.left_out, *number))
+                    waiting.push_back({trace.internode(*number).other(place.node), *number});
+        }
+    }
+    return trees;
+}
+
+}  // namespace shvr

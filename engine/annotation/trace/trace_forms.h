@@ -1,0 +1,68 @@
+#pragma once
+// The forms that trace_file.h joins, one pair of functions each, and what they share. Text in, text out: no files.
+// Any thread may call these.
+
+#include <string>
+#include <string_view>
+
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/base/text.h"
+
+namespace shvr {
+
+std::string write_trace_text(const TraceGraph& trace);
+std::string write_trace_swc(const TraceGraph& trace, const TraceSpace& space, Loops loops,
+                            std::vector<std::string>& notes);
+std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space);
+std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, Loops loops,
+                             std::vector<std::string>& notes);
+
+/// What a file states of its volume; each may be missing.
+struct StatedSpace {
+    std::optional<Size3> size;
+    std::optional<glm::dvec3> spacing;
+    std::optional<std::string> unit;
+};
+
+/// Collects nodes and internodes from a file and refuses what no trace is. `where` begins every sentence.
+class TraceReader {
+public:
+    explicit TraceReader(std::string file) : file_(std::move(file)) {}
+
+    const std::string& file() const { return file_; }
+    /// Numbered in the order they come, unless `number` says otherwise.
+    uint32_t add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number = {});
+    void add_internode(const std::string& where, const TraceInternode& internode, std::optional<uint32_t> number = {});
+
+    double coordinate(const std::string& where, const char* field, std::string_view word) const;
+    double radius(const std::string& where, std::string_view word) const;
+    uint8_t group(const std::string& where, std::string_view word) const;
+    Size3 size(const std::string& where, std::string_view text) const;
+    glm::dvec3 spacing(const std::string& where, std::string_view text) const;
+
+    StatedSpace stated{};
+    TraceGraph trace{};
+
+private:
+    std::string file_;
+};
+
+void read_trace_text(TraceReader& reader, std::string_view text);
+void read_trace_swc(TraceReader& reader, std::string_view text);
+void read_trace_graphml(TraceReader& reader, std::string_view text);
+/// `volume`: whose unit lengths are converted to, where both are units of length.
+void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume);
+
+/// A trace as trees: every node once, parents before children.
+struct TraceTrees {
+    struct Place {
+        uint32_t node;
+        std::optional<uint32_t> internode;  ///< to the parent
+    };
+    std::vector<Place> places;         ///< depth first, roots (smallest numbers first) without an internode
+    std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
+};
+/// Fails where there are loops that are not to be broken; `form` is named ("SWC").
+TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
+
+}  // namespace shvr

@@ -1,0 +1,31 @@
+#pragma once
+// A trace as tubes of triangles: a ball for each node and a truncated cone for each internode, each of them closed and
+// seen from outside counter-clockwise. Vertices lie on the true surface, so that balls and cones are a little smaller
+// than what they stand for (a cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
+//
+//   .obj   a group "group_N" for each colour group; text
+//   .ply   binary; each face has the property `group`
+//
+// Positions are in volume space, in the unit that a comment of the file names. Any thread may call these.
+
+#include <filesystem>
+#include <vector>
+
+#include "engine/annotation/trace/trace_file.h"
+
+namespace shvr {
+
+struct TracePart {
+    uint8_t group = 0;
+    std::vector<glm::dvec3> vertices;
+    std::vector<glm::uvec3> triangles;
+};
+/// Empty where the radius is 0.
+TracePart mesh_of(const TraceNode& node);
+/// Empty where it has no length or no radius.
+TracePart mesh_of(const TraceGraph& trace, const TraceInternode& internode);
+
+/// Written as AtomicWriter does; group by group.
+void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
+
+}  // namespace shvr

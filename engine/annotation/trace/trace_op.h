@@ -1,0 +1,48 @@
+#pragma once
+// Operations on a trace: the same descriptions for scripts, the window and a stylus. Positions are voxel coordinates,
+// radii are voxels along x.
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include <glm/glm.hpp>
+
+namespace shvr {
+
+struct NodeOp {
+    glm::dvec3 at{0.0};
+    std::optional<double> radius_voxels;  ///< the probe's
+    std::optional<uint8_t> group;         ///< the probe's
+};
+struct SelectOp {
+    std::optional<glm::dvec3> near;  ///< the nearest node, or internode of the selected node
+    std::optional<uint32_t> number;  ///< where `near` is not given
+    bool is_internode = false;
+    std::optional<double> within_voxels;  ///< how far the nearest may be; any distance
+};
+struct SelectSegmentOp {};
+struct DeselectOp {};
+struct LinkOp {
+    std::optional<glm::dvec3> near;         ///< the nearest other node
+    std::optional<uint32_t> node;           ///< where `near` is not given
+    std::optional<double> within_voxels{};  ///< how far the nearest may be; any distance
+};
+struct MoveOp {
+    glm::dvec3 to{0.0};
+};
+struct DeleteOp {};
+struct GroupOp {
+    uint8_t group = 1;
+};
+struct RadiusOp {
+    enum class Of { selected, nodes, internodes };
+    Of of = Of::selected;                 ///< the others: all of `group`
+    std::optional<double> radius_voxels;  ///< nothing, of internodes only: they taper
+    uint8_t group = 0;
+};
+
+using TraceOp =
+    std::variant<NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp, RadiusOp>;
+
+}  // namespace shvr

@@ -1,0 +1,112 @@
+// RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io): every
+// tree is a plant; its first axis follows the longest way from the root, and what branches off is a root of its own below
+// the one it branches off from, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
+// `resolution` pixels to the unit.
+
+#include <algorithm>
+#include <map>
+#include "engine/annotation/trace/trace_forms.h"
+#include "engine/annotation/trace/trace_xml.h"
+
+namespace shvr {
+
+namespace {
+
+struct Branch {
+    uint32_t node;
+    double reach;  ///< length of the longest way on from here, with the way to here
+};
+
+/// The children of each node, the one with the longest way on first.
+std::map<uint32_t, std::vector<Branch>> branches_of(const TraceGraph& trace, const TraceTrees& trees)
+{
+    std::map<uint32_t, std::vector<Branch>> branches;
+    for (auto place = trees.places.rbegin(); place != trees.places.rend(); ++place) {  // children come before parents
+        std::vector<Branch>& children = branches[place->node];
+        std::reverse(children.begin(), children.end());  // as drawn
+        std::stable_sort(children.begin(), children.end(),
+                         [](const Branch& a, const Branch& b) { return a.reach > b.reach; });
+        if (!place->internode) continue;
+        const TraceInternode& internode = trace.internode(*place->internode);
+        const double on = children.empty() ? 0.0 : children.front().reach;
+        branches[internode.other(place->node)].push_back({place->node, trace.length_of(internode) + on});
+    }
+    return branches;
+}
+
+void add_text(pugi::xml_node parent, const char* name, const std::string& text)
+{
+    parent.append_child(name).text().set(text.c_str());
+}
+
+/// Along an axis, from the branch (or root) it begins at.
+void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<uint32_t>& nodes, double pixel)
+{
+    pugi::xml_node properties = root.append_child("properties");
+    add_text(properties, "group", std::to_string(trace.node(nodes.back()).group));
+    pugi::xml_node polyline = root.append_child("geometry").append_child("polyline");
+    pugi::xml_node function = root.append_child("functions").append_child("function");
+    function.append_attribute("name") = "diameter";
+    function.append_attribute("domain") = "polyline";
+    pugi::xml_node groups = function.parent().append_child("function");
+    groups.append_attribute("name") = "group";
+    groups.append_attribute("domain") = "polyline";
+    for (const uint32_t number : nodes) {
+        const TraceNode& node = trace.node(number);
+        const char* const names[] = {"x", "y", "z"};
+        pugi::xml_node point = polyline.append_child("point");
+        for (int axis = 0; axis < 3; ++axis)
+            point.append_attribute(names[axis]) = digits_of(node.position[axis] / pixel).c_str();
+        function.append_child("sample").append_attribute("value") = digits_of(2.0 * node.radius / pixel).c_str();
+        groups.append_child("sample").append_attribute("value") = int{node.group};
+    }
+}
+
+}  // namespace
+
+std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, Loops loops,
+                             std::vector<std::string>& notes)
+{
+    const TraceTrees trees = trees_of(trace, loops, "RSML", notes);
+    const auto branches = branches_of(trace, trees);
+    pugi::xml_document document;
+    pugi::xml_node rsml = document.append_child("rsml");
+    pugi::xml_node metadata = rsml.append_child("metadata");
+    add_text(metadata, "version", "1");
+    add_text(metadata, "unit", space.unit);
+    add_text(metadata, "resolution", digits_of(1.0 / space.spacing.x));
+    add_text(metadata, "software", "SHVR");
+    pugi::xml_node scene = rsml.append_child("scene");
+    struct Axis {
+        pugi::xml_node parent;
+        std::vector<uint32_t> nodes;  ///< the first one or two
+    };
+    int plants = 0, roots = 0;
+    for (const TraceTrees::Place& place : trees.places) {
+        if (place.internode) continue;
+        pugi::xml_node plant = scene.append_child("plant");
+        plant.append_attribute("ID") = ++plants;
+        std::vector<Axis> waiting{{plant, {place.node}}};
+        while (!waiting.empty()) {
+            Axis axis = std::move(waiting.back());
+            waiting.pop_back();
+            pugi::xml_node root = axis.parent.append_child("root");
+            root.append_attribute("ID") = ++roots;
+            const size_t given = axis.nodes.size();
+            while (!branches.at(axis.nodes.back()).empty())
+                axis.nodes.push_back(branches.at(axis.nodes.back()).front().node);
+            add_axis(root, trace, axis.nodes, space.spacing.x);
+            // The node that an axis begins at belongs to the axis it branches off from.
+            for (size_t i = given - 1; i < axis.nodes.size(); ++i) {
+                const std::vector<Branch>& children = branches.at(axis.nodes[i]);
+                for (size_t child = 1; child < children.size(); ++child)
+                    waiting.push_back({root, {axis.nodes[i], children[child].node}});
+            }
+        }
+    }
+    StringWriter writer;
+    document.save(writer, " ");
+    return std::move(writer.text);
+}
+
+}  // namespace shvr

@@ -1,0 +1,198 @@
+// Reading RSML (trace_rsml.cpp writes it): metadata's unit and resolution, and of each root its polyline, its functions
+// "diameter" and "group" along the polyline, and its roots. Elements and attributes beyond these are passed over, as other
+// programs have many. A root below another one begins at the parent's node where its first point lies, or is joined to the
+// nearest one of them. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution` of them make
+// one `unit`. A unit that is "pixel" is a voxel along x, and so it is where neither is stated; one that is left out is the
+// volume's, and a resolution that is left out is 1. Lengths come out in the volume's unit. Where no diameter is stated, a
+// radius is one pixel.
+
+#include <memory>
+#include "engine/annotation/trace/trace_forms.h"
+#include "engine/annotation/trace/trace_index.h"
+#include "engine/annotation/trace/trace_xml.h"
+#include "engine/base/error.h"
+#include "engine/volume/unit.h"
+
+namespace shvr {
+
+namespace {
+
+pugi::xml_node child_named(const pugi::xml_node& parent, std::string_view name)
+{
+    for (const pugi::xml_node& child : parent.children())
+        if (name_of(child) == name) return child;
+    return {};
+}
+
+/// An attribute "value", or the text.
+std::string value_of(const pugi::xml_node& node)
+{
+    const pugi::xml_attribute value = node.attribute("value");
+    return std::string(trimmed(value ? value.value() : node.text().get()));
+}
+
+class RsmlReader {
+public:
+    RsmlReader(TraceReader& reader, const std::optional<TraceSpace>& volume) : reader_(reader), volume_(volume) {}
+
+    void read(std::string_view text)
+    {
+        pugi::xml_document document;
+        const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+        const pugi::xml_node rsml = document.document_element();
+        if (!result || name_of(rsml) != "rsml")
+            fail(reader_.file(), ": cannot be read as RSML: ", result ? "it has no element rsml" : result.description(),
+                 "; expected an XML document that is whole");
+        read_metadata(child_named(rsml, "metadata"));
+        const pugi::xml_node scene = child_named(rsml, "scene");
+        if (!scene) fail(reader_.file(), ": has no element scene; expected one");
+        for (const pugi::xml_node& plant : scene.children())
+            if (name_of(plant) == "plant") read_plant(plant);
+    }
+
+private:
+    /// A root's nodes along its polyline.
+    struct Axis {
+        std::optional<uint32_t> last;
+        bool is_parent = false;
+        TraceIndex index;  ///< of all, where roots begin at them
+    };
+    struct Waiting {
+        pugi::xml_node root;
+        std::shared_ptr<Axis> parent;  ///< null: a plant's own root
+    };
+
+    void read_metadata(const pugi::xml_node& metadata)
+    {
+        const std::string text(trimmed(child_named(metadata, "resolution").text().get()));
+        const std::string unit = plain_unit(trimmed(child_named(metadata, "unit").text().get()));
+        take_unit(unit.empty() && text.empty() ? "pixel" : unit);
+        if (text.empty()) return;
+        const std::optional<double> resolution = number_of(text);
+        // Far beyond any scan, and near enough to 1 that nothing overflows.
+        if (!resolution || !(*resolution >= 1e-12) || !(*resolution <= 1e12))
+            fail(reader_.file(), ": metadata: resolution is ", in_quotes(text),
+                 "; expected pixels to the unit, a number from 1e-12 to 1e12");
+        pixels_per_unit_ = *resolution;
+    }
+
+    /// A unit that cannot be converted stays stated, which is refused where it is not the volume's.
+    void take_unit(const std::string& unit)
+    {
+        const std::string lower = lower_case(unit);
+        if (lower == "pixel" || lower == "pixels" || lower == "px") {
+            if (volume_) per_unit_ = volume_->spacing.x;
+            return;
+        }
+        if (unit.empty()) return;
+        reader_.stated.unit = unit;
+        if (!volume_ || unit == volume_->unit) return;
+        const std::optional<double> from = micrometres_in(unit), to = micrometres_in(volume_->unit);
+        if (!from || !to) return;
+        per_unit_ = *from / *to;
+        reader_.stated.unit = volume_->unit;
+    }
+
+    double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }
+
+    /// In document's order, without recursion: nesting may be deep.
+    void read_plant(const pugi::xml_node& plant)
+    {
+        std::vector<Waiting> waiting;
+        add_roots(plant, nullptr, waiting);
+        while (!waiting.empty()) {
+            const Waiting next = std::move(waiting.back());
+            waiting.pop_back();
+            const std::shared_ptr<Axis> axis = read_root(next.root, next.parent.get());
+            add_roots(next.root, axis, waiting);
+        }
+    }
+
+    static void add_roots(const pugi::xml_node& parent, const std::shared_ptr<Axis>& axis,
+                          std::vector<Waiting>& waiting)
+    {
+        for (pugi::xml_node child = parent.last_child(); child; child = child.previous_sibling())
+            if (name_of(child) == "root") waiting.push_back({child, axis});
+    }
+
+    std::vector<std::string> samples_of(const pugi::xml_node& root, std::string_view name, size_t points) const
+    {
+        for (const pugi::xml_node& function : child_named(root, "functions").children()) {
+            if (name_of(function) != "function" || function.attribute("name").value() != name) continue;
+            // Along the length, or at equal distances: no sample is of a point.
+            if (std::string_view(function.attribute("domain").value()) != "polyline") continue;
+            std::vector<std::string> samples;
+            for (const pugi::xml_node& sample : function.children())
+                if (name_of(sample) == "sample") samples.push_back(value_of(sample));
+            if (samples.size() == points) return samples;
+        }
+        return {};
+    }
+
+    std::shared_ptr<Axis> read_root(const pugi::xml_node& root, Axis* parent)
+    {
+        const char* id = root.attribute("ID") ? root.attribute("ID").value() : root.attribute("id").value();
+        const std::string where = reader_.file() + ": root " + in_quotes(id);
+        const pugi::xml_node polyline = child_named(child_named(root, "geometry"), "polyline");
+        std::vector<pugi::xml_node> points;
+        for (const pugi::xml_node& point : polyline.children())
+            if (name_of(point) == "point") points.push_back(point);
+        if (points.empty()) fail(where, ": has no geometry with a polyline of points; expected one");
+        const std::vector<std::string> diameters = samples_of(root, "diameter", points.size());
+        const std::vector<std::string> groups = samples_of(root, "group", points.size());
+        const std::string group = group_of(root);
+        const auto axis = std::make_shared<Axis>();
+        axis->is_parent = bool(child_named(root, "root"));
+        for (size_t i = 0; i < points.size(); ++i) {
+            TraceNode node{position_of(where, points[i]), length(1.0),
+                           reader_.group(where, groups.empty() ? group : groups[i])};
+            if (!diameters.empty()) node.radius = length(0.5 * reader_.radius(where, diameters[i]));
+            add_point(where, node, i == 0 ? parent : nullptr, *axis);
+        }
+        return axis;
+    }
+
+    /// The first point of a root below another one has a `parent`.
+    void add_point(const std::string& where, const TraceNode& node, Axis* parent, Axis& axis)
+    {
+        std::optional<uint32_t> number;
+        if (parent) {
+            axis.last = parent->index.nearest(node.position);
+            if (reader_.trace.node(*axis.last).position == node.position) number = axis.last;
+        }
+        if (!number) {
+            number = reader_.add_node(where, node);
+            if (axis.last) reader_.add_internode(where, {*axis.last, *number, node.group});
+        }
+        axis.last = number;
+        if (axis.is_parent) axis.index.set(*number, node.position);
+    }
+
+    static std::string group_of(const pugi::xml_node& root)
+    {
+        const std::string group = value_of(child_named(child_named(root, "properties"), "group"));
+        return group.empty() ? "1" : group;
+    }
+
+    glm::dvec3 position_of(const std::string& where, const pugi::xml_node& point) const
+    {
+        const auto coordinate = [&](const char* name, const char* otherwise) {
+            return length(reader_.coordinate(where, name, point.attribute(name).as_string(otherwise)));
+        };
+        return {coordinate("x", ""), coordinate("y", ""), coordinate("z", "0")};
+    }
+
+    TraceReader& reader_;
+    const std::optional<TraceSpace>& volume_;
+    double pixels_per_unit_ = 1.0;
+    double per_unit_ = 1.0;  ///< the volume's units to one of the file's
+};
+
+}  // namespace
+
+void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume)
+{
+    RsmlReader(reader, volume).read(text);
+}
+
+}  // namespace shvr

@@ -1,0 +1,29 @@
+#pragma once
+// Segments of a trace: chains of internodes between two nodes that are a branch (three or more internodes) or an end
+// (one), and loops that no such node lies on. Every internode belongs to exactly one segment. Any thread may call these.
+
+#include <set>
+#include <vector>
+
+#include "engine/annotation/trace/tracing.h"
+
+namespace shvr {
+
+struct TraceSegment {
+    std::vector<uint32_t> nodes;       ///< along the segment, one more than internodes; of a loop the last is the first
+    std::vector<uint32_t> internodes;  ///< in that order
+    bool is_loop() const { return nodes.front() == nodes.back(); }
+};
+
+/// The segment that an internode belongs to. It also ends at `stops`.
+TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const std::set<uint32_t>& stops = {});
+/// All of them, by their smallest internode. Nodes without internodes belong to none.
+std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
+
+/// What acting on the segment acts on: its internodes, and its nodes but for branches, which other segments share.
+TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
+
+/// The shortest way from a point to an internode.
+double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
+
+}  // namespace shvr

@@ -1,0 +1,130 @@
+#pragma once
+// The trace: a graph of nodes along the centre lines of tubes and of internodes that join two of them. Loops are
+// allowed; a node joined to itself, or two nodes joined twice, are not. Positions and radii are in volume space
+// (physical, the volume's unit). Like the mask, the trace changes through records of exact before and after values and
+// through nothing else. What is selected is not annotation and needs no record, but commands may carry it.
+//
+// Numbers of nodes and internodes are given once and never again, not even after an undo.
+//
+// Not thread safe: one thread owns a trace (the main one) and lends it as const.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/annotation/mask.h"
+#include "engine/annotation/trace/trace_index.h"
+
+namespace shvr {
+
+struct TraceNode {
+    glm::dvec3 position{0.0};  ///< volume space
+    double radius = 1.0;       ///< the volume's unit, 0 or more
+    uint8_t group = 1;
+    bool operator==(const TraceNode&) const = default;
+};
+
+struct TraceInternode {
+    uint32_t a = 0, b = 0;  ///< its nodes
+    uint8_t group = 1;
+    bool operator==(const TraceInternode&) const = default;
+    uint32_t other(uint32_t node) const { return node == a ? b : a; }
+};
+
+/// One node, one internode, or the nodes and internodes of a segment; ascending.
+struct TraceSelection {
+    std::vector<uint32_t> nodes, internodes;
+    bool operator==(const TraceSelection&) const = default;
+    bool empty() const { return nodes.empty() && internodes.empty(); }
+    /// The node, where exactly one and nothing else is selected.
+    std::optional<uint32_t> node() const;
+    std::optional<uint32_t> internode() const;
+};
+
+/// Added where there is no `before`, removed where there is no `after`.
+struct TraceNodeChange {
+    uint32_t node = 0;
+    std::optional<TraceNode> before, after;
+    bool operator==(const TraceNodeChange&) const = default;
+};
+/// The same; what stays keeps its nodes.
+struct TraceInternodeChange {
+    uint32_t internode = 0;
+    std::optional<TraceInternode> before, after;
+    bool operator==(const TraceInternodeChange&) const = default;
+};
+/// The radius of all internodes of a group; nothing: they taper from node to node.
+struct TraceSizeChange {
+    uint8_t group = 0;
+    std::optional<double> before, after;
+    bool operator==(const TraceSizeChange&) const = default;
+};
+/// Selects without asking what is selected. A command that changes the selection begins with one whose `after` is empty
+/// and ends with one whose `before` is: in both directions nothing is selected that is not there.
+struct TraceSelectionChange {
+    TraceSelection before, after;
+    bool operator==(const TraceSelectionChange&) const = default;
+};
+using TraceChange = std::variant<TraceNodeChange, TraceInternodeChange, TraceSizeChange, TraceSelectionChange>;
+
+class TraceGraph {
+public:
+    const std::map<uint32_t, TraceNode>& nodes() const { return nodes_; }
+    const std::map<uint32_t, TraceInternode>& internodes() const { return internodes_; }
+    const std::map<uint8_t, double>& internode_radii() const { return internode_radii_; }
+    const TraceNode& node(uint32_t number) const;
+    const TraceInternode& internode(uint32_t number) const;
+    /// Ascending; empty for a node that stands alone.
+    std::span<const uint32_t> internodes_of(uint32_t node) const;
+    std::optional<uint32_t> internode_between(uint32_t a, uint32_t b) const;
+    double length_of(const TraceInternode& internode) const;
+    /// At the share `t` (0 ... 1) of the way from a to b.
+    double radius_of(const TraceInternode& internode, double t) const;
+
+    /// The numbers that come next: larger than any that was ever applied.
+    uint64_t next_node() const { return next_node_; }
+    uint64_t next_internode() const { return next_internode_; }
+    /// Passes over numbers below these; what a file remembers of nodes that are gone.
+    void reserve_numbers(uint64_t next_node, uint64_t next_internode);
+
+    /// The node nearest to a position; the smallest number of several equally near. Nothing where there is none.
+    std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
+
+    const TraceSelection& selection() const { return selection_; }
+    /// What is selected must be there (SHVR_CHECK).
+    void select(TraceSelection selection);
+
+    /// Why a record cannot be applied: the trace must hold what it says, a removed node has no internodes, an internode
+    /// joins two nodes that are there and not joined yet, what is selected is there. Empty where it fits.
+    std::string misfit(const TraceChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK). What is removed is no longer selected.
+    void apply(const TraceChange& change, Direction direction);
+
+    /// Equal nodes, internodes and sizes; neither the selection nor the numbers to come.
+    friend bool operator==(const TraceGraph& left, const TraceGraph& right);
+
+private:
+    std::string misfit_of(const TraceNodeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceInternodeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceSizeChange& change, bool forwards) const;
+    std::string misfit_of(const TraceSelectionChange& change, bool forwards) const;
+    void set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to);
+    void set_internode(uint32_t number, const std::optional<TraceInternode>& from,
+                       const std::optional<TraceInternode>& to);
+
+    std::map<uint32_t, TraceNode> nodes_;
+    std::map<uint32_t, TraceInternode> internodes_;
+    std::map<uint32_t, std::vector<uint32_t>> internodes_of_;  ///< of nodes that have any
+    std::map<uint8_t, double> internode_radii_;
+    uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
+    TraceSelection selection_;
+    TraceIndex index_;
+};
+
+}  // namespace shvr

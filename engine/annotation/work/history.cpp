@@ -1,0 +1,174 @@
+#include "engine/annotation/work/history.h"
+
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+namespace {
+
+/// The part of the document that a kind of change is about.
+Mask& part_for(Document& document, const MaskBrickChange&)
+{
+    return document.mask;
+}
+DensityField& part_for(Document& document, const DensityBrickChange&)
+{
+    return document.density;
+}
+TraceGraph& part_for(Document& document, const TraceChange&)
+{
+    return document.trace;
+}
+
+Direction opposite(Direction direction)
+{
+    return direction == Direction::forwards ? Direction::backwards : Direction::forwards;
+}
+
+/// The i-th change to be applied.
+const Change& in_order(std::span<const Change> changes, size_t i, Direction direction)
+{
+    return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
+}
+
+}  // namespace
+
+void apply(Document& document, const Change& change, Direction direction)
+{
+    std::visit([&](const auto& record) { part_for(document, record).apply(record, direction); }, change);
+}
+
+void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
+{
+    for (size_t i = 0; i < changes.size(); ++i) {
+        const Change& change = in_order(changes, i, direction);
+        const std::string misfit = std::visit(
+            [&](const auto& record) { return part_for(document, record).misfit(record, direction); }, change);
+        if (misfit.empty()) {
+            apply(document, change, direction);
+            continue;
+        }
+        while (i > 0) apply(document, in_order(changes, --i, direction), opposite(direction));
+        fail(misfit);
+    }
+}
+
+uint64_t memory_of(std::span<const Change> changes)
+{
+    uint64_t bytes = changes.size_bytes();
+    for (const Change& change : changes) {
+        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) bytes += mask->runs.size() * sizeof(MaskRun);
+        if (const auto* density = std::get_if<DensityBrickChange>(&change))
+            bytes += density->runs.size() * sizeof(DensityRun);
+    }
+    return bytes;
+}
+
+void History::push(Entry entry)
+{
+    while (commands_.size() > done_) {
+        memory_ -= commands_.back().memory;
+        commands_.pop_back();
+    }
+    dropped_ = std::min(dropped_, done_);
+    memory_ += entry.memory;
+    commands_.push_back(std::move(entry));
+}
+
+void History::perform(Document& document, Command command, RecordNumber record)
+{
+    if (command.changes.empty()) return;
+    for (const Change& change : command.changes) apply(document, change, Direction::forwards);
+    const uint64_t memory = memory_of(command.changes);
+    push({std::move(command), {record}, memory});
+    ++done_;
+}
+
+void History::extend(Document& document, std::vector<Change> changes, RecordNumber record)
+{
+    SHVR_CHECK(done_ > 0 && done_ == commands_.size(), done_, " of ", commands_.size());
+    Entry& entry = commands_.back();
+    bring(entry);
+    const uint64_t memory = memory_of(changes);
+    entry.memory += memory;
+    memory_ += memory;
+    entry.records.push_back(record);
+    for (Change& change : changes) {
+        apply(document, change, Direction::forwards);
+        entry.command.changes.push_back(std::move(change));
+    }
+}
+
+const Command* History::undo(Document& document)
+{
+    if (done_ == 0) return nullptr;
+    Entry& entry = commands_[done_ - 1];
+    bring(entry);
+    apply_if_it_fits(document, entry.command.changes, Direction::backwards);
+    --done_;
+    return &entry.command;
+}
+
+const Command* History::redo(Document& document)
+{
+    if (done_ == commands_.size()) return nullptr;
+    Entry& entry = commands_[done_];
+    bring(entry);
+    apply_if_it_fits(document, entry.command.changes, Direction::forwards);
+    ++done_;
+    return &entry.command;
+}
+
+void History::note(std::string label, RecordNumber record)
+{
+    push({{std::move(label), {}}, {record}, 0, false});
+    ++done_;
+}
+
+void History::note_extension(RecordNumber record)
+{
+    if (done_ == 0 || done_ != commands_.size()) fail("a stroke goes on that is not the last command");
+    commands_.back().records.push_back(record);
+}
+
+void History::note_undo()
+{
+    if (done_ == 0) fail("more is undone than was done");
+    --done_;
+}
+
+void History::note_redo()
+{
+    if (done_ == commands_.size()) fail("more is done again than was undone");
+    ++done_;
+}
+
+void History::bring(Entry& entry)
+{
+    if (entry.is_here) return;
+    std::vector<Change> changes;
+    for (const RecordNumber record : entry.records)
+        for (Change& change : fetch_(record)) changes.push_back(std::move(change));
+    entry.command.changes = std::move(changes);
+    entry.memory = memory_of(entry.command.changes);
+    entry.is_here = true;
+    memory_ += entry.memory;
+    dropped_ = 0;
+}
+
+void History::shrink(uint64_t most_bytes, RecordNumber durable)
+{
+    // The command done last may go on, and its caller may look at it.
+    for (; memory_ > most_bytes && dropped_ + 1 < done_; ++dropped_) {
+        Entry& entry = commands_[dropped_];
+        if (entry.records.back() == 0 || entry.records.back() > durable) return;
+        if (!entry.is_here) continue;
+        memory_ -= std::exchange(entry.memory, 0);
+        entry.command.changes = {};
+        entry.is_here = false;
+    }
+}
+
+}  // namespace shvr

@@ -1,0 +1,265 @@
+#include "engine/annotation/work/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <utility>
+
+#include "engine/base/atomic_writer.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds SYNC_INTERVAL{100};
+constexpr std::chrono::seconds RETRY_INTERVAL{1};
+
+/// 0, or the error's number.
+int write_all(int file, uint64_t at, std::span<const std::byte> bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t count = ::pwrite(file, bytes.data(), bytes.size(), off_t(at));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return errno;
+        if (count == 0) return ENOSPC;
+        at += uint64_t(count);
+        bytes = bytes.subspan(size_t(count));
+    }
+    return 0;
+}
+
+int sync(int file)
+{
+    while (::fdatasync(file) != 0)
+        if (errno != EINTR) return errno;
+    return 0;
+}
+
+FileDescriptor opened(const fs::path& path)
+{
+    FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666));
+    if (!file) fail(path.string(), ": cannot be written: ", reason_of(errno));
+    // Some network file systems know no locks.
+    if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        throw JournalTaken(sentence(path.string(), ": another process annotates this; expected to be the only one"));
+    return file;
+}
+
+/// The first of .rest1, .rest2, ... that is not there.
+fs::path free_rest(const fs::path& path)
+{
+    for (int number = 1;; ++number) {
+        fs::path rest = path;
+        rest += sentence(".rest", number);
+        std::error_code ignored;
+        if (!fs::exists(fs::symlink_status(rest, ignored))) return rest;
+    }
+}
+
+}  // namespace
+
+Journal::Journal(const fs::path& path, JournalScan before)
+    : path_(path), file_(opened(path)), end_(before.end), checksum_(before.checksum())
+{
+    records_ = std::move(before.records);
+    last_ = records_.size();
+    struct stat status {};
+    if (::fstat(file_.number(), &status) != 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
+    const bool was_there = before.inode != 0;
+    if (uint64_t(status.st_size) != before.file_bytes || (was_there && status.st_ino != before.inode))
+        throw JournalTaken(sentence(path.string(), ": another process has written it since it was read; expected ",
+                                    before.file_bytes, " bytes: open it again"));
+    try {
+        if (end_ == 0 || end_ < before.file_bytes) begin(free_rest(path));
+    } catch (...) {
+        if (!was_there) ::unlink(path.c_str());
+        throw;
+    }
+    thread_ = std::thread([this] { write(); });
+}
+
+void Journal::begin(const fs::path& rest)
+{
+    const auto check = [&](int error) {
+        if (error != 0) fail(path_.string(), ": cannot be written: ", reason_of(error));
+    };
+    struct stat status {};
+    check(::fstat(file_.number(), &status) == 0 ? 0 : errno);
+    if (const auto bytes = uint64_t(status.st_size); bytes > end_) {
+        AtomicWriter writer(rest);
+        std::vector<std::byte> piece(size_t{1} << 20);
+        for (uint64_t at = end_; at < bytes;) {
+            const ssize_t count = ::pread(file_.number(), piece.data(), piece.size(), off_t(at));
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) fail(path_.string(), ": cannot be read: ", reason_of(count < 0 ? errno : EIO));
+            writer.append(std::span(piece).first(size_t(count)));
+            at += uint64_t(count);
+        }
+        writer.commit();
+        check(::ftruncate(file_.number(), off_t(end_)) == 0 ? 0 : errno);
+    }
+    if (end_ == 0) {
+        const std::vector<std::byte> header = journal_header();
+        check(write_all(file_.number(), 0, header));
+        end_ = header.size();
+    }
+    check(sync(file_.number()));
+    sync_folder(path_);
+}
+
+Journal::~Journal()
+{
+    {
+        const std::scoped_lock lock(mutex_);
+        is_ending_ = true;
+    }
+    appended_.notify_all();
+    thread_.join();
+}
+
+RecordNumber Journal::append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about)
+{
+    if (content.size() > MOST_RECORD_BYTES)
+        fail(label, ": changes so much that its record has ", content.size(), " bytes; expected at most ",
+             MOST_RECORD_BYTES);
+    const std::scoped_lock lock(mutex_);
+    waiting_bytes_ += content.size();
+    queue_.push_back(
+        {.record = {.kind = kind, .label = std::move(label), .about = about}, .bytes = std::move(content)});
+    appended_.notify_all();
+    return ++last_;
+}
+
+void Journal::flush()
+{
+    std::unique_lock lock(mutex_);
+    const RecordNumber target = last_;
+    if (records_.size() >= target) return;
+    // A try that runs already may have begun without what was appended last.
+    const uint64_t enough = tries_ + 2;
+    ++flushing_;
+    appended_.notify_all();
+    tried_.wait(lock, [&] { return records_.size() >= target || (tries_ >= enough && !failure_.empty()); });
+    --flushing_;
+    if (records_.size() < target) fail(failure_);
+}
+
+RecordNumber Journal::durable() const
+{
+    const std::scoped_lock lock(mutex_);
+    return records_.size();
+}
+
+std::string Journal::failure() const
+{
+    const std::scoped_lock lock(mutex_);
+    return failure_;
+}
+
+uint64_t Journal::bytes() const
+{
+    const std::scoped_lock lock(mutex_);
+    return end_ + waiting_bytes_;
+}
+
+RecordNumber Journal::last() const
+{
+    const std::scoped_lock lock(mutex_);
+    return last_;
+}
+
+std::vector<std::byte> Journal::read(RecordNumber number) const
+{
+    std::unique_lock lock(mutex_);
+    SHVR_CHECK(number >= 1 && number <= records_.size(), number);
+    const JournalRecord record = records_[number - 1];
+    lock.unlock();
+    return content_of(record, file_, path_);
+}
+
+void Journal::frame_all(std::deque<Waiting>& waiting)
+{
+    for (Waiting& one : waiting) {
+        if (std::exchange(one.is_framed, true)) continue;
+        one.bytes = framed(one.record, one.bytes, checksum_);
+    }
+}
+
+std::string Journal::write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const
+{
+    for (; first < waiting.size(); ++first) {
+        if (const int error = write_all(file_.number(), at, waiting[first].bytes); error != 0)
+            return sentence(path_.string(), ": cannot be written: ", reason_of(error),
+                            "; what is done is kept in memory, and writing is tried again");
+        at += waiting[first].bytes.size();
+    }
+    return {};
+}
+
+void Journal::write()
+{
+    std::deque<Waiting> waiting;  // not synced
+    size_t written = 0;           // of them
+    uint64_t written_bytes = 0;
+    Clock::time_point next_sync = Clock::now(), next_try = next_sync;
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        const auto is_asked = [&] { return !queue_.empty() || is_ending_ || flushing_ > 0; };
+        if (waiting.empty())
+            appended_.wait(lock, [&] { return !queue_.empty() || is_ending_; });
+        else if (!failure_.empty())
+            appended_.wait_until(lock, next_try, [&] { return is_ending_ || flushing_ > 0; });
+        else
+            appended_.wait_until(lock, next_sync, is_asked);
+        const bool is_last = is_ending_, is_due = flushing_ > 0 || is_ending_ || Clock::now() >= next_sync;
+        for (Waiting& one : queue_) waiting.push_back(std::move(one));
+        queue_.clear();
+        const uint64_t begin = end_;
+        lock.unlock();
+
+        frame_all(waiting);
+        std::string failure = write_from(begin + written_bytes, waiting, written);
+        if (failure.empty()) {
+            for (; written < waiting.size(); ++written) written_bytes += waiting[written].bytes.size();
+            if (is_due && written > 0) {
+                if (const int error = sync(file_.number()); error != 0)
+                    failure = sentence(path_.string(), ": cannot be synced: ", reason_of(error),
+                                       "; what is done is kept in memory, and writing is tried again");
+                next_sync = Clock::now() + SYNC_INTERVAL;
+            }
+        }
+        if (!failure.empty()) {
+            // Half a record would be in the way of readers, and what could not be synced may not be there.
+            static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
+            written = 0;
+            written_bytes = 0;
+            next_try = Clock::now() + RETRY_INTERVAL;
+        }
+
+        lock.lock();
+        failure_ = failure;
+        if (failure.empty() && is_due) {
+            for (Waiting& one : waiting) {
+                waiting_bytes_ -= one.record.bytes;
+                one.record.content_at = end_ + one.bytes.size() - one.record.stored_bytes;
+                end_ += one.bytes.size();
+                records_.push_back(std::move(one.record));
+            }
+            waiting.clear();
+            written = 0;
+            written_bytes = 0;
+        }
+        ++tries_;
+        tried_.notify_all();
+        if (is_last) return;
+    }
+}
+
+}  // namespace shvr

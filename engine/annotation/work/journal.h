@@ -1,0 +1,87 @@
+#pragma once
+// The journal: every command of a person, appended to a file as it happens. A thread of its own writes what was appended
+// at once (a killed program loses what came in the last milliseconds) and syncs it at most every 100 ms (a power cut loses
+// no more than that and the time the disk takes).
+//
+//   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
+//
+// While the disk refuses, nothing is lost and nobody waits: what was appended stays in memory, `failure` says why, and it
+// is tried again every second. One journal is written by one process: it holds a lock on the file, which ends with it.
+//
+// One thread appends; any may ask.
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "engine/annotation/work/journal_file.h"
+#include "engine/base/error.h"
+
+namespace shvr {
+
+/// Somebody else writes the journal, or has written it since it was read.
+class JournalTaken : public Error {
+public:
+    using Error::Error;
+};
+
+class Journal {
+public:
+    /// Goes on after the prefix that `before` found; what comes after that is kept as JOURNAL.rest1, .rest2 and so on. Fails
+    /// where the file cannot be made or written, with JournalTaken where it is another's.
+    Journal(const std::filesystem::path& path, JournalScan before);
+    /// Tries to write what is left.
+    ~Journal();
+    Journal(const Journal&) = delete;
+
+    /// Fails where the content is larger than MOST_RECORD_BYTES.
+    RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
+    /// The number of the record that was appended last.
+    RecordNumber last() const;
+    /// Waits until all that was appended is on the disk; fails with the reason why it is not.
+    void flush();
+    /// All records up to this one are on the disk.
+    RecordNumber durable() const;
+    /// Why nothing can be written at present; empty where it can.
+    std::string failure() const;
+    /// Of the file, with what waits for it (uncompressed).
+    uint64_t bytes() const;
+
+    /// A durable record's.
+    std::vector<std::byte> read(RecordNumber number) const;
+
+private:
+    struct Waiting {
+        JournalRecord record;
+        std::vector<std::byte> bytes;  ///< the content, then the frame
+        bool is_framed = false;
+    };
+    void write();
+    /// Those that wait, from the first that is not framed on, get their frames.
+    void frame_all(std::deque<Waiting>& waiting);
+    /// Empty where all went well.
+    std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
+    void begin(const std::filesystem::path& rest);
+
+    std::filesystem::path path_;
+    FileDescriptor file_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable appended_, tried_;
+    std::deque<Waiting> queue_;
+    std::vector<JournalRecord> records_;  ///< the durable ones
+    RecordNumber last_ = 0;               ///< appended
+    uint64_t end_ = 0;                    ///< of what is durable
+    uint64_t waiting_bytes_ = 0;
+    uint64_t tries_ = 0;
+    int flushing_ = 0;
+    bool is_ending_ = false;
+    std::string failure_;
+
+    uint64_t checksum_ = 0;  ///< of the last framed record; the thread's
+    std::thread thread_;
+};
+
+}  // namespace shvr

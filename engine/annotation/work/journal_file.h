@@ -1,0 +1,79 @@
+#pragma once
+// The journal's file: 16 bytes ("SHVRJRNL", a version, zeros), then records without end, each of
+//
+//     kind 4 | flags 2 | label's length 2 | stored length 8 | length 8 | about 8 | checksum 8 | label | content
+//
+// little-endian. Flag 1: the content is a zstd frame. The checksum is XXH3-64 of all of the record but itself, seeded with
+// the checksum of the record before, so that records hold in their order or not at all. What a reader takes is the longest
+// prefix that holds. Kinds from 128 on are additions that a reader may pass over; an unknown kind below is a newer
+// program's, and refused. A record's number is its place in the file, from 1.
+//
+// Any thread may call these.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/annotation/work/history.h"
+#include "engine/base/file.h"
+
+namespace shvr {
+
+enum class RecordKind : uint32_t {
+    subject = 1,  ///< JournalSubject; the first record of every journal, and nowhere else
+    state,        ///< the whole document after record `about`
+    command,      ///< label, changes
+    extension,    ///< changes that go on with the command before
+    undo,
+    redo,
+    saving,  ///< from here on the saved files may be those before or those after
+    saved,   ///< SavedFiles
+};
+constexpr uint32_t FIRST_ADDITION = 128;
+
+struct JournalRecord {
+    RecordKind kind{};
+    std::string label;
+    RecordNumber about = 0;
+    uint64_t content_at = 0;  ///< in the file
+    uint64_t stored_bytes = 0;
+    uint64_t bytes = 0;
+    bool is_compressed = false;
+    uint64_t checksum = 0;
+};
+
+/// What a file holds of a journal: nothing, where there is no file.
+struct JournalScan {
+    std::vector<JournalRecord> records;
+    uint64_t end = 0;         ///< of the prefix that holds
+    uint64_t file_bytes = 0;  ///< with what comes after it
+    uint64_t inode = 0;       ///< 0: there is no file
+
+    /// Of the last record; 0 where there is none.
+    uint64_t checksum() const { return records.empty() ? 0 : records.back().checksum; }
+    /// Keeps the first so many records.
+    void cut(size_t count);
+};
+
+/// More than a machine of this size paints at once; a claim of more is refused before memory is taken.
+constexpr uint64_t MOST_RECORD_BYTES = uint64_t{1} << 30;
+
+/// Fails where the file is no journal, or a newer program's, or cannot be read.
+JournalScan scan_journal(const std::filesystem::path& path);
+
+/// The content of a record. Fails where the file no longer holds it.
+std::vector<std::byte> content_of(const JournalRecord& record, const FileDescriptor& file,
+                                  const std::filesystem::path& path);
+
+/// The 16 bytes.
+std::vector<std::byte> journal_header();
+/// A record's bytes. `checksum`: of the record before; becomes this one's. Fills in what `record` does not know.
+std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> content, uint64_t& checksum);
+
+/// XXH3-64 of a file's bytes, or of all files of a folder with their names; nothing where there is none.
+std::optional<uint64_t> file_digest(const std::filesystem::path& path);
+
+}  // namespace shvr

@@ -1,0 +1,28 @@
+#pragma once
+// What a brush would change if its button were pressed now, as bits of the box around those voxels: the set that is drawn
+// before anything is painted. Pure; any thread.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/annotation/work/history.h"
+
+namespace shvr {
+
+struct PaintPreview {
+    VoxelBox box;  ///< the smallest that holds them; empty where there are none
+    std::vector<uint32_t>
+        words;           ///< rows of words_per_row(), y next, z last; bit b of word w is x = lower.x + 32 w + b
+    int64_t voxels = 0;  ///< how many there are; at most 256^3, as in a brush's region
+    enum class Kind { group, density, erase };
+    Kind kind = Kind::group;  ///< erase: voxels lose their group, or their offset
+
+    bool contains(const Size3& voxel) const;
+    int64_t words_per_row() const { return (box.size().x + 31) / 32; }
+};
+
+/// The voxels that `changes` of a volume of that size give another group or another offset.
+PaintPreview preview_of(std::span<const Change> changes, const Size3& volume_size, PaintPreview::Kind kind);
+
+}  // namespace shvr

@@ -1,0 +1,41 @@
+#pragma once
+// Scripts of `shvr annotate`: one JSON object a line, blank lines and lines starting with // are skipped. The same
+// structs are what the window sends, so that keys, menus, scripts and a stylus share one language.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "engine/annotation/brush.h"
+#include "engine/annotation/trace/trace_op.h"
+
+namespace shvr {
+
+struct UndoOp {
+    int count = 1;
+};
+struct RedoOp {
+    int count = 1;
+};
+struct SaveOp {};
+struct ExpectOp {
+    std::map<uint8_t, int64_t> voxels_in_group;
+    std::optional<int64_t> voxels_with_offset{};
+    std::optional<int64_t> nodes;
+    std::optional<int64_t> internodes;
+};
+using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
+                              RadiusOp, UndoOp, RedoOp, SaveOp, ExpectOp>;
+
+struct ScriptLine {
+    int number = 0;  ///< from 1
+    ScriptOp op;
+};
+
+/// Reads and checks the whole script before anything runs. Errors name file, line, key, value and what was expected;
+/// unknown keys and operations are refused.
+std::vector<ScriptLine> read_script(const std::filesystem::path& path);
+
+}  // namespace shvr

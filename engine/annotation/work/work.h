@@ -1,0 +1,129 @@
+#pragma once
+// A person's work: the document, its history, the journal that keeps both, and the files it is saved to.
+//
+// The journal is the truth between sessions. Opening replays it: the last whole state in it, and what came after; so the
+// history goes on where it ended, and what was never saved is there, too. Saved files (mask, trace, offsets) are what
+// other programs read; they are taken only where there is no journal, or where somebody else has changed them since, and
+// then the journal is set aside, not removed. The journal begins with the first command: who only looks leaves no file.
+//
+// One thread, the main one. Only writing the journal happens elsewhere (journal.h).
+
+#include <filesystem>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/annotation/work/journal.h"
+#include "engine/annotation/work/journal_record.h"
+#include "engine/projects/import_volume.h"
+
+namespace shvr {
+
+struct WorkFiles {
+    std::filesystem::path journal{};                   ///< empty: what is done is in memory alone
+    std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
+    std::string volume_hash{};                         ///< Session::volume_hash
+    VolumeInfo volume{};                               ///< what is annotated
+};
+
+class Work {
+public:
+    /// Nothing is done yet, and nothing will be kept.
+    Work(const Size3& size, VoxelType type);
+    ~Work();
+    Work(const Work&) = delete;  // its history asks it for what the journal holds
+
+    enum class Start {
+        as_left,  ///< what the journal, or the saved files, hold
+        fresh,    ///< nothing; the journal there is set aside at the first command
+    };
+    /// For a Work without commands. Returns a sentence for each thing worth knowing: work that was not saved, a damaged end
+    /// of the journal, files that others have changed. Fails where a file is of another volume, or is not what it should
+    /// be; then nothing was taken.
+    std::vector<std::string> open(const WorkFiles& files, Start start = Start::as_left);
+
+    const Document& document() const { return document_; }
+    const History& history() const { return history_; }
+
+    /// As History's; into the journal first. Fail, with nothing done, where the journal cannot be begun, is another's, or
+    /// does not take the command.
+    void perform(Command command);
+    void extend(std::vector<Change> changes);
+    const Command* undo();
+    const Command* redo();
+    /// No step of the history. What is selected must be there.
+    void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
+
+    /// Writes the files, each whole or not at all, and notes it in the journal; a label image gets the groups' `looks`. What has
+    /// not changed, of trace and offsets, is left as it is. Fails where one cannot be written (a second try may succeed), and
+    /// where there is something to save and no file named for it. Returns the files it wrote.
+    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {});
+    void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
+                    const std::filesystem::path& density);
+    /// Commands, undone and redone ones included, since the last save.
+    size_t unsaved() const { return unsaved_; }
+    /// No command since has changed the trace.
+    bool trace_is_saved() const { return !touched_.trace; }
+    /// Waits until all is in the journal, on the disk; fails with the reason why it is not.
+    void flush();
+
+    struct JournalState {
+        uint64_t bytes = 0;
+        std::string failure;  ///< why nothing can be written at present; what is done waits in memory
+    };
+    JournalState journal() const;
+
+    struct Limits {
+        /// Of commands kept in memory; older ones come back from the journal.
+        uint64_t history_bytes = uint64_t{256} << 20;
+        /// After so much, or twice the last state's size, or so many steps, the journal gets a state: opening then takes as
+        /// long as reading one, and states are at most half of a journal.
+        uint64_t bytes_between_states = uint64_t{16} << 20;
+        size_t steps_between_states = 20000;
+    };
+    void set_limits(const Limits& limits) { limits_ = limits; }
+
+private:
+    Document empty_document() const;
+    void check_subject() const;
+    /// Returns why it took fewer records than the scan has, which then has no more; empty where it took all.
+    std::string replay();
+    void replay_records();
+    std::vector<std::byte> content_of(RecordNumber number) const;
+    void begin_history();
+    void load_files();
+    SavedFiles digests() const;
+    bool files_are_as_saved() const;
+    void begin_journal();
+    void set_journal_aside();
+    RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
+    void touch(std::span<const Change> changes);
+    const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
+    void note_step();
+    void keep_state();
+
+    Size3 size_;
+    VoxelType type_;
+    WorkFiles files_;
+    Document document_;
+    History history_;
+    JournalScan scan_;                       ///< as it was read; what the journal goes on from
+    std::optional<FileDescriptor> scanned_;  ///< its file
+    bool is_to_set_aside_ = false;           ///< the journal that was read is not this work's
+    bool is_fresh_ = false;                  ///< ... by the wish of who opened it
+    std::map<std::filesystem::path, std::filesystem::file_time_type> loaded_;  ///< files, as they were taken
+    std::unique_ptr<Journal> journal_;
+    size_t unsaved_ = 0;
+    struct Touched {
+        bool trace = false, density = false;
+    } touched_;  ///< since the last save
+    uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
+    size_t since_state_steps_ = 0;
+    std::future<std::vector<std::byte>> state_;  ///< being made of a copy of the document
+    RecordNumber state_about_ = 0;
+    Limits limits_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,55 @@
+#pragma once
+// Cuts a source into bricks ready for the device: 16-bit codes with an apron of one voxel (edge voxels repeated at the
+// volume's border), and the value range of every 4^3 cell as trilinear filtering sees it.
+
+#include <array>
+
+#include "engine/bricks/code_rows.h"
+#include "engine/volume/brick_key.h"
+#include "engine/volume/source.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+
+/// A brick as the device holds it. `codes` is x fastest, gpu::BRICK_TEXELS a side; voxels outside the volume repeat
+/// the nearest voxel inside. `cell_ranges` holds, for each of the gpu::BRICK_CELLS^3 cells, minimum and maximum code
+/// over every voxel that a trilinear sample inside the cell can touch (the cell's voxels and one voxel around).
+struct BrickTexels {
+    static constexpr size_t TEXELS = size_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
+    static constexpr size_t CELLS = size_t{gpu::BRICK_CELLS} * gpu::BRICK_CELLS * gpu::BRICK_CELLS;
+    std::array<uint16_t, TEXELS> codes;
+    struct Range {
+        uint16_t minimum, maximum;
+        bool operator==(const Range&) const = default;
+    };
+    std::array<Range, CELLS> cell_ranges;
+    static constexpr size_t CODE_BYTES = TEXELS * sizeof(uint16_t), RANGE_BYTES = CELLS * sizeof(Range);
+    Range range;  ///< over the whole brick, apron included
+};
+
+/// Number of bricks along each axis: ceil(size / BRICK_SIZE).
+glm::ivec3 brick_counts(const Size3& size);
+
+/// Makes single bricks, of any level. Each thread has one of its own.
+class BrickMaker {
+public:
+    BrickMaker(const VolumeSource& source, const IntensityWindow& window)
+        : source_(source), code_rows_(source.info().type, window)
+    {}
+
+    void make(const BrickKey& key, BrickTexels& texels);
+
+private:
+    const VolumeSource& source_;
+    CodeRows code_rows_;
+    std::vector<std::byte> voxels_;
+};
+
+/// Builds every brick of level 0, in order of their index (x fastest), reading the source slab by slab, each slice
+/// once: two slabs of 34 slices are held at a time, as the source gives them, and a few rows of bricks. `take` is
+/// called once per brick, on the calling thread and in order, while the next bricks are built on `threads` workers,
+/// which also read. An exception of the source or of `take` ends the work and is thrown on.
+void build_bricks(const VolumeSource& source, const IntensityWindow& window, int threads,
+                  const std::function<void(const glm::ivec3& brick, const BrickTexels& texels)>& take);
+
+}  // namespace shvr

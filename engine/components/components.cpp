@@ -1,0 +1,366 @@
+#include "engine/components/components.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/work_pool.h"
+#include "engine/components/bit_slab.h"
+#include "engine/components/component_runs.h"
+#include "engine/components/label_forest.h"
+#include "engine/volume/voxel_dispatch.h"
+
+namespace shvr {
+namespace {
+
+constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
+/// Ranges of slices for each thread, since some hold more runs than others; and the thinnest.
+constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
+
+[[noreturn]] void refuse_labels()
+{
+    fail("the voxels at or above the threshold have more than 4294967295 provisional labels; expected fewer: a higher ",
+         "threshold, or a part of the volume");
+}
+
+/// What is held, and the most that was.
+class HeldBytes {
+public:
+    void change(int64_t bytes)
+    {
+        const int64_t now = now_.fetch_add(bytes) + bytes;
+        int64_t peak = peak_.load();
+        while (now > peak && !peak_.compare_exchange_weak(peak, now)) continue;
+    }
+    int64_t peak() const { return peak_; }
+
+private:
+    std::atomic<int64_t> now_ = 0, peak_ = 0;
+};
+
+/// Joins the runs of two neighbouring rows that touch; `reach` 1: over an edge or a corner, too. Runs of `row` that have no
+/// label yet take one.
+void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
+{
+    auto first = before.begin();
+    for (LabelledRun& run : row) {
+        while (first != before.end() && first->end + reach <= run.begin) ++first;
+        for (auto other = first; other != before.end() && other->begin < run.end + reach; ++other) {
+            if (run.label == NO_LABEL)
+                run.label = other->label;
+            else if (run.label != other->label)
+                run.label = forest.join(run.label, other->label);
+        }
+    }
+}
+
+/// Joins two whole rows of neighbouring slices: those at the same place and, over corners, the ones beside them.
+void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, Connectivity connectivity,
+                 LabelForest& forest)
+{
+    const auto rows = static_cast<int64_t>(before.rows.size()) - 1;
+    if (connectivity == Connectivity::faces) return join_rows(row, before.row(y), 0, forest);
+    for (int64_t near = std::max<int64_t>(y - 1, 0); near <= std::min(y + 1, rows - 1); ++near)
+        join_rows(row, before.row(near), 1, forest);
+}
+
+/// A range of slices with labels of its own. One thread.
+class LabelledRange {
+public:
+    LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
+
+    /// `slices_done` counts them as they are.
+    void label(BitSlab& slab, const Size3& size, Connectivity connectivity, RunFile* file, HeldBytes& held,
+               std::atomic<int64_t>& slices_done)
+    {
+        for (int64_t z = lower_; z < upper_; z += slab.slices()) {
+            const int64_t end = std::min(upper_, z + slab.slices());
+            const int64_t slab_bytes = slab.bytes();
+            slab.read(z, end);
+            held.change(slab.bytes() - slab_bytes);
+            for (int64_t slice = z; slice < end; ++slice) {
+                label_slice(slab, slice - z, size, connectivity);
+                if (file != nullptr) file->write(slice, last);
+                if (slice == lower_) first = last;
+                count_held(held);
+                ++slices_done;
+            }
+        }
+        before_ = {};
+        ends_ = {};
+        count_held(held);
+    }
+
+    SliceRuns first, last;  ///< their labels are this range's own
+    LabelForest forest;
+    int64_t foreground_voxels = 0;
+    int64_t lower_slice() const { return lower_; }
+
+private:
+    void label_slice(const BitSlab& slab, int64_t slice, const Size3& size, Connectivity connectivity)
+    {
+        std::swap(before_, last);
+        last.rows.assign(1, 0);
+        last.runs.clear();
+        for (int64_t y = 0; y < size.y; ++y) {
+            ends_.clear();
+            append_run_ends(slab.row(y, slice), size.x, ends_);
+            for (size_t i = 0; i < ends_.size(); i += 2) last.runs.push_back({ends_[i], ends_[i + 1], NO_LABEL});
+            last.rows.push_back(static_cast<uint32_t>(last.runs.size()));
+            label_row(y, connectivity);
+        }
+    }
+
+    void label_row(int64_t y, Connectivity connectivity)
+    {
+        const std::span<LabelledRun> row = last.row(y);
+        if (row.empty()) return;
+        if (y > 0) join_rows(row, last.row(y - 1), connectivity == Connectivity::faces ? 0 : 1, forest);
+        if (!before_.rows.empty()) join_slices(row, y, before_, connectivity, forest);
+        if (forest.size() + row.size() >= LabelForest::MOST) refuse_labels();
+        for (LabelledRun& run : row) {
+            if (run.label == NO_LABEL) run.label = forest.add();
+            const auto voxels = static_cast<int64_t>(run.end - run.begin);
+            forest.voxels(run.label) += voxels;
+            foreground_voxels += voxels;
+        }
+    }
+
+    void count_held(HeldBytes& held)
+    {
+        const int64_t bytes = first.bytes() + last.bytes() + before_.bytes() + forest.bytes() +
+                              static_cast<int64_t>(ends_.capacity() * sizeof(uint32_t));
+        held.change(bytes - held_);
+        held_ = bytes;
+    }
+
+    int64_t lower_, upper_;
+    SliceRuns before_;
+    std::vector<uint32_t> ends_;
+    int64_t held_ = 0;
+};
+
+// ---- All ranges -----------------------------------------------------------------------------------------------------
+
+/// What the volume of labels needs of the labelling.
+struct LabelTable {
+    LabelForest forest;             ///< what a provisional label leads to is its final one
+    std::vector<int64_t> lower;     ///< first slice of each range
+    std::vector<uint32_t> bases;    ///< of its labels
+    std::optional<RunFile> runs{};  ///< with labels of their ranges
+};
+
+class LabelSource final : public VolumeSource {
+public:
+    LabelSource(VolumeInfo info, std::shared_ptr<const LabelTable> table)
+        : VolumeSource(std::move(info)), table_(std::move(table))
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        std::ranges::fill(voxels, std::byte{0});
+        with_voxel_type(info().type, [&]<class T>(T) {
+            SliceRuns slice;
+            T* row = reinterpret_cast<T*>(voxels.data());
+            for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
+                table_->runs->read(z, box.lower.y, box.upper.y, slice);
+                const auto after = std::ranges::upper_bound(table_->lower, z);
+                const uint32_t base = table_->bases[static_cast<size_t>(after - table_->lower.begin()) - 1];
+                for (int64_t y = 0; y < box.size().y; ++y, row += box.size().x) fill_row(slice.row(y), base, box, row);
+            }
+        });
+    }
+
+private:
+    template <class T>
+    void fill_row(std::span<const LabelledRun> runs, uint32_t base, const VoxelBox& box, T* row) const
+    {
+        for (const LabelledRun& run : runs) {
+            const int64_t begin = std::max<int64_t>(run.begin, box.lower.x);
+            const int64_t end = std::min<int64_t>(run.end, box.upper.x);
+            if (begin < end)
+                std::fill_n(row + (begin - box.lower.x), end - begin,
+                            static_cast<T>(table_->forest.parent(base + run.label)));
+        }
+    }
+
+    std::shared_ptr<const LabelTable> table_;
+};
+
+VoxelType type_for(int64_t labels)
+{
+    return labels < 256 ? VoxelType::uint8 : labels < 65536 ? VoxelType::uint16 : VoxelType::uint32;
+}
+
+class Labelling final : public Components {
+public:
+    Labelling(const VolumeSource& source, const ComponentOptions& options)
+        : source_info_(source.info()), options_(options), table_(std::make_shared<LabelTable>())
+    {
+        static_cast<void>(voxel_count(source.info()));
+        if (options.run_folder) table_->runs.emplace(*options.run_folder, source.info().size);
+        label_ranges(source);
+        join_ranges();
+        resolve();
+        number();
+        table_->forest.drop_counts();
+        ranges_.clear();
+        if (table_->runs) counts_.run_file_bytes = table_->runs->bytes();
+    }
+
+    std::unique_ptr<VolumeSource> labels() const override
+    {
+        SHVR_CHECK(table_->runs.has_value(), "no folder for runs was given");
+        VolumeInfo info = source_info_;
+        info.type = type_for(counts_.kept);
+        info.format = "components";
+        info.warnings.clear();
+        return std::make_unique<LabelSource>(std::move(info), table_);
+    }
+
+private:
+    void label_ranges(const VolumeSource& source)
+    {
+        const Size3& size = source_info_.size;
+        const int threads = options_.threads > 0 ? options_.threads
+                                                 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+        const ThresholdBits bits(source_info_.type, options_.threshold);
+        std::vector<BitSlab> slabs(static_cast<size_t>(threads), BitSlab(source, bits));
+        // Whole blocks, so that nothing is decoded twice.
+        const int64_t block = std::min(source.block().z, size.z);
+        const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
+        const int64_t thickness =
+            (std::max((size.z + wanted - 1) / wanted, THINNEST_RANGE) + block - 1) / block * block;
+        for (int64_t z = 0; z < size.z; z += thickness) ranges_.emplace_back(z, std::min(size.z, z + thickness));
+
+        HeldBytes held;
+        std::atomic<int64_t> slices_done = 0;
+        WorkPool pool(threads, [&] {
+            if (options_.progress) options_.progress(static_cast<double>(slices_done) / static_cast<double>(size.z));
+        });
+        RunFile* const file = table_->runs ? &*table_->runs : nullptr;
+        pool.run(static_cast<int64_t>(ranges_.size()), [&](int64_t task, int worker) {
+            ranges_[static_cast<size_t>(task)].label(slabs[static_cast<size_t>(worker)], size, options_.connectivity,
+                                                     file, held, slices_done);
+        });
+        counts_.peak_bytes = held.peak();
+    }
+
+    /// One forest of all, in which the last slice of a range meets the first of the next one.
+    void join_ranges()
+    {
+        LabelForest& forest = table_->forest;
+        SliceRuns before;
+        for (LabelledRange& range : ranges_) {
+            counts_.foreground_voxels += range.foreground_voxels;
+            const uint64_t base = forest.append(std::move(range.forest));
+            if (forest.size() > LabelForest::MOST) refuse_labels();
+            table_->lower.push_back(range.lower_slice());
+            table_->bases.push_back(static_cast<uint32_t>(base));
+            for (SliceRuns* slice : {&range.first, &range.last})
+                for (LabelledRun& run : slice->runs) run.label += static_cast<uint32_t>(base);
+            for (int64_t y = 0; !before.rows.empty() && y < source_info_.size.y; ++y)
+                join_slices(range.first.row(y), y, before, options_.connectivity, forest);
+            before = std::move(range.last);
+        }
+        counts_.provisional = static_cast<int64_t>(forest.size());
+        counts_.forest_bytes = forest.bytes();
+    }
+
+    /// Every label leads to its component's smallest one, which alone has voxels then.
+    void resolve()
+    {
+        LabelForest& forest = table_->forest;
+        for (uint64_t i = 0; i < forest.size(); ++i) {
+            const auto label = static_cast<uint32_t>(i);
+            const uint32_t root = forest.parent(forest.parent(label));
+            if (root == label) continue;
+            forest.parent(label) = root;
+            forest.voxels(root) += std::exchange(forest.voxels(label), 0);
+        }
+    }
+
+    /// Of two components of equal size the first one comes before the other.
+    struct Larger {
+        bool operator()(const Component& a, const Component& b) const
+        {
+            return a.voxels != b.voxels ? a.voxels > b.voxels : a.label < b.label;
+        }
+    };
+    /// The `most` largest of those that `visit` tells of.
+    template <class Visit>
+    static std::vector<Component> largest_of(size_t most, const Visit& visit)
+    {
+        std::vector<Component> heap;  // the smallest on top
+        visit([&](const Component& component) {
+            if (heap.size() == most && !Larger{}(component, heap.front())) return;
+            heap.push_back(component);
+            std::ranges::push_heap(heap, Larger{});
+            if (heap.size() <= most) return;
+            std::ranges::pop_heap(heap, Larger{});
+            heap.pop_back();
+        });
+        std::ranges::sort(heap, Larger{});
+        return heap;
+    }
+
+    /// From provisional labels to final ones.
+    void number()
+    {
+        LabelForest& forest = table_->forest;
+        const auto for_each_root = [&](const auto& visit) {
+            for (uint64_t i = 0; i < forest.size(); ++i) {
+                const auto label = static_cast<uint32_t>(i);
+                if (forest.voxels(label) > 0) visit(Component{label, forest.voxels(label)});
+            }
+        };
+        const auto most = static_cast<size_t>(options_.most_components);
+        std::optional<Component> smallest_kept;
+        if (most > 0) {
+            const std::vector<Component> kept = largest_of(most, for_each_root);
+            if (kept.size() == most) smallest_kept = kept.back();
+        }
+        const auto is_kept = [&](const Component& component) {
+            return component.voxels >= options_.fewest_voxels &&
+                   (!smallest_kept || !Larger{}(*smallest_kept, component));
+        };
+        counts_.largest = largest_of(MOST_LARGEST, [&](const auto& visit) {
+            for (uint64_t i = 0; i < forest.size(); ++i) {
+                const auto label = static_cast<uint32_t>(i);
+                const int64_t voxels = forest.voxels(label);
+                if (voxels == 0) {
+                    forest.parent(label) = forest.parent(forest.parent(label));  // the root's, which has its number
+                    continue;
+                }
+                ++counts_.found;
+                counts_.largest_voxels = std::max(counts_.largest_voxels, voxels);
+                const bool stays = is_kept({label, voxels});
+                forest.parent(label) = stays ? static_cast<uint32_t>(++counts_.kept) : 0;
+                if (!stays) continue;
+                counts_.kept_voxels += voxels;
+                visit(Component{forest.parent(label), voxels});
+            }
+        });
+    }
+
+    VolumeInfo source_info_;
+    ComponentOptions options_;
+    std::shared_ptr<LabelTable> table_;
+    std::deque<LabelledRange> ranges_;
+};
+
+}  // namespace
+
+std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options)
+{
+    SHVR_CHECK(!std::isnan(options.threshold) && options.fewest_voxels >= 1 && options.most_components >= 0);
+    return std::make_unique<Labelling>(source, options);
+}
+
+}  // namespace shvr

@@ -1,0 +1,167 @@
+#include "engine/device/device_mask.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "engine/device/device_volume.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr uint32_t MASK_BRICKS_IN_UPLOAD = 128;  // bricks per upload: 4 MiB of staging
+
+}  // namespace
+
+void DeviceMask::grow(uint64_t bricks)
+{
+    const gpu::DeviceTraits& traits = memory_.device().traits();
+    atlas_.reset();
+    const glm::uvec3 slots =
+        atlas_layout(bricks + 1, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
+    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE));
+    free_slots_.clear();
+    slots_.clear();
+    // The first corner is NO_SLOT. What is taken first comes last.
+    for (uint32_t z = slots.z; z-- > 0;)
+        for (uint32_t y = slots.y; y-- > 0;)
+            for (uint32_t x = slots.x; x-- > 0;)
+                if (const uint32_t slot = gpu::pack_slot({x, y, z}); slot != gpu::NO_SLOT) free_slots_.push_back(slot);
+}
+
+void DeviceMask::clear(bool hashed)
+{
+    clear();
+    hashed_ = hashed;
+}
+
+uint32_t DeviceMask::slot_of(int64_t brick) const
+{
+    const auto found = slots_.find(brick);
+    return found == slots_.end() ? gpu::NO_SLOT : found->second;
+}
+
+void DeviceMask::clear()
+{
+    in_flight_.clear();
+    atlas_.reset();
+    table_.reset();
+    slots_.clear();
+    free_slots_.clear();
+}
+
+void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
+{
+    std::vector<int64_t> changed(bricks.begin(), bricks.end());
+    uint64_t added = 0;
+    for (int64_t brick : bricks) {
+        const auto known = slots_.find(brick);
+        if (mask.brick(brick)) {
+            added += known == slots_.end();
+        } else if (known != slots_.end()) {
+            free_slots_.push_back(known->second);
+            slots_.erase(known);
+        }
+    }
+    const uint64_t needed = slots_.size() + added;
+    if (needed == 0) return clear();
+    if (added > free_slots_.size()) {
+        grow(std::max<uint64_t>(needed + needed / 2, 8));
+        changed = mask.painted_bricks();
+    }
+    std::erase_if(changed, [&](int64_t brick) { return !mask.brick(brick); });
+    for (int64_t brick : changed) {
+        if (slots_.contains(brick)) continue;
+        slots_[brick] = free_slots_.back();
+        free_slots_.pop_back();
+    }
+
+    for (size_t first = 0; first < changed.size(); first += MASK_BRICKS_IN_UPLOAD) {
+        const size_t count = std::min<size_t>(MASK_BRICKS_IN_UPLOAD, changed.size() - first);
+        std::vector<uint8_t> voxels;
+        voxels.reserve(count * MASK_BRICK_VOXELS);
+        std::vector<ImageRegion> regions;
+        for (size_t i = 0; i < count; ++i) {
+            const MaskBrick& brick = *mask.brick(changed[first + i]);
+            voxels.insert(voxels.end(), brick.begin(), brick.end());
+            regions.push_back({i * MASK_BRICK_VOXELS, gpu::mask_slot_origin(slots_.at(changed[first + i])),
+                               glm::uvec3(gpu::BRICK_SIZE)});
+        }
+        FrameGraph graph;
+        static_cast<void>(graph.copy_to_image(graph.upload<uint8_t>("mask bricks", voxels),
+                                              graph.import("mask", atlas_.import()), std::move(regions),
+                                              "upload mask bricks"));
+        submit(std::move(graph));
+    }
+
+    const std::vector<uint32_t> entries = hashed_ ? hashed_table(mask) : dense_table(mask);
+    const glm::uvec3 counts(mask.brick_counts());
+    const ResourceDesc desc =
+        hashed_ ? buffer_desc(entries.size() * sizeof(uint32_t)) : image_desc(Format::r32_uint, counts);
+    if (!table_ || table_.desc() != desc) {
+        table_.reset();
+        table_ = memory_.create("mask table", desc);
+    }
+    FrameGraph graph;
+    const Resource from = graph.upload<uint32_t>("mask table entries", entries);
+    const Resource to = graph.import("mask table", table_.import());
+    static_cast<void>(hashed_ ? graph.copy(from, to, {{0, 0, desc.bytes}}, "upload mask table")
+                              : graph.copy_to_image(from, to, {{0, glm::uvec3(0), counts}}, "upload mask table"));
+    submit(std::move(graph));
+}
+
+std::vector<uint32_t> DeviceMask::dense_table(const Mask& mask) const
+{
+    const glm::i64vec3 counts = mask.brick_counts();
+    std::vector<uint32_t> entries(size_t(counts.x * counts.y * counts.z));
+    for (const auto& [brick, slot] : slots_) entries[size_t(brick)] = slot;
+    return entries;
+}
+
+/// The index of the last place, a power of two less one, then the places: as few as keep every brick near its hash.
+std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
+{
+    const glm::i64vec3 counts = mask.brick_counts();
+    std::vector<uint32_t> table;
+    const auto insert = [&](int64_t brick, uint32_t slot) {
+        const glm::uvec3 at(position_of(brick, counts));
+        for (uint32_t probe = 0; probe < gpu::MASK_PROBES; ++probe) {
+            uint32_t* entry = &table[1 + size_t((gpu::mask_hash(at) + probe) & table[0]) * gpu::MASK_ENTRY];
+            if (entry[2] != 0) continue;
+            entry[0] = at.x | at.y << 16;
+            entry[1] = at.z;
+            entry[2] = slot;
+            return true;
+        }
+        return false;
+    };
+    for (size_t places = std::bit_ceil(2 * slots_.size() + 16);; places *= 2) {
+        table.assign(1 + places * gpu::MASK_ENTRY, 0);
+        table[0] = uint32_t(places - 1);
+        if (std::ranges::all_of(slots_, [&](const auto& painted) { return insert(painted.first, painted.second); }))
+            return table;
+    }
+}
+
+void DeviceMask::submit(FrameGraph graph)
+{
+    std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
+    in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
+}
+
+std::vector<VoxelBox> DeviceMask::bricks(const Size3& size) const
+{
+    const glm::i64vec3 counts(brick_counts(size));
+    std::vector<VoxelBox> boxes;
+    for (const auto& [index, slot] : slots_) boxes.push_back(voxels_of({0, position_of(index, counts)}, size));
+    return boxes;
+}
+
+MaskBinding DeviceMask::import(FrameGraph& graph) const
+{
+    return {.mask = graph.import("mask", atlas_.import()), .mask_table = graph.import("mask table", table_.import())};
+}
+
+}  // namespace shvr

@@ -1,0 +1,47 @@
+#pragma once
+// The painted voxels on the device: a copy of the mask's bricks, brought up to date brick by brick. Nothing exists on
+// the device while nothing is painted, and it is given back when the last painted voxel goes.
+
+#include <map>
+#include <span>
+
+#include "engine/annotation/mask.h"
+#include "engine/gpu/executor.h"
+#include "engine/passes/volume_binding.h"
+
+namespace shvr {
+
+class DeviceMask {
+public:
+    DeviceMask(gpu::Executor& executor, gpu::Memory& memory) : executor_(executor), memory_(memory) {}
+
+    /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not wait:
+    /// frames submitted later see them.
+    void update(const Mask& mask, std::span<const int64_t> bricks);
+
+    /// Unpainted again: nothing is left on the device.
+    void clear();
+    /// The same for another volume. `hashed`: the table on the device is one of painted bricks only (shaders/library/mask.glsl).
+    void clear(bool hashed);
+    /// Of a painted brick on the device; gpu::NO_SLOT where it is not there.
+    uint32_t slot_of(int64_t brick) const;
+    bool empty() const { return slots_.empty(); }
+    /// Voxels of the painted bricks of a volume of that size.
+    std::vector<VoxelBox> bricks(const Size3& size) const;
+    MaskBinding import(FrameGraph& graph) const;
+
+private:
+    void grow(uint64_t bricks);
+    void submit(FrameGraph graph);
+    std::vector<uint32_t> dense_table(const Mask& mask) const;
+    std::vector<uint32_t> hashed_table(const Mask& mask) const;
+    gpu::Executor& executor_;
+    gpu::Memory& memory_;
+    bool hashed_ = false;
+    std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot (gpu::pack_slot), never NO_SLOT
+    std::vector<uint32_t> free_slots_;
+    gpu::Storage atlas_, table_;
+    std::vector<gpu::Submission> in_flight_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,57 @@
+#include "engine/device/device_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "engine/base/error.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+RegionBricks bricks_around(const VoxelBox& voxels)
+{
+    constexpr int64_t SIZE = gpu::BRICK_SIZE;
+    const Size3 first = voxels.lower / SIZE, end = (voxels.upper - int64_t{1}) / SIZE + int64_t{1};
+    return {.begin = glm::uvec3(first), .counts = glm::uvec3(end - first), .slots = {}};
+}
+
+std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level)
+{
+    const Size3 most = size_of_level(size, level) - int64_t{1};
+    std::vector<BrickKey> keys;
+    std::unordered_set<BrickKey, BrickKeyHash> known;
+    for (const VoxelBox& box : boxes) {
+        if (glm::any(glm::greaterThanEqual(box.lower, box.upper))) continue;
+        const int64_t side = int64_t{1} << level;
+        const Size3 first = glm::max(box.lower / side - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::BRICK_SIZE};
+        const Size3 last =
+            glm::min((box.upper - int64_t{1}) / side + int64_t{gpu::BRICK_APRON}, most) / int64_t{gpu::BRICK_SIZE};
+        for (int64_t z = first.z; z <= last.z; ++z)
+            for (int64_t y = first.y; y <= last.y; ++y)
+                for (int64_t x = first.x; x <= last.x; ++x)
+                    if (const BrickKey key{level, {x, y, z}}; known.insert(key).second) keys.push_back(key);
+    }
+    return keys;
+}
+
+uint32_t slot_at(uint32_t index, const glm::uvec3& slots)
+{
+    return gpu::pack_slot(glm::uvec3(position_of(index, slots)));
+}
+
+glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow)
+{
+    const uint64_t most = std::min<uint64_t>(max_side / brick_texels, 255);  // pack_slot's 8 bits
+    const auto ceil_div = [](uint64_t a, uint64_t b) { return (a + b - 1) / b; };
+    uint64_t x = narrow ? 8 : std::min<uint64_t>(most, uint64_t(std::ceil(std::cbrt(double(slots)))));
+    while (x < most && ceil_div(slots, x) > most * most) ++x;
+    x = std::min(x, slots);
+    const uint64_t rows = ceil_div(slots, x);
+    const uint64_t y = std::min<uint64_t>(most, uint64_t(std::ceil(std::sqrt(double(rows)))));
+    const uint64_t z = ceil_div(rows, y);
+    if (z > most) fail("the volume needs ", slots, " bricks on the device; its textures hold ", most * most * most);
+    return {uint32_t(x), uint32_t(y), uint32_t(z)};
+}
+
+}  // namespace shvr

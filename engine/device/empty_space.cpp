@@ -1,0 +1,68 @@
+#include "engine/device/empty_space.h"
+
+#include <tuple>
+#include <utility>
+
+namespace shvr {
+
+namespace {
+
+bool shows_the_same(const LeapGridInput& a, const LeapGridInput& b)
+{
+    const auto members = [](const LeapGridInput& look) {
+        const gpu::OccupancyParams& p = look.params;
+        return std::tie(p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries, p.skipping,
+                        look.visible_intervals, look.visible_groups);
+    };
+    return members(a) == members(b);
+}
+
+CellBox united(const CellBox& a, const CellBox& b)
+{
+    if (a.empty()) return b;
+    return b.empty() ? a : CellBox{glm::min(a.begin, b.begin), glm::max(a.end, b.end)};
+}
+
+}  // namespace
+
+void EmptySpace::changed(const CellBox& cells)
+{
+    if (!look_) return;
+    if (holds_) patch_ = united(patch_, cells);
+    changed_ = stage_ == LEAP_STAGES ? cells : united(changed_, cells);
+    stage_ = 0;
+}
+
+void EmptySpace::want(const LeapGridInput& look, const glm::uvec3& cell_counts)
+{
+    if (look_ && shows_the_same(*look_, look)) return;
+    look_ = look;
+    look_->mask.reset();  // of one graph
+    holds_ = false;
+    patch_ = {};
+    stage_ = 0;
+    changed_ = {glm::uvec3(0), cell_counts};
+}
+
+void EmptySpace::prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look)
+{
+    SHVR_CHECK(is_due());
+    if (!holds_) {
+        look.changed = changed_;
+        leap_grid_stage(graph, volume, look, stage_++);
+        holds_ = stage_ == LEAP_STAGES;
+        return;
+    }
+    look.changed = std::exchange(patch_, {});
+    leap_grid_patch(graph, volume, look);
+}
+
+void EmptySpace::refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look)
+{
+    SHVR_CHECK(is_worth_refining());
+    look.changed = changed_;
+    leap_grid_stage(graph, volume, look, stage_++);
+    if (stage_ == LEAP_STAGES) patch_ = {};
+}
+
+}  // namespace shvr

@@ -1,0 +1,340 @@
+#include "engine/device/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "engine/device/look_table.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+namespace {
+
+/// Beyond the radius: how far rays are lifted off surfaces, half the largest cell, and the voxel itself.
+constexpr double MARGIN_VOXELS = 8.0;
+
+template <class Visit>
+void for_each_offset(int reach, const Visit& visit)
+{
+    for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x) visit(glm::ivec3(x, y, z));
+}
+
+bool same_function(const Occlusion::Look& a, const Occlusion::Look& b)
+{
+    Visibility without_groups = a.visibility;
+    without_groups.visible_groups = b.visibility.visible_groups;
+    return without_groups == b.visibility && std::ranges::equal(a.function.points(), b.function.points());
+}
+
+}  // namespace
+
+void Occlusion::clear()
+{
+    values_.reset();
+    near_.reset();
+    for (gpu::Storage& cells : cells_) cells.reset();
+    for (gpu::Storage& around : around_) around.reset();
+    entries_.clear();
+    look_.reset();
+    volume_ = nullptr;
+    revision_ = 0;
+}
+
+void Occlusion::create(const glm::uvec3& slots)
+{
+    values_ = memory_.create("occlusion values", image_desc(Format::r8_uint, gpu::BRICK_TEXELS * slots));
+    near_ = memory_.create("occlusion scratch", occlusion_near_desc());
+    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+        cells_[size] =
+            memory_.create("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
+        around_[size] = memory_.create("occlusion scratch", occlusion_around_desc(size));
+    }
+    images_are_new_ = true;
+}
+
+OcclusionBinding Occlusion::import(FrameGraph& graph)
+{
+    sync();
+    OcclusionBinding binding{.values = graph.import("occlusion values", values_.import())};
+    for (size_t size = 0; size < cells_.size(); ++size)
+        binding.cells[size] = graph.import("occlusion cells", cells_[size].import());
+    std::vector<uint32_t> slots;
+    for (auto& [key, entry] : entries_)
+        if (std::exchange(entry.is_new, false)) slots.push_back(entry.slot);
+    occlusion_reset(graph, binding, slots, std::exchange(images_are_new_, false));
+    return binding;
+}
+
+// ---- What is out of date --------------------------------------------------------------------------------------------
+
+void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask)
+{
+    if (volume_ != &volume) {
+        clear();
+        create(volume.atlas_slots());
+        volume_ = &volume;
+    }
+    mask_ = &mask;
+    const std::optional<Look> before = std::exchange(look_, look);
+    if (!before) return;
+    if (!same_function(*before, look)) return mark_all(true);
+    const bool is_other = before->radius != look.radius || before->rays != look.rays ||
+                          before->full_sphere != look.full_sphere || before->gradient_fade != look.gradient_fade;
+    if (is_other) mark_all(false);
+    if (before->groups != look.groups)
+        for (const VoxelBox& voxels : mask.bricks(volume.info().size)) changed(voxels);
+    mark_cut(before->cut, look.cut);
+}
+
+void Occlusion::mark_all(bool cells)
+{
+    for (auto& [key, entry] : entries_) {
+        entry.needs_values = true;
+        entry.needs_cells |= cells;
+    }
+}
+
+/// What lies between the planes of before and after.
+void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
+{
+    const Size3 size = volume_->info().size;
+    const auto slab = [&](int axis, double a, double b) {
+        if (a == b) return;
+        VoxelBox voxels{Size3(0), size};
+        voxels.lower[axis] = std::clamp<int64_t>(int64_t(std::floor(std::min(a, b))) - 1, 0, size[axis]);
+        voxels.upper[axis] = std::clamp<int64_t>(int64_t(std::ceil(std::max(a, b))) + 1, 0, size[axis]);
+        changed(voxels);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        slab(axis, before.lower[axis], after.lower[axis]);
+        slab(axis, before.upper[axis], after.upper[axis]);
+    }
+}
+
+void Occlusion::changed(const VoxelBox& changed, int64_t apron)
+{
+    if (!look_) return;
+    for (auto& [key, entry] : entries_) {
+        // A coarse voxel has the paint of its middle, which may be that of a neighbour below.
+        const VoxelBox brick = voxels_of(key, volume_->info().size);
+        const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
+        entry.needs_cells = entry.needs_cells || meet(brick, voxels);
+        const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
+        entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
+    }
+}
+
+/// Slots as the volume has them now.
+void Occlusion::sync()
+{
+    if (revision_ == volume_->places_revision()) return;
+    revision_ = volume_->places_revision();
+    Entries entries;
+    std::vector<BrickKey> arrived;
+    for (const DeviceVolume::Place& place : volume_->places()) {
+        const auto known = entries_.find(place.key);
+        if (known != entries_.end() && known->second.slot == place.slot) {
+            entries.insert(*known).first->second.range = place.range;
+            continue;
+        }
+        entries[place.key] = {.slot = place.slot, .range = place.range};
+        arrived.push_back(place.key);
+    }
+    const bool is_first = entries_.empty();
+    entries_ = std::move(entries);
+    for (size_t i = 0; i < arrived.size() && !is_first; ++i) {
+        const BrickKey key = arrived[i];
+        for_each_offset(int(occlusion_reach(radius_of(key.level))), [&](const glm::ivec3& offset) {
+            const auto neighbour = entries_.find({key.level, key.brick + offset});
+            if (neighbour != entries_.end()) neighbour->second.needs_values = true;
+        });
+    }
+}
+
+double Occlusion::radius_of(int level) const
+{
+    return std::ldexp(look_->radius, -level);
+}
+
+/// It, or a brick that far from it; coarse bricks may be where anything is.
+bool Occlusion::is_painted(const BrickKey& key, int reach) const
+{
+    if (mask_->empty() || key.level > 0) return !mask_->empty();
+    const glm::i64vec3 counts(brick_counts(volume_->info().size));
+    bool found = false;
+    for_each_offset(reach, [&](const glm::ivec3& offset) {
+        const glm::i64vec3 at(key.brick + offset);
+        const bool is_inside =
+            glm::all(glm::greaterThanEqual(at, glm::i64vec3(0))) && glm::all(glm::lessThan(at, counts));
+        found = found || (is_inside && mask_->slot_of(index_of(at, counts)) != 0);
+    });
+    return found;
+}
+
+bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
+{
+    return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
+}
+
+/// A brick that shows nothing may hold voxels beside painted ones.
+bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
+{
+    if (!entry.needs_values || (is_drawn_ && !is_drawn_(key))) return false;
+    return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1);
+}
+
+bool Occlusion::is_due()
+{
+    if (!look_) return false;
+    sync();
+    return std::ranges::any_of(entries_, [&](const auto& it) { return is_candidate(it.first, it.second); });
+}
+
+std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) const
+{
+    struct Candidate {
+        double distance;
+        BrickKey key;
+    };
+    std::vector<Candidate> candidates;
+    for (const auto& [key, entry] : entries_) {
+        if (!is_candidate(key, entry)) continue;
+        const glm::dvec3 centre = std::ldexp(double(gpu::BRICK_SIZE), key.level) * (glm::dvec3(key.brick) + 0.5);
+        candidates.push_back({glm::length(centre - eye), key});
+    }
+    const auto is_nearer = [](const Candidate& a, const Candidate& b) {
+        const auto order = [](const Candidate& c) {
+            return std::tuple(c.distance, c.key.level, c.key.brick.z, c.key.brick.y, c.key.brick.x);
+        };
+        return order(a) < order(b);
+    };
+    std::ranges::sort(candidates, is_nearer);
+    std::vector<BrickKey> keys;
+    for (const Candidate& candidate : candidates)
+        if (keys.size() < most && candidate.key.level == candidates.front().key.level) keys.push_back(candidate.key);
+    return keys;
+}
+
+// ---- The work -------------------------------------------------------------------------------------------------------
+
+/// An entry of the table of bricks around another (shaders/occlusion.h); the brick itself, or the finest coarser one there
+/// is. `keys` gets the one that was found.
+uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
+{
+    const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
+    // Empty bricks have no cells, nor have they an apron that anyone reads.
+    if (glm::any(glm::lessThan(key.brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(key.brick, counts)))
+        return 0;
+    for (BrickKey at = key; at.level < volume_->levels(); at = parent_of(at)) {
+        const auto found = entries_.find(at);
+        if (found == entries_.end()) continue;
+        if (!shows(at, found->second)) return 0;
+        if (keys) keys->push_back(at);
+        return found->second.slot | uint32_t(at.level - key.level) << gpu::OCCLUSION_LEVEL_SHIFT;
+    }
+    return 0;
+}
+
+std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& volume,
+                                      const std::optional<MaskBinding>& mask, const glm::dvec3& eye, const Most& most)
+{
+    SHVR_CHECK(look_.has_value());
+    sync();
+    const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, gpu::OCCLUSION_SLICE));
+    if (keys.empty()) return {};
+    OcclusionBinding images = import(graph);
+    std::vector<BrickKey> needed;
+    const int reach = int(occlusion_reach(radius_of(keys.front().level)));
+    for (const BrickKey& key : keys)
+        for_each_offset(reach, [&](const glm::ivec3& offset) { around({key.level, key.brick + offset}, &needed); });
+    std::vector<BrickKey> stale;
+    for (const BrickKey& key : needed) {
+        Entry& entry = entries_.at(key);
+        if (!entry.needs_cells || stale.size() > most.cell_bricks) continue;
+        stale.push_back(key);
+        entry.needs_cells = false;
+    }
+    const bool is_enough = stale.size() <= most.cell_bricks;
+    if (!is_enough) {
+        entries_.at(stale.back()).needs_cells = true;
+        stale.pop_back();
+    }
+    add_cells(graph, volume, images, mask, stale);
+    if (!is_enough) return {};
+    add_values(graph, volume, images, mask, keys);
+    std::vector<VoxelBox> renewed;
+    for (const BrickKey& key : keys) {
+        VoxelBox voxels = voxels_of(key, volume_->info().size);
+        const int64_t apron = int64_t{1} << key.level;
+        renewed.push_back({voxels.lower - apron, voxels.upper + apron});
+    }
+    return renewed;
+}
+
+/// Opacities of `stretch` reference lengths.
+OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const
+{
+    OcclusionCellsInput input;
+    input.params = {.level = uint32_t(level),
+                    .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
+                    .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
+                    .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
+    set_table(input.params, look_->function, volume_->window(), TABLE_ENTRIES);
+    for (const glm::vec4& entry : bake_table(look_->function, stretch, TABLE_ENTRIES))
+        input.opacities.push_back(entry.a);
+    input.mask = mask;
+    for (const double opacity : look_->groups)
+        input.group_opacities.push_back(float(opacity_of_step(opacity, stretch)));
+    return input;
+}
+
+void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                          const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys)
+{
+    std::map<int, std::vector<gpu::OcclusionCellsJob>> jobs;
+    for (const BrickKey& key : keys) {
+        const Entry& entry = entries_.at(key);
+        jobs[key.level].push_back({glm::uvec3(key.brick), entry.slot});
+    }
+    for (const auto& [level, list] : jobs) {
+        counts_.cells += list.size();
+        occlusion_cells(graph, volume, images, cells_input(level, std::ldexp(1.0, level), mask), list);
+    }
+}
+
+void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                           const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys)
+{
+    const int level = keys.front().level;
+    const glm::dvec3& spacing = volume_->info().spacing;
+    OcclusionInput input{.params = {}, .taps = occlusion_taps(radius_of(level)), .near = {}};
+    input.params.rays = look_->rays;
+    // Where the radius is below a voxel nothing is near; tables are of some stretch all the same.
+    const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
+    input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
+    input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;
+    input.params.gradient_fade = float(look_->gradient_fade);
+    input.params.full_sphere = look_->full_sphere;
+    input.params.grow = mask.has_value();
+    std::vector<gpu::OcclusionJob> jobs;
+    std::vector<uint32_t> bricks_around;
+    for (const BrickKey& key : keys) {
+        Entry& entry = entries_.at(key);
+        jobs.push_back({glm::uvec3(key.brick), entry.slot, uint32_t(bricks_around.size())});
+        for_each_offset(int(occlusion_reach(radius_of(level))), [&](const glm::ivec3& offset) {
+            bricks_around.push_back(around({level, key.brick + offset}, nullptr));
+        });
+        entry.needs_values = false;
+    }
+    counts_.values += jobs.size();
+    OcclusionScratch scratch{.near = graph.import("occlusion scratch", near_.import())};
+    for (size_t size = 0; size < around_.size(); ++size)
+        scratch.around[size] = graph.import("occlusion scratch", around_[size].import());
+    occlusion_bake(graph, volume, images, scratch, input, jobs, bricks_around);
+}
+
+}  // namespace shvr

@@ -1,0 +1,114 @@
+#pragma once
+// Local ambient occlusion of the bricks that are on the device: which of them are out of date, and the work that renews them,
+// in slices, nearest to the eye first. Its images have the slots of the density atlas, so they need no table of their own;
+// nothing exists on the device until a look asks for it.
+//
+//   bricks come, painted voxels, cut     -> cells of those bricks, and values as far as light comes from them
+//   transfer function                    -> all cells, all values
+//   radius, rays, hemisphere             -> all values
+//
+// Values that are out of date stay until they are renewed; where there have never been any, all light arrives. Renewing what
+// is out of date gives the same bits as making all of it. One thread, the one that owns the memory.
+
+#include <functional>
+#include <optional>
+#include <unordered_map>
+
+#include "engine/device/device_mask.h"
+#include "engine/device/device_volume.h"
+#include "engine/gpu/memory.h"
+#include "engine/look/settings.h"
+#include "engine/look/transfer_function.h"
+#include "engine/passes/brick_leap.h"
+#include "engine/passes/occlusion.h"
+
+namespace shvr {
+
+class Occlusion {
+public:
+    explicit Occlusion(gpu::Memory& memory) : memory_(memory) {}
+
+    /// What values are made from.
+    struct Look {
+        TransferFunction function;
+        Visibility visibility;             ///< of the same function
+        std::array<double, 256> groups{};  ///< opacities per reference length; 0: hidden
+        CutBox cut;                        ///< what is cut away keeps no light off
+        double radius = 16.0;              ///< reference lengths
+        uint32_t rays = 32;
+        bool full_sphere = false;
+        double gradient_fade = 0.0;  ///< codes per voxel
+    };
+
+    /// Gives all memory back.
+    void clear();
+    /// From now on this is wanted. Fails where the budget does not hold the images.
+    void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
+    /// These voxels have been painted; or, with an apron (voxels of each brick's own level), hold other densities.
+    void changed(const VoxelBox& voxels, int64_t apron = 0);
+    /// Which bricks are worth the work; empty: all.
+    void set_drawn(std::function<bool(const BrickKey&)> is_drawn) { is_drawn_ = std::move(is_drawn); }
+
+    bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
+    /// Bricks on each side of one of that level that its light comes from.
+    int reach(int level) const { return look_ ? int(occlusion_reach(radius_of(level))) : 0; }
+    /// Something is out of date.
+    bool is_due();
+    /// Bounds of one slice.
+    struct Most {
+        size_t bricks = 1;       ///< whose values are made, up to gpu::OCCLUSION_SLICE
+        size_t cell_bricks = 8;  ///< whose cells are made
+    };
+    /// Adds the next slice to a graph that must be submitted, and returns the voxels that it renews. `eye` in voxels.
+    std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
+                               const glm::dvec3& eye, const Most& most);
+    /// Handles for a graph that must be submitted. What has never been made lets all light arrive.
+    OcclusionBinding import(FrameGraph& graph);
+
+    struct Counts {
+        uint64_t cells = 0;   ///< bricks whose cells have been made
+        uint64_t values = 0;  ///< bricks whose values have been made
+    };
+    const Counts& counts() const { return counts_; }
+
+private:
+    struct Entry {
+        uint32_t slot = 0;
+        BrickTexels::Range range;
+        bool needs_cells = true, needs_values = true;
+        bool is_new = true;  ///< its values are of nothing
+    };
+    using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
+
+    void create(const glm::uvec3& slots);
+    void sync();
+    void mark_all(bool cells);
+    void mark_cut(const CutBox& before, const CutBox& after);
+    double radius_of(int level) const;
+    bool is_painted(const BrickKey& key, int reach) const;
+    bool shows(const BrickKey& key, const Entry& entry) const;
+    bool is_candidate(const BrickKey& key, const Entry& entry) const;
+    std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most) const;
+    uint32_t around(const BrickKey& key, std::vector<BrickKey>* keys) const;
+    OcclusionCellsInput cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const;
+    void add_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                   const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys);
+    void add_values(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,
+                    const std::optional<MaskBinding>& mask, const std::vector<BrickKey>& keys);
+
+    gpu::Memory& memory_;
+    const DeviceVolume* volume_ = nullptr;
+    const DeviceMask* mask_ = nullptr;
+    std::optional<Look> look_;
+    std::function<bool(const BrickKey&)> is_drawn_;
+    gpu::Storage values_;
+    std::array<gpu::Storage, gpu::OCCLUSION_SIZES> cells_;
+    gpu::Storage near_;
+    std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
+    bool images_are_new_ = false;
+    Entries entries_;
+    uint64_t revision_ = 0;  ///< of the volume's places
+    Counts counts_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,264 @@
+#include "engine/device/paged_volume.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "engine/device/device_volume.h"
+
+namespace shvr {
+
+namespace {
+
+/// A region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
+constexpr uint64_t FEWEST_SLOTS = 64;
+/// Levels of no more bricks than this are always there.
+constexpr int64_t COARSE_BRICKS = 64;
+
+int64_t brick_total(const Size3& size, int level)
+{
+    const glm::i64vec3 counts(brick_counts(size_of_level(size, level)));
+    return counts.x * counts.y * counts.z;
+}
+
+uint64_t slots_for(const VolumeInfo& info, int levels, uint64_t bytes)
+{
+    uint64_t useful = 1;
+    for (int level = 0; level < levels; ++level)
+        useful += uint64_t(std::min<int64_t>(brick_total(info.size, level), int64_t{1} << 40));
+    const uint64_t slots = std::min(useful, bytes / BrickAtlas::slot_bytes());
+    if (slots < std::min(useful, FEWEST_SLOTS))
+        fail(info.name, ": ", bytes >> 20, " MiB of device memory are left for its bricks; expected at least ",
+             (FEWEST_SLOTS * BrickAtlas::slot_bytes() >> 20) + 1);
+    return slots;
+}
+
+}  // namespace
+
+PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
+                         const IntensityWindow& window, const Options& options)
+    : DeviceVolume(source->info(), window),
+      memory_(memory),
+      source_(std::move(source)),
+      options_(options),
+      levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
+      atlas_(executor, memory, slots_for(source_->info(), levels_, options.device_bytes), options.filtered),
+      slots_(atlas_.slot_count()),
+      store_(*source_, window, options.host_bytes, options.threads)
+{
+    cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS));
+    for (uint32_t slot = uint32_t(slots_.size()) - 1; slot > 0; --slot) unused_.push_back(slot);
+    pin_coarse_levels();
+}
+
+/// The coarsest level now, so that there is something to see at once; the next ones as soon as may be.
+void PagedVolume::pin_coarse_levels()
+{
+    for (int level = levels_ - 1; level >= 0; --level) {
+        if (brick_total(info().size, level) > COARSE_BRICKS && level < levels_ - 1) break;
+        const glm::ivec3 counts = brick_counts(size_of_level(info().size, level));
+        for (int z = 0; z < counts.z; ++z)
+            for (int y = 0; y < counts.y; ++y)
+                for (int x = 0; x < counts.x; ++x) {
+                    // A quarter of the room at most, and the whole of the coarsest level.
+                    if (level < levels_ - 1 && coarse_.size() >= slots_.size() / 4) return;
+                    coarse_.push_back({level, {x, y, z}});
+                }
+        if (level < levels_ - 1) continue;
+        if (coarse_.size() >= slots_.size() / 2)
+            fail(info().name, ": its coarsest level has ", coarse_.size(), " bricks and the device has room for ",
+                 slots_.size(), "; expected a coarser level, as `shvr import` makes");
+        for (const BrickKey& key : coarse_)
+            if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
+        atlas_.flush();
+    }
+}
+
+// ---- What is looked at ----------------------------------------------------------------------------------------------
+
+bool PagedVolume::is_painted(const BrickKey& key) const
+{
+    return painted_.contains(key);
+}
+
+/// Whatever the transfer function says.
+bool PagedVolume::is_always_shown(const BrickKey& key) const
+{
+    if (!view_) return false;
+    if (view_->shows_all || !view_->shown) return view_->shows_all;
+    const VoxelBox voxels = voxels_of(key, info().size);
+    return glm::all(glm::lessThan(voxels.lower, view_->shown->upper)) &&
+           glm::all(glm::lessThan(view_->shown->lower, voxels.upper));
+}
+
+bool PagedVolume::shows(const BrickKey& key) const
+{
+    if (is_painted(key) || is_always_shown(key)) return true;
+    const std::optional<ValueRange> range = source_->brick_range(key.level, Size3(key.brick));
+    if (!range) return true;
+    return range->lower <= range->upper &&
+           visibility_.shows(window().code_of(range->lower), window().code_of(range->upper));
+}
+
+void PagedVolume::look(const PageView& view, const Visibility& visibility)
+{
+    const bool is_other_look = !tree_ || !(visibility == visibility_);
+    if (!is_other_look && view_ == view) return;
+    if (is_other_look) {
+        visibility_ = visibility;
+        leap_jobs_.clear();
+        for (const auto& [key, slot] : resident_) leap_jobs_.push_back(key);
+    }
+    view_ = view;
+    const TreeRef before = tree_;
+    const std::vector<bool> reached_before = std::move(is_reached_);
+    tree_ = std::make_shared<const PageTree>(
+        make_page_tree(info(), levels_, view, [this](const BrickKey& key) { return shows(key); }));
+    leaf_index_.clear();
+    for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_[tree_->leaves[leaf].key] = leaf;
+    is_reached_.assign(tree_->leaves.size(), false);
+    // What was needed a moment ago is likely to be needed again.
+    for (size_t leaf = 0; before && !is_other_look && leaf < reached_before.size(); ++leaf) {
+        if (!reached_before[leaf]) continue;
+        const auto found = leaf_index_.find(before->leaves[leaf].key);
+        if (found != leaf_index_.end()) is_reached_[found->second] = true;
+    }
+    ++stamp_;
+    ++reached_revision_;
+    is_limited_ = false;
+    directory_is_stale_ = wants_are_stale_ = evictable_is_stale_ = true;
+}
+
+PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
+{
+    if (resident_.contains(key)) return LeafState::resident;
+    const auto range = known_ranges_.find(key);
+    if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
+        !visibility_.shows(range->second.minimum, range->second.maximum))
+        return LeafState::empty;
+    return store_.failure_of(key) ? LeafState::failed : LeafState::missing;
+}
+
+void PagedVolume::fill_directory()
+{
+    entries_ = tree_->entries;
+    std::vector<uint32_t> entry_of_leaf(tree_->leaves.size());
+    constexpr uint32_t NOTHING = 1u << gpu::PAGE_DISTANCE_SHIFT;
+    for (size_t leaf = 0; leaf < entry_of_leaf.size(); ++leaf) {
+        BrickKey key = tree_->leaves[leaf].key;
+        entry_of_leaf[leaf] = NOTHING;
+        if (state_of(key) == LeafState::empty) continue;
+        for (; key.level < levels_; key = parent_of(key)) {
+            const auto there = resident_.find(key);
+            if (there == resident_.end()) continue;
+            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(there->second);
+            break;
+        }
+    }
+    for (size_t entry = 0; entry < entries_.size(); ++entry)
+        if (const uint32_t leaf = tree_->leaf_of_entry[entry]; leaf != PageTree::NO_LEAF)
+            entries_[entry] = entry_of_leaf[leaf];
+}
+
+int64_t PagedVolume::mask_index(const glm::ivec3& brick) const
+{
+    const glm::i64vec3 counts(brick_counts(info().size));
+    return brick.x + counts.x * (brick.y + counts.y * int64_t{brick.z});
+}
+
+gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
+{
+    return {.brick = glm::uvec3(key.brick),
+            .level = uint32_t(key.level),
+            .slot = atlas_.packed(slot),
+            .mask_slot = is_painted(key)};
+}
+
+VolumeBinding PagedVolume::atlas(FrameGraph& graph) const
+{
+    return {.atlas = atlas_.import_codes(graph), .filtered = options_.filtered};
+}
+
+VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& binding,
+                                  bool feedback)
+{
+    SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
+    VolumeBinding volume{.atlas = atlas_.import_codes(graph),
+                         .cell_ranges = atlas_.import_cell_ranges(graph),
+                         .brick_counts = glm::uvec3(brick_counts(info().size)),
+                         .filtered = options_.filtered};
+    PageBinding pages{.directory = {},
+                      .cell_leap = graph.import("cell leap", cell_leap_.import()),
+                      .reached = {},
+                      .feedback = feedback,
+                      .counts = tree_->counts,
+                      .cell_shift = uint32_t(tree_->cell_shift),
+                      .depth = uint32_t(tree_->depth)};
+    volume.pages = pages;
+    if (!leap_jobs_.empty()) {
+        std::vector<gpu::BrickLeapJob> jobs;
+        for (const BrickKey& key : std::exchange(leap_jobs_, {})) {
+            const auto there = resident_.find(key);
+            if (there == resident_.end()) continue;
+            jobs.push_back(job_of(key, there->second));
+            if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
+        }
+        brick_leap(graph, volume, visibility_, binding, jobs);
+    }
+    if (std::exchange(directory_is_stale_, false)) {
+        fill_directory();
+        // Whole powers of two: views differ, and buffers of a frame are used again where they are of the same size.
+        entries_.resize(std::bit_ceil(entries_.size()));
+        const uint64_t bytes = entries_.size() * sizeof(uint32_t);
+        if (!directory_ || directory_.desc().bytes < bytes) {
+            directory_.reset();
+            directory_ = memory_.create("page directory", buffer_desc(bytes));
+        }
+        volume.pages->directory =
+            graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
+                       graph.import("page directory", directory_.import()), {{0, 0, bytes}}, "upload page directory");
+    } else {
+        volume.pages->directory = graph.import("page directory", directory_.import());
+    }
+    const uint64_t words = feedback ? std::bit_ceil((tree_->entries.size() + 31) / 32) : 1;
+    volume.pages->reached =
+        graph.fill(graph.create("reached", buffer_desc(words * sizeof(uint32_t))), 0, "clear reached");
+    return volume;
+}
+
+void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> bits)
+{
+    for (size_t word = 0; word < bits.size() / sizeof(uint32_t); ++word) {
+        uint32_t set = 0;
+        std::memcpy(&set, bits.data() + word * sizeof(uint32_t), sizeof set);
+        for (; set != 0; set &= set - 1) {
+            const size_t entry = 32 * word + size_t(std::countr_zero(set));
+            if (entry >= tree->leaf_of_entry.size()) break;
+            uint32_t leaf = tree->leaf_of_entry[entry];
+            if (leaf == PageTree::NO_LEAF) continue;
+            if (tree != tree_) {  // the view has moved since
+                const auto found = leaf_index_.find(tree->leaves[leaf].key);
+                if (found == leaf_index_.end()) continue;
+                leaf = found->second;
+            }
+            if (is_reached_[leaf]) continue;
+            is_reached_[leaf] = true;
+            touch(tree_->leaves[leaf].key);
+            ++reached_revision_;
+            wants_are_stale_ = evictable_is_stale_ = true;
+        }
+    }
+}
+
+void PagedVolume::forget_reached()
+{
+    is_reached_.assign(is_reached_.size(), false);
+    ++stamp_;
+    ++reached_revision_;
+    is_limited_ = false;
+    wants_are_stale_ = evictable_is_stale_ = true;
+}
+
+}  // namespace shvr

@@ -1,0 +1,185 @@
+#include "engine/device/resident_volume.h"
+#include "engine/volume/grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace shvr {
+
+namespace {
+
+constexpr glm::uvec3 BRICK_EXTENT(gpu::BRICK_TEXELS);
+constexpr uint32_t BRICKS_IN_UPLOAD = 64;  // bricks per upload: 5 MiB of staging
+constexpr size_t MOST_RENEWALS = 2;        // uploads in flight
+
+/// Collects bricks in a staging buffer and copies a batch of them at a time.
+class Uploader {
+public:
+    Uploader(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, uint32_t codes_per_texel)
+        : executor_(executor),
+          codes_per_texel_(codes_per_texel, 1, 1),
+          capacity_(uint32_t(std::min<uint64_t>(BRICKS_IN_UPLOAD, bricks))),
+          staging_(memory.create("staging",
+                                 buffer_desc(capacity_ * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),
+                                 gpu::Placement::upload))
+    {}
+
+    void add(const glm::uvec3& brick, uint32_t packed_slot, const BrickTexels& texels)
+    {
+        const auto count = uint32_t(atlas_regions_.size());
+        std::byte* staged = staging_.mapped().data();
+        std::memcpy(staged + count * BrickTexels::CODE_BYTES, texels.codes.data(), BrickTexels::CODE_BYTES);
+        std::memcpy(staged + capacity_ * BrickTexels::CODE_BYTES + count * BrickTexels::RANGE_BYTES,
+                    texels.cell_ranges.data(), BrickTexels::RANGE_BYTES);
+        atlas_regions_.push_back({count * BrickTexels::CODE_BYTES, gpu::slot_origin(packed_slot) / codes_per_texel_,
+                                  BRICK_EXTENT / codes_per_texel_});
+        cell_regions_.push_back({capacity_ * BrickTexels::CODE_BYTES + count * BrickTexels::RANGE_BYTES,
+                                 brick * gpu::BRICK_CELLS, glm::uvec3(gpu::BRICK_CELLS)});
+    }
+    bool full() const { return atlas_regions_.size() == capacity_; }
+
+    void flush(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
+    {
+        if (!atlas_regions_.empty()) executor_.run(copies(atlas, cell_ranges), {.timestamps = false});
+    }
+    /// Copies all that was added. The staging buffer must outlive them.
+    FrameGraph copies(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
+    {
+        FrameGraph graph;
+        const Resource staging = graph.import("staging", staging_.import());
+        static_cast<void>(graph.copy_to_image(staging, graph.import("atlas", atlas.import()),
+                                              std::exchange(atlas_regions_, {}), "upload bricks"));
+        static_cast<void>(graph.copy_to_image(staging, graph.import("cell ranges", cell_ranges.import()),
+                                              std::exchange(cell_regions_, {}), "upload cell ranges"));
+        return graph;
+    }
+    gpu::Storage take_staging() { return std::move(staging_); }
+
+private:
+    gpu::Executor& executor_;
+    glm::uvec3 codes_per_texel_;
+    uint32_t capacity_;
+    gpu::Storage staging_;
+    std::vector<ImageRegion> atlas_regions_, cell_regions_;
+};
+
+}  // namespace
+
+ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
+                               const IntensityWindow& window, bool filtered, int threads)
+    : DeviceVolume(source.info(), window),
+      executor_(executor),
+      memory_(memory),
+      filtered_(filtered),
+      brick_counts_(brick_counts(source.info().size))
+{
+    cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
+    const gpu::DeviceTraits& traits = memory.device().traits();
+    const uint64_t bricks = brick_count();
+    // Slot 0 stays unused: it is what the page table says of a brick that is not there.
+    atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
+    const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
+    const uint32_t codes_per_texel = filtered ? 1 : 2;
+    atlas_ = memory.create("atlas", image_desc(filtered ? Format::r16_unorm : Format::r32_uint,
+                                               codes / glm::uvec3(codes_per_texel, 1, 1)));
+    page_table_ = memory.create("page table", buffer_desc(bricks * sizeof(uint32_t)));
+    cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
+    leap_ = memory.create("leap grid", image_desc(Format::r32_uint, cell_counts_));
+    for (gpu::Storage& scratch : leap_scratch_)
+        scratch = memory.create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
+
+    Uploader uploader(executor, memory, bricks, codes_per_texel);
+    std::vector<uint32_t> slots;  // bricks come in the order of their index
+    build_bricks(source, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
+        slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
+        uploader.add(glm::uvec3(brick), slots.back(), texels);
+        ranges_.push_back(texels.range);
+        if (uploader.full()) uploader.flush(atlas_, cell_ranges_);
+    });
+    uploader.flush(atlas_, cell_ranges_);
+
+    gpu::Storage staging = memory.create("staging", page_table_.desc(), gpu::Placement::upload);
+    std::memcpy(staging.mapped().data(), slots.data(), staging.mapped().size());
+    FrameGraph graph;
+    static_cast<void>(graph.copy(graph.import("staging", staging.import()),
+                                 graph.import("page table", page_table_.import()), {{0, 0, page_table_.desc().bytes}},
+                                 "upload page table"));
+    executor.run(graph, {.timestamps = false});
+}
+
+uint64_t ResidentVolume::bytes_for(const VolumeInfo& info)
+{
+    const glm::i64vec3 counts(brick_counts(info.size));
+    constexpr uint64_t LEAP_IMAGES = 3;  // the grid and its two scratch images
+    return uint64_t(counts.x * counts.y * counts.z) *
+           (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
+}
+
+std::optional<RegionBricks> ResidentVolume::region(const VoxelBox& voxels, bool /*wait*/)
+{
+    RegionBricks region = bricks_around(voxels);
+    for (uint32_t z = 0; z < region.counts.z; ++z)
+        for (uint32_t y = 0; y < region.counts.y; ++y)
+            for (uint32_t x = 0; x < region.counts.x; ++x)
+                region.slots.push_back(
+                    slot_at(gpu::grid_index(region.begin + glm::uvec3(x, y, z), brick_counts_) + 1, atlas_slots_));
+    return region;
+}
+
+std::vector<DeviceVolume::Place> ResidentVolume::places() const
+{
+    std::vector<Place> places;
+    for (uint32_t index = 0; index < ranges_.size(); ++index) {
+        const glm::uvec3 brick(position_of(index, Size3(brick_counts_)));
+        places.push_back({{0, glm::ivec3(brick)}, slot_at(index + 1, atlas_slots_), ranges_[index]});
+    }
+    return places;
+}
+
+void ResidentVolume::renew(const VolumeSource& source, std::span<const VoxelBox> changed)
+{
+    const std::vector<BrickKey> keys = bricks_that_see(changed, info().size, 0);
+    BrickMaker maker(source, window());
+    const auto texels = std::make_unique<BrickTexels>();
+    for (size_t begin = 0; begin < keys.size(); begin += BRICKS_IN_UPLOAD) {
+        std::erase_if(renewals_, [](const Renewal& renewal) { return renewal.copy.done(); });
+        if (renewals_.size() >= MOST_RENEWALS) {
+            static_cast<void>(renewals_.front().copy.finish());
+            renewals_.erase(renewals_.begin());
+        }
+        const size_t end = std::min(begin + BRICKS_IN_UPLOAD, keys.size());
+        Uploader uploader(executor_, memory_, end - begin, filtered_ ? 1 : 2);
+        for (size_t i = begin; i < end; ++i) {
+            const glm::uvec3 brick(keys[i].brick);
+            const uint32_t index = gpu::grid_index(brick, brick_counts_);
+            maker.make(keys[i], *texels);
+            uploader.add(brick, slot_at(index + 1, atlas_slots_), *texels);
+            ranges_[index] = texels->range;
+        }
+        gpu::Submission copy = executor_.submit(uploader.copies(atlas_, cell_ranges_), {.timestamps = false});
+        renewals_.push_back({uploader.take_staging(), std::move(copy)});
+    }
+    places_revision_ += !keys.empty();
+}
+
+uint64_t ResidentVolume::brick_count() const
+{
+    return uint64_t(brick_counts_.x) * brick_counts_.y * brick_counts_.z;
+}
+
+VolumeBinding ResidentVolume::import(FrameGraph& graph) const
+{
+    return {.atlas = graph.import("atlas", atlas_.import()),
+            .cell_ranges = graph.import("cell ranges", cell_ranges_.import()),
+            .page_table = graph.import("page table", page_table_.import()),
+            .leap = graph.import("leap grid", leap_.import()),
+            .leap_scratch = {graph.import("leap scratch 0", leap_scratch_[0].import()),
+                             graph.import("leap scratch 1", leap_scratch_[1].import())},
+            .brick_counts = brick_counts_,
+            .cell_counts = cell_counts_,
+            .filtered = filtered_};
+}
+
+}  // namespace shvr

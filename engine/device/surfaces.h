@@ -1,0 +1,38 @@
+#pragma once
+// The opaque surfaces of a scene on the device, and what a camera adds to draw them. Nothing exists there while there are
+// none. One thread, the one that owns the memory.
+
+#include <optional>
+
+#include "engine/gpu/memory.h"
+#include "engine/look/camera.h"
+#include "engine/look/surface_forest.h"
+#include "engine/passes/surfaces.h"
+
+namespace shvr {
+
+class SurfaceScene {
+public:
+    explicit SurfaceScene(gpu::Memory& memory) : memory_(memory) {}
+
+    /// Replaces all of them. Fails where the budget does not hold them; then the ones before stay. Waits for the device
+    /// where there were some.
+    void set(SurfaceForest forest);
+    /// Replaces a few: as SurfaceForest::replace.
+    bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
+    bool empty() const { return forest_.nodes().empty(); }
+
+    /// Handles for a graph that must be submitted; nothing where there are none.
+    std::optional<SurfaceList> import(FrameGraph& graph);
+    /// What `camera` sees of `volume`, but for the probe.
+    gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
+
+private:
+    double largest() const;
+    gpu::Memory& memory_;
+    SurfaceForest forest_;
+    gpu::Storage nodes_, list_;
+    bool is_sent_ = false;  ///< but for what `replace` wrote
+};
+
+}  // namespace shvr

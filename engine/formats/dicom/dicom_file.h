@@ -1,0 +1,49 @@
+#pragma once
+// One DICOM file as GDCM reads it: what it says of its slices, and their pixels. GDCM is seen by this file's .cpp alone.
+// GDCM keeps process-wide state, so its calls take turns; any thread may call these.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/formats/rescaled.h"
+
+namespace shvr {
+
+/// One slice, which is a frame of a file.
+struct DicomFrame {
+    std::optional<glm::dvec3> position{};  ///< the centre of its first pixel, mm, LPS
+    glm::dvec3 along_x{1.0, 0.0, 0.0};     ///< from column to column
+    glm::dvec3 along_y{0.0, 1.0, 0.0};     ///< from row to row
+    std::optional<glm::dvec2> spacing{};   ///< mm from column to column, from row to row
+    bool has_orientation = false;
+    Rescale rescale{};
+};
+
+struct DicomFile {
+    std::filesystem::path path{};
+    std::string series_uid{};
+    std::string series_description{};
+    int64_t series_number = 0;
+    std::string instance_uid{};
+    int64_t instance_number = 0;
+    int64_t time_number = 0;  ///< temporal position, or acquisition
+    int64_t columns = 0;
+    int64_t rows = 0;
+    VoxelType type = VoxelType::uint16;
+    bool is_inverted = false;             ///< MONOCHROME1: small numbers are bright
+    bool spacing_is_at_detector = false;  ///< not corrected for the distance to the source
+    std::optional<double> distance{};     ///< mm between slices, as stated; thickness where that is all there is
+    double tilt_degrees = 0.0;            ///< of the gantry
+    std::vector<DicomFrame> frames{};
+};
+
+/// Nothing where the file is no DICOM file, or one without pixels (a directory of others, a report). Fails where it is
+/// broken, or of a kind that makes no volume.
+std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
+
+/// The pixels of one frame as they are stored, x fastest, in native byte order; `bytes` is their number.
+std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
+
+}  // namespace shvr

@@ -1,0 +1,232 @@
+#include "engine/formats/dicom/dicom_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <string_view>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t PREAMBLE = 132;
+constexpr uint32_t UNDEFINED = 0xffffffff;
+constexpr int DEEPEST = 16;  ///< sequences in sequences; real files have about 5
+
+constexpr uint32_t TRANSFER_SYNTAX = 0x00020010;
+constexpr uint32_t PIXEL_DATA = 0x7fe00010;
+constexpr uint32_t ITEM = 0xfffee000;
+constexpr uint32_t END_OF_ITEM = 0xfffee00d;
+constexpr uint32_t END_OF_SEQUENCE = 0xfffee0dd;
+
+/// Types of elements (PS3.5, 6.2): those whose length takes four bytes, and those with two.
+constexpr std::string_view LONG_TYPES = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+constexpr std::string_view SHORT_TYPES = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+
+bool is_one_of(std::string_view type, std::string_view types)
+{
+    return types.find(type) != std::string_view::npos;
+}
+
+struct Encoding {
+    bool states_types = true;  ///< "explicit VR"
+    bool big_endian = false;
+};
+
+std::string name_of(uint32_t tag)
+{
+    return sentence("(", std::hex, std::setfill('0'), std::setw(4), tag >> 16, ",", std::setw(4), tag & 0xffff, ")");
+}
+
+class Walk {
+public:
+    explicit Walk(const InputFile& file) : file_(file) {}
+
+    DicomLayout run()
+    {
+        constexpr Encoding META{true, false};
+        int64_t at = PREAMBLE;
+        // The first element behind them may be in any form.
+        while (group_at(at) == 2) {
+            const Element element = read_element(at, file_.bytes, META);
+            if (element.length == UNDEFINED) refuse(element, "a length");
+            if (element.tag == TRANSFER_SYNTAX) layout_.transfer_syntax = text(element);
+            at = end_of(element, file_.bytes);
+        }
+        const std::string& syntax = layout_.transfer_syntax;
+        if (syntax == "1.2.840.10008.1.2.1.99") {
+            fail(file_.path.string(), ": transfer syntax is ", syntax,
+                 ", which compresses the header, too; expected one that does not");
+        }
+        const Encoding encoding{syntax != "1.2.840.10008.1.2", syntax == "1.2.840.10008.1.2.2"};
+        walk_elements(at, file_.bytes, encoding, 0, false);
+        return layout_;
+    }
+
+private:
+    struct Element {
+        uint32_t tag = 0;
+        std::array<char, 2> type{};
+        uint32_t length = 0;
+        int64_t value_at = 0;
+    };
+
+    [[noreturn]] void refuse(const Element& element, const std::string& expected) const
+    {
+        fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", element.value_at, " has length ",
+             element.length, "; expected ", expected);
+    }
+    int64_t end_of(const Element& element, int64_t end) const
+    {
+        if (element.length > end - element.value_at) {
+            refuse(element, sentence("at most ", end - element.value_at, ": the file or the item ends there"));
+        }
+        return element.value_at + element.length;
+    }
+
+    uint32_t group_at(int64_t at) const
+    {
+        std::array<std::byte, 2> bytes{};
+        return file_.read_some(at, bytes) == bytes.size() ? number(bytes.data(), 2, false) : 0;
+    }
+    uint32_t number(const std::byte* bytes, int count, bool big_endian) const
+    {
+        uint32_t value = 0;
+        for (int i = 0; i < count; ++i) {
+            value = value << 8 | std::to_integer<uint32_t>(bytes[big_endian ? i : count - 1 - i]);
+        }
+        return value;
+    }
+
+    Element read_element(int64_t at, int64_t end, const Encoding& encoding) const
+    {
+        std::array<std::byte, 12> bytes{};
+        const size_t count =
+            file_.read_some(at, std::span(bytes).first(static_cast<size_t>(std::min<int64_t>(12, end - at))));
+        const auto need = [&](size_t needed) {
+            if (count < needed)
+                fail(file_.path.string(), ": ends in the middle of an element at byte ", at, "; expected more");
+        };
+        need(8);
+        Element element;
+        element.tag = number(&bytes[0], 2, encoding.big_endian) << 16 | number(&bytes[2], 2, encoding.big_endian);
+        if (!encoding.states_types || element.tag >> 16 == 0xfffe) {
+            element.length = number(&bytes[4], 4, encoding.big_endian);
+            element.value_at = at + 8;
+            return element;
+        }
+        element.type = {static_cast<char>(bytes[4]), static_cast<char>(bytes[5])};
+        const std::string_view type(element.type.data(), 2);
+        const auto is_letter = [](char character) { return character >= 'A' && character <= 'Z'; };
+        if (!is_letter(type[0]) || !is_letter(type[1])) {
+            fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at,
+                 " states no type; expected two letters, as its transfer syntax says");
+        }
+        if (is_one_of(type, LONG_TYPES)) {
+            need(12);
+            element.length = number(&bytes[8], 4, encoding.big_endian);
+            element.value_at = at + 12;
+            return element;
+        }
+        // Of what is unknown, GDCM guesses other lengths than we do.
+        if (!is_one_of(type, SHORT_TYPES)) {
+            fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at, " is of type ",
+                 in_quotes(type), "; expected a type that DICOM knows");
+        }
+        element.length = number(&bytes[6], 2, encoding.big_endian);
+        element.value_at = at + 8;
+        return element;
+    }
+
+    std::string text(const Element& element) const
+    {
+        std::string text(std::min<size_t>(element.length, 64), '\0');
+        text.resize(file_.read_some(element.value_at, std::as_writable_bytes(std::span(text))));
+        while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+        return text;
+    }
+
+    /// Elements up to `end`, or to the end of the item that they are in. Returns where the next one begins.
+    int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
+    {
+        constexpr int64_t SHORTEST = 8;
+        while (at < end) {
+            if (depth == 0 && end - at < SHORTEST) return end;  // padding
+            const Element element = read_element(at, end, encoding);
+            if (element.tag == END_OF_ITEM && ends_by_delimiter) return element.value_at;
+            if (element.tag >> 16 == 0xfffe) refuse(element, "an element outside of sequences");
+            at = walk_value(element, end, encoding, depth);
+        }
+        if (ends_by_delimiter) fail(file_.path.string(), ": ends in the middle of a sequence; expected its end");
+        return at;
+    }
+
+    int64_t walk_value(const Element& element, int64_t end, const Encoding& encoding, int depth)
+    {
+        const bool is_pixels = element.tag == PIXEL_DATA && depth == 0;
+        const bool is_unknown = std::string_view(element.type.data(), 2) == "UN";
+        // What is unknown to the writer's program is in the older form (PS3.5, 6.2.2).
+        const Encoding inside = is_unknown ? Encoding{false, false} : encoding;
+        if (element.length == UNDEFINED) {
+            layout_.is_encapsulated |= is_pixels;
+            return walk_items(element.value_at, end, inside, depth + 1, true, is_pixels);
+        }
+        const int64_t value_end = end_of(element, end);
+        if (is_pixels) {
+            layout_.pixel_bytes = element.length;
+        } else if (holds_items(element, encoding)) {
+            walk_items(element.value_at, value_end, inside, depth + 1, false, false);
+        }
+        return value_end;
+    }
+
+    bool holds_items(const Element& element, const Encoding& encoding) const
+    {
+        std::array<std::byte, 4> start{};
+        if (element.length < 8 || file_.read_some(element.value_at, start) < start.size()) return false;
+        return (number(&start[0], 2, encoding.big_endian) << 16 | number(&start[2], 2, encoding.big_endian)) == ITEM;
+    }
+
+    /// Items of a sequence or fragments of Pixel Data, up to `end` or to their delimiter.
+    int64_t walk_items(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter,
+                       bool are_fragments)
+    {
+        if (depth > DEEPEST) fail(file_.path.string(), ": nests sequences deeper than ", DEEPEST, "; expected fewer");
+        while (at < end) {
+            const Element item = read_element(at, end, encoding);
+            if (item.tag == END_OF_SEQUENCE && ends_by_delimiter) return item.value_at;
+            if (item.tag != ITEM) refuse(item, "an item of the sequence that it is in");
+            if (item.length == UNDEFINED) {
+                if (are_fragments) refuse(item, "a fragment with a length");
+                at = walk_elements(item.value_at, end, encoding, depth, true);
+                continue;
+            }
+            const int64_t item_end = end_of(item, end);
+            if (are_fragments) {
+                layout_.pixel_bytes += item.length;
+            } else {
+                walk_elements(item.value_at, item_end, encoding, depth, false);
+            }
+            at = item_end;
+        }
+        if (ends_by_delimiter) fail(file_.path.string(), ": ends in the middle of a sequence; expected its end");
+        return at;
+    }
+
+    const InputFile& file_;
+    DicomLayout layout_;
+};
+
+}  // namespace
+
+std::optional<DicomLayout> check_dicom_layout(const InputFile& file)
+{
+    std::array<std::byte, 4> magic{};
+    if (file.read_some(PREAMBLE - 4, magic) < 4) return {};
+    if (magic != std::array{std::byte{'D'}, std::byte{'I'}, std::byte{'C'}, std::byte{'M'}}) return {};
+    return Walk(file).run();
+}
+
+}  // namespace shvr

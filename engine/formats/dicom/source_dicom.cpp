@@ -1,0 +1,187 @@
+// DICOM: a folder of slices, one of its files, or a file of many frames. Slices are decoded when they are asked for; a
+// few are kept.
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/formats/dicom/dicom_series.h"
+#include "engine/formats/header_fields.h"
+#include "engine/formats/readers.h"
+#include "engine/formats/rescaled.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int64_t KEPT_BYTES = int64_t{64} << 20;
+constexpr size_t MOST_FILES = 65536;
+
+class DicomSource final : public VolumeSource {
+public:
+    DicomSource(VolumeInfo info, std::vector<DicomFile> files, std::vector<DicomSlice> slices)
+        : VolumeSource(std::move(info)), files_(std::move(files)), slices_(std::move(slices))
+    {
+        const Size3 size = this->info().size;
+        pixels_ = static_cast<size_t>(size.x * size.y);
+        most_kept_ = static_cast<size_t>(
+            std::max<int64_t>(2, KEPT_BYTES / (size.x * size.y * static_cast<int64_t>(bytes_of(this->info().type)))));
+    }
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        const Size3 extent = box.size();
+        const size_t voxel_bytes = bytes_of(info().type);
+        const size_t row_bytes = static_cast<size_t>(extent.x) * voxel_bytes;
+        SHVR_CHECK(voxels.size() == row_bytes * static_cast<size_t>(extent.y * extent.z), voxels.size());
+        std::byte* row = voxels.data();
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
+            const std::shared_ptr<const Pixels> slice = decoded(static_cast<size_t>(z));
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += row_bytes) {
+                const auto first = static_cast<size_t>(box.lower.x + info().size.x * y) * voxel_bytes;
+                std::copy_n(slice->begin() + static_cast<std::ptrdiff_t>(first), row_bytes, row);
+            }
+        }
+    }
+
+private:
+    using Pixels = std::vector<std::byte>;
+    struct Kept {
+        size_t slice = 0;
+        std::shared_ptr<const Pixels> pixels{};
+    };
+
+    std::shared_ptr<const Pixels> decoded(size_t number) const
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.slice == number; });
+        if (found != kept_.end()) {
+            std::rotate(kept_.begin(), found, found + 1);  // the one used last comes first
+            return kept_.front().pixels;
+        }
+        const DicomSlice& slice = slices_[number];
+        const DicomFile& file = files_[slice.file];
+        Pixels stored = read_dicom_pixels(file, slice.frame, pixels_ * bytes_of(file.type));
+        const Rescale& rescale = file.frames[slice.frame].rescale;
+        if (!rescale.changes_nothing() || file.type != info().type) {
+            Pixels intensities(pixels_ * bytes_of(info().type));
+            rescale_voxels(file.type, stored, rescale, info().type, intensities);
+            stored = std::move(intensities);
+        }
+        if (kept_.size() == most_kept_) kept_.pop_back();
+        return kept_.insert(kept_.begin(), {number, std::make_shared<const Pixels>(std::move(stored))})->pixels;
+    }
+
+    std::vector<DicomFile> files_;
+    std::vector<DicomSlice> slices_;
+    size_t pixels_ = 0;  ///< of a slice
+    size_t most_kept_ = 2;
+    mutable std::mutex mutex_;
+    mutable std::vector<Kept> kept_;
+};
+
+bool begins_as_dicom(const fs::path& path)
+{
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return false;
+    const std::string head = read_head(path, 132);
+    return head.size() == 132 && head.ends_with("DICM");
+}
+
+std::vector<fs::path> dicom_files_in(const fs::path& folder)
+{
+    std::vector<fs::path> paths;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        if (!at->path().filename().string().starts_with('.') && begins_as_dicom(at->path()))
+            paths.push_back(at->path());
+        if (paths.size() > MOST_FILES)
+            fail(folder.string(), ": holds more than ", MOST_FILES, " files; expected fewer");
+    }
+    if (error) fail(folder.string(), ": cannot be read: ", error.message());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+/// What makes no volume among others (a report, a colour picture) is left out, with words.
+std::vector<DicomFile> read_all(const std::vector<fs::path>& paths, std::vector<std::string>& left_out)
+{
+    std::vector<DicomFile> files;
+    for (const fs::path& path : paths) {
+        try {
+            if (auto file = read_dicom_file(path)) files.push_back(std::move(*file));
+        } catch (const Error& error) {
+            left_out.emplace_back(error.what());
+        }
+    }
+    return files;
+}
+
+/// The type that holds the intensities of every slice.
+VoxelType type_of(const std::vector<DicomFile>& files, const std::vector<DicomSlice>& slices)
+{
+    const Rescale& first = files[slices[0].file].frames[slices[0].frame].rescale;
+    const VoxelType stored = files[slices[0].file].type;
+    for (const DicomSlice& slice : slices) {
+        const Rescale& rescale = files[slice.file].frames[slice.frame].rescale;
+        // PET states a slope of its own for each slice.
+        if (rescale.slope != first.slope || rescale.intercept != first.intercept) {
+            return bytes_of(stored) <= 2 ? VoxelType::float32 : VoxelType::float64;
+        }
+    }
+    return rescaled_type(stored, first);
+}
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions& options)
+{
+    std::error_code ignored;
+    const bool is_folder = fs::is_directory(path, ignored);
+    const std::string where = path.string();
+    if (!is_folder && !begins_as_dicom(path)) return nullptr;
+    std::vector<DicomFile> files;
+    std::vector<std::string> left_out;
+    if (!is_folder) {
+        std::optional<DicomFile> file = read_dicom_file(path);
+        if (!file) fail(where, ": is a DICOM file without Pixel Data; expected slices");
+        // One slice stands for the series that it is of.
+        if (file->frames.size() == 1) {
+            const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+            files = read_all(dicom_files_in(folder), left_out);
+            std::erase_if(files, [&](const DicomFile& other) { return other.series_uid != file->series_uid; });
+            left_out.clear();
+        }
+        if (files.empty()) files.push_back(std::move(*file));
+    } else {
+        const std::vector<fs::path> paths = dicom_files_in(path);
+        if (paths.empty()) return nullptr;
+        files = read_all(paths, left_out);
+        if (files.empty()) {
+            fail(where, ": holds ", paths.size(), " DICOM files, none with slices; expected some",
+                 left_out.empty() ? std::string() : " (" + left_out[0] + ")");
+        }
+    }
+    const OpenOptions series{.channel = is_folder ? options.channel : std::string()};
+    files = choose_series(where, std::move(files), series);
+    DicomVolume volume = arrange_slices(where, files, options);
+    VolumeInfo& info = volume.info;
+    info.name = (is_folder && !path.has_filename() ? path.parent_path() : path).filename().string();
+    info.format = "dicom";
+    info.type = type_of(files, volume.slices);
+    static_cast<void>(voxel_count(info));
+    if (!left_out.empty()) {
+        info.warnings.push_back(sentence(left_out.size(), " files were left out, the first because ", left_out[0]));
+    }
+    const DicomFile& first = files[volume.slices[0].file];
+    if (first.is_inverted)
+        info.warnings.emplace_back("small numbers are bright (MONOCHROME1); intensities were reversed");
+    if (!is_folder && files.size() > 1) {
+        info.warnings.push_back(sentence("one file of a series was opened; all ", files.size(), " of it were read"));
+    }
+    return std::make_unique<DicomSource>(std::move(info), std::move(files), std::move(volume.slices));
+}
+
+}  // namespace shvr

@@ -1,0 +1,73 @@
+#include "engine/formats/export/volume_export.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/base/atomic_writer.h"
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/volume/unit.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t STRIP_BYTES = int64_t{1} << 18;
+
+std::string form_of(const std::filesystem::path& path)
+{
+    return lower_case(path.extension().string());
+}
+
+}  // namespace
+
+int64_t export_rows(const VolumeInfo& info)
+{
+    const int64_t row_bytes = info.size.x * static_cast<int64_t>(bytes_of(info.type));
+    return std::clamp<int64_t>(STRIP_BYTES / row_bytes, 1, info.size.y);
+}
+
+void export_nrrd(const std::filesystem::path& path, const VolumeSource& source)
+{
+    static_assert(std::endian::native == std::endian::little);
+    const VolumeInfo& info = source.info();
+    // Quotes would end the name of the unit.
+    std::string unit = plain_unit(info.unit);
+    std::ranges::replace(unit, '"', '\'');
+    const std::string quoted = "\"" + unit + "\"";
+    const char* const type = info.type == VoxelType::float32   ? "float"
+                             : info.type == VoxelType::float64 ? "double"
+                                                               : name_of(info.type);
+    const std::string header =
+        sentence("NRRD0004\ntype: ", type, "\ndimension: 3\nsizes: ", digits_of(info.size),
+                 "\nspacings: ", digits_of(info.spacing), "\nunits: ", quoted, " ", quoted, " ", quoted,
+                 bytes_of(info.type) > 1 ? "\nendian: little" : "", "\nencoding: raw\n\n");
+    AtomicWriter writer(path);
+    writer.append(std::as_bytes(std::span(header)));
+    const int64_t step = export_rows(info);
+    std::vector<std::byte> voxels;
+    for (int64_t z = 0; z < info.size.z; ++z)
+        for (int64_t y = 0; y < info.size.y; y += step) {
+            const VoxelBox box{{0, y, z}, {info.size.x, std::min(y + step, info.size.y), z + 1}};
+            voxels.resize(static_cast<size_t>(box.size().x * box.size().y) * bytes_of(info.type));
+            source.read(box, voxels);
+            writer.append(voxels);
+        }
+    writer.commit();
+}
+
+bool is_volume_export(const std::filesystem::path& path)
+{
+    const std::string form = form_of(path);
+    return form == ".nrrd" || form == ".tif" || form == ".tiff";
+}
+
+void export_volume(const std::filesystem::path& path, const VolumeSource& source)
+{
+    static_cast<void>(voxel_count(source.info()));
+    if (!is_volume_export(path))
+        fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected .nrrd or .tif");
+    if (form_of(path) == ".nrrd") return export_nrrd(path, source);
+    export_tiff(path, source);
+}
+
+}  // namespace shvr

@@ -1,0 +1,61 @@
+#pragma once
+// What the readers of text headers share: the head of a file, fields by name, spacing and unit.
+// Every refusal is one sentence: file, field, value found, value expected. Any thread may call
+// these.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/text.h"
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+/// No header is longer.
+inline constexpr size_t LONGEST_HEADER = size_t{1} << 20;
+
+/// The first bytes of a file, at most `max_bytes`. Fails where it is no regular file or cannot be read.
+std::string read_head(const std::filesystem::path& path, size_t max_bytes = LONGEST_HEADER);
+
+/// The fields of one header. Names are matched without regard to case.
+class HeaderFields {
+public:
+    explicit HeaderFields(std::filesystem::path path) : path_(std::move(path)) {}
+
+    const std::filesystem::path& path() const { return path_; }
+    /// Fails where the field is there already.
+    void add(std::string_view name, std::string_view value);
+
+    bool has(const char* name) const { return find(name) != nullptr; }
+    const std::string* find(const char* name) const;
+    const std::string& required(const char* name, const char* expected) const;
+    [[noreturn]] void refuse(const char* name, const std::string& expected) const;
+
+    int64_t whole(const char* name, int64_t fallback, int64_t lower, int64_t upper) const;
+    std::vector<double> numbers(const char* name, size_t count) const;
+    Size3 size(const char* name) const;                                ///< required, each 1 ... 2^20
+    std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< as `size`, of `count` axes
+    VoxelType type(const char* name) const;                            ///< required
+    bool flag(const char* name, bool fallback) const;
+    glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
+
+    /// Where the header says its voxels are: relative to the header's folder, or absolute.
+    std::filesystem::path data_file(const char* name) const;
+
+private:
+    std::filesystem::path path_;
+    std::map<std::string, std::string> values_;
+};
+
+/// Puts spacing and unit into `info`, with a warning for each that is not stated. A spacing without a unit is taken as
+/// `usual_unit`, unless it is 1 1 1, which means voxels.
+void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
+                   const char* usual_unit);
+
+inline constexpr const char* NO_BYTE_ORDER = "no byte order stated; little-endian assumed";
+
+}  // namespace shvr

@@ -1,0 +1,134 @@
+#include "engine/formats/open_volume.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/formats/readers.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+namespace {
+
+struct Reader {
+    const char* name;
+    std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
+    bool reads_folders = false;  ///< others are not asked about one
+};
+
+/// In this order: a header is asked before the bare voxels that it may describe.
+constexpr Reader READERS[] = {
+    {"OME-Zarr", open_ome_zarr, true},
+    {"TIFF", open_tiff, true},
+    {"NRRD", open_nrrd},
+    {"MetaImage", open_mhd},
+    {"NIfTI", open_nifti},
+    {"DICOM", open_dicom, true},
+    {"RAW with a side-car", open_raw_with_side_car},
+};
+
+/// Pictures take squares and quotients of spacings. Sessions have the same limits.
+void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
+{
+    constexpr double LEAST = 1e-12;
+    constexpr double MOST = 1e12;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = info.spacing[axis];
+        if (spacing >= LEAST && spacing <= MOST) continue;
+        fail(path.string(), ": spacing along ", "xyz"[axis], " is ", spacing, " ", info.unit, "; expected ", LEAST,
+             " to ", MOST);
+    }
+}
+
+[[noreturn]] void refuse_layout(const std::string& text)
+{
+    throw UsageError(sentence("raw layout is ", in_quotes(text),
+                              "; expected WxHxD:TYPE[:big|little][:OFFSET] with TYPE ", VOXEL_TYPE_NAMES,
+                              ", as in 256x256x108:int16:big:512"));
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator)
+{
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const size_t end = std::min(text.size(), text.find(separator));
+        parts.push_back(text.substr(0, end));
+        if (end == text.size()) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+RawLayout parse_raw_layout(const std::string& text)
+{
+    const std::vector<std::string_view> parts = split(text, ':');
+    if (parts.size() < 2 || parts.size() > 4) refuse_layout(text);
+    RawLayout layout;
+    const std::vector<std::string_view> sides = split(parts[0], 'x');
+    if (sides.size() != 3) refuse_layout(text);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<int64_t> side = whole_of(sides[static_cast<size_t>(axis)]);
+        if (!side) refuse_layout(text);
+        if (*side < 1 || *side > LARGEST_SIDE) {
+            throw UsageError(sentence("raw layout ", in_quotes(text), ": size along ", "xyz"[axis], " is ", *side,
+                                      "; expected 1 to ", int64_t{1} << 20));
+        }
+        layout.size[axis] = *side;
+    }
+    const std::optional<VoxelType> type = voxel_type_of(std::string(parts[1]));
+    if (!type) refuse_layout(text);
+    layout.type = *type;
+    bool has_order = false;
+    bool has_offset = false;
+    for (size_t i = 2; i < parts.size(); ++i) {
+        const std::optional<int64_t> offset = whole_of(parts[i]);
+        if (!has_order && !has_offset && (parts[i] == "big" || parts[i] == "little")) {
+            layout.big_endian = parts[i] == "big";
+            has_order = true;
+        } else if (!has_offset && offset && *offset >= 0) {
+            layout.offset_bytes = *offset;
+            has_offset = true;
+        } else {
+            refuse_layout(text);
+        }
+    }
+    return layout;
+}
+
+bool is_address(std::string_view path)
+{
+    // RFC 3986: a scheme is a letter, and then letters, digits, "+", "-" and ".".
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto belongs = [&](char c) {
+        return is_letter(c) || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
+    };
+    const size_t end = path.find("://");
+    return end != std::string_view::npos && end > 0 && is_letter(path.front()) &&
+           std::ranges::all_of(path.substr(0, end), belongs);
+}
+
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)
+{
+    std::error_code ignored;
+    if (is_address(path.string()) && !std::filesystem::exists(path, ignored))
+        fail(path.string(), ": is an address; expected ", NO_ADDRESS);
+    const bool is_folder = std::filesystem::is_directory(path, ignored);
+    std::string tried;
+    for (const Reader& reader : READERS) {
+        if (is_folder && !reader.reads_folders) continue;
+        if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) {
+            check_spacing(path, source->info());
+            return source;
+        }
+        tried += tried.empty() ? "" : ", ";
+        tried += reader.name;
+    }
+    if (is_folder) {
+        fail(path.string(), ": is a folder without shvr/session.json and without a volume; expected a project, or ",
+             "a volume as ", tried, ", or slices of bare voxels with --raw WxHxD:TYPE");
+    }
+    fail(path.string(), ": is in no format known here; expected ", tried, ", or bare voxels with --raw WxHxD:TYPE");
+}
+
+}  // namespace shvr

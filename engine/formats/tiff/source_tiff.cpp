@@ -1,0 +1,406 @@
+// TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and OME-TIFF; and
+// (source_tiff_folder.cpp) a folder of such files, one slice each.
+//
+// x runs to the right, y down, z in the order of pages: right-handed, as the voxels of all formats here. Pages whose
+// Orientation is a mirrored one are mirrored back.
+
+#include "engine/formats/tiff/source_tiff.h"
+
+#include <tiffio.h>
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/formats/header_fields.h"
+#include "engine/formats/readers.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TiffSource final : public VolumeSource {
+public:
+    TiffSource(TiffVolume volume, std::unique_ptr<const TiffFile> file)
+        : VolumeSource(std::move(volume.info)),
+          layout_(std::move(volume.layout)),
+          recipe_(volume.recipe),
+          files_(std::move(volume.files)),
+          slices_(std::move(volume.slices)),
+          file_(std::move(file))
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        const Size3 size = info().size;
+        const Size3 extent = box.size();
+        const auto slice_bytes = static_cast<size_t>(extent.x * extent.y) * bytes_of(info().type);
+        SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
+                   glm::all(glm::lessThanEqual(box.upper, size)) && glm::all(glm::greaterThan(extent, Size3(0))));
+        SHVR_CHECK(voxels.size() == slice_bytes * static_cast<size_t>(extent.z), voxels.size());
+
+        TiffRectangle rectangle{box.lower.x, box.lower.y, box.upper.x, box.upper.y};
+        if (recipe_.mirrors_x) {
+            rectangle.left = size.x - box.upper.x;
+            rectangle.right = size.x - box.lower.x;
+        }
+        if (recipe_.mirrors_y) {
+            rectangle.top = size.y - box.upper.y;
+            rectangle.bottom = size.y - box.lower.y;
+        }
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
+            const std::span<std::byte> slice_voxels = voxels.first(slice_bytes);
+            voxels = voxels.subspan(slice_bytes);
+            const TiffSlice& slice = slices_[static_cast<size_t>(z)];
+            if (file_) {
+                read_rectangle(*file_, slice, layout_, recipe_, rectangle, cache_, slice_voxels);
+            } else {
+                read_rectangle(TiffFile(files_[slice.file]), slice, layout_, recipe_, rectangle, cache_, slice_voxels);
+            }
+            mirror(recipe_, extent.x, slice_voxels);
+        }
+    }
+
+private:
+    TiffLayout layout_;
+    TiffRecipe recipe_;
+    std::vector<fs::path> files_;
+    std::vector<TiffSlice> slices_;
+    std::unique_ptr<const TiffFile> file_;
+    mutable TiffBlockCache cache_;
+};
+
+/// Fields of programs that keep stacks in ways not read here: taken for a page they would be one slice of many.
+void refuse_other_stacks(const TiffFile& file, uint64_t directory)
+{
+    constexpr std::pair<uint16_t, const char*> TAGS[] = {{33629, "MetaMorph (UIC2)"}, {33630, "MetaMorph (UIC3)"}};
+    for (const auto& [tag, program] : TAGS) {
+        if (!has_field(file, directory, tag)) continue;
+        fail(file.path().string(), ": is a stack of ", program,
+             "; expected a TIFF with a page for each slice: save it as TIFF, for example from Fiji");
+    }
+}
+
+class FileOpener {
+public:
+    FileOpener(const fs::path& path, const OpenOptions& options)
+        : options_(options), file_(std::make_unique<const TiffFile>(path)), name_(path.string())
+    {}
+
+    std::unique_ptr<VolumeSource> open()
+    {
+        directories_ = read_directories(*file_);
+        layouts_.resize(directories_.kinds.size());
+        const TiffPage first_page(*file_, directories_.pages.front().offset, 1);
+        refuse_other_stacks(*file_, directories_.pages.front().offset);
+
+        // An OME-TIFF says itself which pages are planes. Elsewhere the pages of most voxels are.
+        const uint32_t first = pages_to_show(directories_).front();
+        description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
+                                        layout_of_page(first).samples, TiffRole::whole);
+        take_many_channels_as_slices();
+        if (description_.writer == TiffDescription::Writer::ome) {
+            check_planes();
+        } else {
+            shown_ = main_series(pages_to_show(directories_));
+            order_planes();
+        }
+
+        const uint32_t shown = shown_.front();
+        const TiffPage page(*file_, directories_.pages[shown].offset, shown + 1);
+        volume_.layout = layout_of_page(shown);
+        check_kinds();
+
+        const std::vector<TiffPixelChannel> of_pixel =
+            channels_of_pixel(page, volume_.layout, description_, volume_.info.warnings);
+        const TiffChoice choice = choose(name_, options_, names_of_channels(of_pixel), description_.frames);
+        const size_t colors = of_pixel.size();
+        take_slices(static_cast<int64_t>(choice.channel / colors), choice.frame);
+        volume_.info.name = file_->path().filename().string();
+        volume_.info.format = "tiff";
+        volume_.info.size = {volume_.layout.width, volume_.layout.height, description_.slices};
+        apply_recipe(volume_, page, of_pixel[choice.channel % colors], description_);
+        apply_tiff_spacing(volume_.info, description_, *file_, directories_.pages.front().offset, first_page);
+        volume_.files = {file_->path()};
+        static_cast<void>(voxel_count(volume_.info));
+        return make_tiff_source(std::move(volume_), std::move(file_));
+    }
+
+private:
+    const TiffLayout& layout_of_kind(uint32_t kind)
+    {
+        std::optional<TiffLayout>& layout = layouts_[kind];
+        if (!layout) {
+            const size_t first = directories_.kinds[kind].first_page;
+            layout = layout_of(TiffPage(*file_, directories_.pages[first].offset, first + 1));
+        }
+        return *layout;
+    }
+    const TiffLayout& layout_of_page(uint32_t page) { return layout_of_kind(directories_.pages[page].kind); }
+
+    /// What scripts make of slices by mistake. ImageJ composes at most 7 channels.
+    void take_many_channels_as_slices()
+    {
+        if (description_.writer != TiffDescription::Writer::imagej || description_.channels <= 7 ||
+            description_.slices > 1 || description_.frames > 1 || !options_.channel.empty())
+            return;
+        volume_.info.warnings.push_back(sentence("the description counts ", description_.channels,
+                                                 " channels of one slice each; they were taken as slices"));
+        std::swap(description_.channels, description_.slices);
+    }
+
+    /// Pages may show the same and be stored in different ways.
+    void check_kinds()
+    {
+        std::vector<int64_t> pages(directories_.kinds.size());
+        for (const uint32_t page : shown_) {
+            const uint32_t kind = directories_.pages[page].kind;
+            if (pages[kind]++ > 0) continue;
+            const TiffPage first(*file_, directories_.pages[page].offset, page + 1);
+            check_is_supported(first, layout_of_kind(kind));
+            check_blocks(*file_, first, layout_of_kind(kind));
+        }
+        for (size_t kind = 0; kind < pages.size(); ++kind) {
+            if (pages[kind] > 0) check_amount(*file_, *layouts_[kind], pages[kind]);
+        }
+    }
+
+    /// The run of equal pages with most voxels. What else there is must lie before or behind it, and is left out.
+    std::vector<uint32_t> main_series(const std::vector<uint32_t>& pages)
+    {
+        if (pages.size() < directories_.pages.size()) {
+            volume_.info.warnings.push_back(sentence(directories_.pages.size() - pages.size(),
+                                                     " pages are smaller copies or masks and were left out"));
+        }
+        std::vector<std::pair<size_t, size_t>> runs;  // [begin, end) in `pages`
+        for (size_t i = 0; i < pages.size(); ++i) {
+            if (i == 0 || !is_like(pages[i], pages[i - 1])) runs.emplace_back(i, i);
+            runs.back().second = i + 1;
+        }
+        const auto voxels = [&](const std::pair<size_t, size_t>& run) {
+            const TiffLayout& layout = layout_of_page(pages[run.first]);
+            return static_cast<double>(layout.width * layout.height) * static_cast<double>(run.second - run.first);
+        };
+        const auto main = *std::max_element(runs.begin(), runs.end(),
+                                            [&](const auto& a, const auto& b) { return voxels(a) < voxels(b); });
+        for (const auto& run : runs) {
+            if (run == main) continue;
+            const uint32_t other = pages[run.first];
+            if (is_like(other, pages[main.first])) {
+                const uint32_t odd = pages[main.first < run.first ? main.second : run.second];
+                fail(name_, ": page ", odd + 1, " has ", in_words(layout_of_page(odd)), "; expected ",
+                     in_words(layout_of_page(other)), ", as the pages before and after it");
+            }
+            volume_.info.warnings.push_back(
+                sentence(run.second - run.first, run.second - run.first == 1 ? " page of " : " pages of ",
+                         in_words(layout_of_page(other)), " from page ", other + 1, " on ",
+                         run.second - run.first == 1 ? "was" : "were", " left out: the volume is the ",
+                         main.second - main.first, main.second - main.first == 1 ? " page of " : " pages of ",
+                         in_words(layout_of_page(pages[main.first]))));
+        }
+        return {pages.begin() + static_cast<std::ptrdiff_t>(main.first),
+                pages.begin() + static_cast<std::ptrdiff_t>(main.second)};
+    }
+
+    bool is_like(uint32_t a, uint32_t b)
+    {
+        return directories_.pages[a].kind == directories_.pages[b].kind ||
+               show_the_same(layout_of_page(a), layout_of_page(b));
+    }
+
+    /// Fills the description's `pages`, as indices into `shown_`, in ImageJ's order.
+    void order_planes()
+    {
+        const int64_t planes = description_.slices * description_.channels * description_.frames;
+        const auto found = static_cast<int64_t>(shown_.size());
+        if (planes > found && found == 1 && directories_.pages.size() == 1) {
+            check_contiguous(planes);
+        } else if (planes != found) {
+            if (description_.channels > 1 || description_.frames > 1) {
+                fail(name_, ": its ImageJ description counts ", description_.channels, " channels of ",
+                     description_.slices, " slices at ", description_.frames, " points in time; expected ", planes,
+                     " pages, but it holds ", found);
+            }
+            if (planes > 1) {
+                volume_.info.warnings.push_back(sentence("the description counts ", planes, " images, the file holds ",
+                                                         found, " pages; all pages were taken"));
+            }
+            description_.slices = found;
+        }
+        description_.pages.clear();
+    }
+
+    /// ImageJ's form for stacks above 4 GiB, which is as good for small ones: the first directory is the only one, and
+    /// voxels of one image follow those of the other without a gap.
+    void check_contiguous(int64_t planes)
+    {
+        const TiffPage page(*file_, directories_.pages.front().offset, 1);
+        const TiffLayout& layout = layout_of_page(0);
+        const auto refuse = [&](const auto&... found) {
+            fail(name_, ": its ImageJ description counts ", planes, " images, but it holds one page ", found...);
+        };
+        if (!layout.is_bare() || layout.is_tiled || layout.is_planar) {
+            refuse("that is ", layout.is_bare() ? "in tiles or planes" : "compressed",
+                   "; expected a page for each image");
+        }
+        check_is_supported(page, layout);
+        const TiffExtent first = extent_of_block(*file_, page, layout, 0);
+        for (int64_t block = 1; block < layout.blocks(); ++block) {
+            const TiffExtent extent = extent_of_block(*file_, page, layout, block);
+            if (extent.offset == first.offset + block * layout.block_height * layout.block_row_bytes()) continue;
+            refuse("whose strips have gaps; expected strips that follow each other, or a page for each image");
+        }
+        // `planes` is at most 2^20 and a page at most 2^40 pixels, of samples that the file holds.
+        int64_t needed = 0;
+        if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
+            !file_->holds(static_cast<uint64_t>(first.offset), static_cast<uint64_t>(needed))) {
+            refuse("and ", file_->size_bytes() - first.offset, " bytes of voxels; expected ", needed,
+                   ": it was cut short, or pages are missing");
+        }
+        is_contiguous_ = true;
+    }
+
+    /// The pages that OME-XML names must be there, and alike.
+    void check_planes()
+    {
+        for (uint32_t& plane : description_.pages) {
+            if (plane == TiffDescription::NO_PAGE) continue;
+            if (plane >= directories_.pages.size()) {
+                fail(name_, ": its OME-XML names page ", plane + 1, "; expected at most the ",
+                     directories_.pages.size(), " pages the file holds: it was cut short, or is one of several files");
+            }
+            if (shown_.empty() || is_like(plane, shown_.front())) {
+                shown_.push_back(plane);
+                plane = static_cast<uint32_t>(shown_.size() - 1);
+                continue;
+            }
+            fail(name_, ": page ", plane + 1, " has ", in_words(layout_of_page(plane)), "; expected ",
+                 in_words(layout_of_page(shown_.front())), ", as the others of its image");
+        }
+        if (shown_.empty()) fail(name_, ": its OME-XML names no page; expected one for each slice");
+    }
+
+    std::vector<std::string> names_of_channels(const std::vector<TiffPixelChannel>& of_pixel) const
+    {
+        std::vector<std::string> names;
+        for (int64_t channel = 0; channel < description_.channels; ++channel) {
+            for (const TiffPixelChannel& part : of_pixel) {
+                const auto index = static_cast<size_t>(channel);
+                const bool has_name = index < description_.channel_names.size();
+                if (of_pixel.size() == 1) {
+                    names.push_back(has_name ? description_.channel_names[index] : std::string());
+                } else {
+                    names.push_back(description_.channels == 1 ? part.name : std::string());
+                }
+            }
+        }
+        return names;
+    }
+
+    void take_slices(int64_t channel, int64_t frame)
+    {
+        for (int64_t z = 0; z < description_.slices; ++z) {
+            const int64_t in_order = channel + description_.channels * (z + description_.slices * frame);
+            if (is_contiguous_) {
+                volume_.slices.push_back({0, 1, directories_.pages[0].offset, in_order * volume_.layout.page_bytes()});
+                continue;
+            }
+            auto place = static_cast<size_t>(in_order);
+            if (!description_.pages.empty()) {
+                const int64_t at = z + description_.slices * (channel + description_.channels * frame);
+                place = description_.pages[static_cast<size_t>(at)];
+                if (place == TiffDescription::NO_PAGE) {
+                    fail(name_, ": its OME-XML names no page for slice ", z + 1, "; expected one for each slice");
+                }
+            }
+            const uint32_t page = shown_[place];
+            volume_.slices.push_back({0, page + 1, directories_.pages[page].offset, 0});
+        }
+        // What is cut short is cut short at the end.
+        const TiffSlice& last = volume_.slices.back();
+        const TiffPage page(*file_, last.directory, last.page);
+        check_blocks(*file_, page, layout_of(page));
+    }
+
+    const OpenOptions& options_;
+    std::unique_ptr<const TiffFile> file_;
+    std::string name_;
+    TiffDirectories directories_;
+    std::vector<std::optional<TiffLayout>> layouts_;  ///< by kind, once asked for
+    TiffDescription description_;
+    std::vector<uint32_t> shown_;  ///< pages
+    bool is_contiguous_ = false;
+    TiffVolume volume_;
+};
+
+}  // namespace
+
+std::vector<uint32_t> pages_to_show(const TiffDirectories& directories)
+{
+    std::vector<uint32_t> all, whole;
+    for (size_t i = 0; i < directories.pages.size(); ++i) {
+        all.push_back(static_cast<uint32_t>(i));
+        if (!directories.kinds[directories.pages[i].kind].is_reduced) whole.push_back(all.back());
+    }
+    return whole.empty() ? all : whole;
+}
+
+void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChannel& channel,
+                  const TiffDescription& description)
+{
+    const TiffLayout& layout = volume.layout;
+    TiffRecipe& recipe = volume.recipe;
+    std::vector<std::string>& warnings = volume.info.warnings;
+    recipe.sample = channel.sample;
+    recipe.palette_color = channel.palette_color;
+    recipe.type = *voxel_type_of(layout);
+    if (channel.palette_color >= 0) {
+        recipe.palette_has_8_bits = has_8_bits(palette_of(page, layout, channel.palette_color));
+        recipe.type = recipe.palette_has_8_bits ? VoxelType::uint8 : VoxelType::uint16;
+    }
+    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
+        if (layout.sample_format == SAMPLEFORMAT_IEEEFP) {
+            warnings.emplace_back("its smallest values are meant to be white; they are shown as stored");
+        } else {
+            recipe.exchanged_bits = layout.sample_format == SAMPLEFORMAT_INT || layout.bits == 64
+                                        ? ~uint64_t{0}
+                                        : (uint64_t{1} << layout.bits) - 1;
+            warnings.emplace_back("in the file 0 is white (MinIsWhite); intensities were inverted");
+        }
+    }
+    if (description.counts_from_minus_32768 && recipe.type == VoxelType::uint16 && layout.bits == 16) {
+        recipe.type = VoxelType::int16;
+        recipe.exchanged_bits ^= 0x8000;
+    }
+    recipe.mirrors_x = layout.orientation == ORIENTATION_TOPRIGHT || layout.orientation == ORIENTATION_BOTRIGHT;
+    recipe.mirrors_y = layout.orientation == ORIENTATION_BOTLEFT || layout.orientation == ORIENTATION_BOTRIGHT;
+    if (recipe.mirrors_x || recipe.mirrors_y) {
+        warnings.push_back(sentence("Orientation is ", layout.orientation, ": ",
+                                    recipe.mirrors_x ? "columns are stored from right to left" : "",
+                                    recipe.mirrors_x && recipe.mirrors_y ? " and " : "",
+                                    recipe.mirrors_y ? "rows are stored from bottom to top" : "",
+                                    "; they were put in order"));
+    }
+    volume.info.type = recipe.type;
+}
+
+std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_ptr<const TiffFile> file)
+{
+    return std::make_unique<TiffSource>(std::move(volume), std::move(file));
+}
+
+std::unique_ptr<VolumeSource> open_tiff_file(const fs::path& path, const OpenOptions& options)
+{
+    return FileOpener(path, options).open();
+}
+
+std::unique_ptr<VolumeSource> open_tiff(const fs::path& path, const OpenOptions& options)
+{
+    std::error_code error;
+    if (fs::is_directory(path, error)) return open_tiff_folder(path, options);
+    const std::string extension = lower_case(path.extension().string());
+    if (!TiffFile::begins(read_head(path, 16)) && extension != ".tif" && extension != ".tiff") return nullptr;
+    return open_tiff_file(path, options);
+}
+
+}  // namespace shvr

@@ -1,0 +1,68 @@
+#pragma once
+// Reads a rectangle of one page. Bare samples are read straight to where they belong; a block that is needed as a whole
+// is decoded there; one that is needed in part is decoded once and kept for a while, for the reads around it.
+
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "engine/formats/tiff/tiff_samples.h"
+
+namespace shvr {
+
+/// Where a slice of a volume comes from.
+struct TiffSlice {
+    uint32_t file = 0;       ///< index into the volume's files
+    uint32_t page = 1;       ///< in that file, for messages
+    uint64_t directory = 0;  ///< in that file
+    /// ImageJ's long stacks have one directory; the voxels of later slices are that much behind those it names.
+    int64_t shift_bytes = 0;
+};
+
+/// Decoded blocks, at most `MOST_BYTES` of them, at least the last one. Any thread may use it; two threads that want the
+/// same block decode it once.
+class TiffBlockCache {
+public:
+    static constexpr size_t MOST_BYTES = size_t{64} << 20;
+
+    using Key = std::tuple<uint32_t, uint64_t, int64_t>;  ///< file, directory, block
+    using Block = std::vector<std::byte>;
+
+    template <class Decode>
+    std::shared_ptr<const Block> get(const Key& key, const Decode& decode)
+    {
+        const std::shared_ptr<Entry> entry = entry_of(key);
+        const std::lock_guard lock(entry->mutex);
+        if (entry->block.empty()) {
+            entry->block = decode();
+            keep(key, entry);
+        }
+        return {entry, &entry->block};
+    }
+
+private:
+    struct Entry {
+        std::mutex mutex;
+        Block block;
+    };
+
+    std::shared_ptr<Entry> entry_of(const Key& key);
+    void keep(const Key& key, const std::shared_ptr<Entry>& entry);
+
+    std::mutex mutex_;
+    std::map<Key, std::shared_ptr<Entry>> entries_;
+    std::vector<std::pair<Key, size_t>> kept_;  ///< with their bytes
+    size_t kept_bytes_ = 0;
+    uint32_t random_ = 1;
+};
+
+/// Half-open, in pixels of the page as stored.
+struct TiffRectangle {
+    int64_t left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// `voxels` gets the rectangle (inside the page) row by row. Fails where the page is not as `expected`, or broken.
+void read_rectangle(const TiffFile& file, const TiffSlice& slice, const TiffLayout& expected, const TiffRecipe& recipe,
+                    const TiffRectangle& rectangle, TiffBlockCache& cache, std::span<std::byte> voxels);
+
+}  // namespace shvr

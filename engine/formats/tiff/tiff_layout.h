@@ -1,0 +1,68 @@
+#pragma once
+// What one page holds and how: size, samples, compression, and its blocks (strips or tiles). Everything a page states of
+// its blocks is held against the file before memory is taken for them. Any thread may call these; a TiffPage belongs to
+// one thread at a time.
+
+#include "engine/formats/tiff/tiff_page.h"
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+struct TiffLayout {
+    // What a page shows
+    int64_t width = 0, height = 0;
+    int bits = 1;                      ///< of one sample
+    int sample_format = 1;             ///< SAMPLEFORMAT_...
+    int samples = 1;                   ///< of one pixel
+    int photometric = 1;               ///< PHOTOMETRIC_...
+    int orientation = 1;               ///< ORIENTATION_...
+    std::vector<int> extra_samples{};  ///< EXTRASAMPLE_..., one for each sample beyond those of the colour
+
+    // How it is stored
+    int compression = 1;  ///< COMPRESSION_...
+    bool is_lsb_first = false;
+    bool is_planar = false;  ///< each block holds one sample of its pixels
+    bool is_tiled = false;
+    int64_t block_width = 0, block_height = 0;
+
+    int64_t blocks_across() const { return (width + block_width - 1) / block_width; }
+    int64_t blocks_down() const { return (height + block_height - 1) / block_height; }
+    int64_t blocks() const { return blocks_across() * blocks_down() * (is_planar ? samples : 1); }
+    int block_samples() const { return is_planar ? 1 : samples; }
+    int64_t block_row_bytes() const { return (block_width * block_samples() * bits + 7) / 8; }
+    /// Rows that a block holds: strips end with the page, tiles do not.
+    int64_t rows_of_block(int64_t row_of_blocks) const;
+    /// Without compression.
+    int64_t page_bytes() const;
+
+    /// Whether bytes of the file are samples, but for their byte order.
+    bool is_bare() const { return compression == 1 && !is_lsb_first; }
+};
+
+/// What the page says; fails only where that cannot be a picture.
+TiffLayout layout_of(const TiffPage& page);
+/// Whether pages with these can be slices of one volume.
+bool show_the_same(const TiffLayout& a, const TiffLayout& b);
+/// "512x512 pixels of uint16", "512x512 pixels of 3 samples of 8 bits".
+std::string in_words(const TiffLayout& layout);
+
+/// The type that holds the samples exactly; nothing where there is none.
+std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
+
+/// Fails, with what is expected instead, where the page's kind of picture or compression is not read here.
+void check_is_supported(const TiffPage& page, const TiffLayout& layout);
+
+/// Where a block is in the file. Fails where that is outside, or cannot hold as much as the block must.
+struct TiffExtent {
+    int64_t offset = 0;
+    int64_t bytes = 0;
+};
+TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const TiffLayout& layout, int64_t block);
+/// All blocks of a page, and that none lies over another.
+void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout);
+/// Fails where `pages` such pages cannot come from a file of that size.
+void check_amount(const TiffFile& file, const TiffLayout& layout, int64_t pages);
+/// What libtiff may take at once to decode blocks of such a page.
+int64_t decoding_memory(const TiffFile& file, const TiffLayout& layout);
+
+}  // namespace shvr

@@ -1,0 +1,239 @@
+// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels says how large the stack is, how far apart its voxels are
+// and in which order its planes follow; TiffData says which page holds which plane.
+
+#include <cmath>
+#include <pugixml.hpp>
+#include <set>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/formats/tiff/tiff_description.h"
+
+namespace shvr {
+namespace {
+
+/// The parser takes several times as much memory.
+constexpr size_t LONGEST_XML = size_t{16} << 20;
+
+/// Without its name space: "OME:Image" -> "Image".
+std::string_view name_of(const pugi::xml_node& node)
+{
+    const std::string_view name = node.name();
+    return name.substr(name.find(':') + 1);
+}
+
+template <class Take>
+void for_each_child(const pugi::xml_node& node, std::string_view name, const Take& take)
+{
+    for (const pugi::xml_node& child : node.children()) {
+        if (name_of(child) == name) take(child);
+    }
+}
+
+pugi::xml_node first_child(const pugi::xml_node& node, std::string_view name)
+{
+    for (const pugi::xml_node& child : node.children()) {
+        if (name_of(child) == name) return child;
+    }
+    return {};
+}
+
+class OmeReader {
+public:
+    OmeReader(const TiffFile& file, int samples, TiffRole role)
+        : subject_(file.path().string() + ": its OME-XML"), samples_(samples), role_(role)
+    {}
+
+    TiffDescription read(std::string_view text)
+    {
+        if (text.size() > LONGEST_XML) fail(subject_, " has ", text.size(), " bytes; expected at most ", LONGEST_XML);
+        pugi::xml_document document;
+        const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+        const pugi::xml_node root = first_child(document, "OME");
+        if (!result || !root) {
+            fail(subject_, " cannot be read: ", result ? "it has no element OME" : result.description(),
+                 "; expected an XML document that is whole");
+        }
+        if (const pugi::xml_node elsewhere = first_child(root, "BinaryOnly")) {
+            fail(subject_, " is in another file, ", in_quotes(elsewhere.attribute("MetadataFile").value()),
+                 "; expected it in this one: data sets of several files are not supported yet");
+        }
+        const pugi::xml_node pixels = largest_pixels(root);
+        read_sizes(pixels);
+        read_planes(pixels);
+        constexpr const char* SPACING[] = {"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
+        constexpr const char* UNIT[] = {"PhysicalSizeXUnit", "PhysicalSizeYUnit", "PhysicalSizeZUnit"};
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::optional<double> spacing = number_of(pixels.attribute(SPACING[axis]).value());
+            if (!spacing || !std::isfinite(*spacing) || *spacing <= 0.0) continue;
+            result_.spacing[axis] = *spacing;
+            result_.unit[axis] = pixels.attribute(UNIT[axis]).as_string("um");
+        }
+        for_each_child(pixels, "Channel", [&](const pugi::xml_node& channel) {
+            const int64_t colors = whole_of(channel.attribute("SamplesPerPixel").value()).value_or(1);
+            if (colors == 1 && result_.channel_names.size() < static_cast<size_t>(result_.channels)) {
+                result_.channel_names.emplace_back(channel.attribute("Name").value());
+            }
+        });
+        return std::move(result_);
+    }
+
+private:
+    int64_t side(const pugi::xml_node& pixels, const char* name) const
+    {
+        const char* const stated = pixels.attribute(name).value();
+        const std::optional<int64_t> side = whole_of(stated);
+        if (!side || *side < 1 || *side > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+            fail(subject_, ": ", name, " is ", in_quotes(stated), "; expected a whole number from 1 to ",
+                 MOST_TIFF_PAGES);
+        }
+        return *side;
+    }
+
+    pugi::xml_node largest_pixels(const pugi::xml_node& root)
+    {
+        pugi::xml_node largest;
+        std::string name;
+        double most_voxels = 0.0;
+        int count = 0;
+        for_each_child(root, "Image", [&](const pugi::xml_node& image) {
+            const pugi::xml_node pixels = first_child(image, "Pixels");
+            if (!pixels) return;
+            ++count;
+            double voxels = 1.0;
+            for (const char* axis : {"SizeX", "SizeY", "SizeZ"}) {
+                voxels *= static_cast<double>(side(pixels, axis));
+            }
+            if (voxels <= most_voxels) return;
+            most_voxels = voxels;
+            largest = pixels;
+            name = image.attribute("Name").value();
+        });
+        if (count == 0) fail(subject_, " has no Image with Pixels; expected one");
+        if (count > 1) {
+            result_.warnings.push_back(sentence("the file holds ", count, " images; the largest",
+                                                name.empty() ? "" : ", " + in_quotes(name) + ",", " was taken"));
+        }
+        return largest;
+    }
+
+    void read_sizes(const pugi::xml_node& pixels)
+    {
+        result_.writer = TiffDescription::Writer::ome;
+        result_.slices = side(pixels, "SizeZ");
+        result_.frames = side(pixels, "SizeT");
+        result_.channels = side(pixels, "SizeC");
+        // Colours of one pixel are channels that share a page.
+        if (result_.channels % samples_ != 0) {
+            fail(subject_, ": SizeC is ", result_.channels, "; expected a multiple of the ", samples_,
+                 " samples of a pixel");
+        }
+        result_.channels /= samples_;
+        const int64_t planes = result_.slices * result_.channels;
+        if (planes > static_cast<int64_t>(MOST_TIFF_PAGES) ||
+            planes * result_.frames > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+            fail(subject_, " counts ", result_.slices, " x ", result_.channels, " x ", result_.frames,
+                 " slices, channels and points in time; expected at most ", MOST_TIFF_PAGES, " pages");
+        }
+        result_.pages.assign(static_cast<size_t>(planes * result_.frames), TiffDescription::NO_PAGE);
+
+        const std::string order = pixels.attribute("DimensionOrder").value();
+        for (const char* known : {"XYZCT", "XYZTC", "XYCTZ", "XYCZT", "XYTCZ", "XYTZC"}) {
+            if (order == known) order_ = order.substr(2);
+        }
+        if (order_.empty()) {
+            fail(subject_, ": DimensionOrder is ", in_quotes(order), "; expected XYZCT, XYZTC, XYCTZ, XYCZT, XYTCZ or ",
+                 "XYTZC");
+        }
+    }
+
+    int64_t size(char axis) const
+    {
+        return axis == 'Z' ? result_.slices : axis == 'C' ? result_.channels : result_.frames;
+    }
+
+    /// Where plane number `plane` of DimensionOrder is in `pages`.
+    size_t place_of(int64_t plane) const
+    {
+        int64_t at[3] = {};  // Z, C, T
+        for (const char axis : order_) {
+            at[axis == 'Z' ? 0 : axis == 'C' ? 1 : 2] = plane % size(axis);
+            plane /= size(axis);
+        }
+        return static_cast<size_t>(at[0] + result_.slices * (at[1] + result_.channels * at[2]));
+    }
+
+    int64_t whole(const pugi::xml_node& node, const char* name, int64_t fallback) const
+    {
+        const pugi::xml_attribute attribute = node.attribute(name);
+        if (!attribute) return fallback;
+        const std::optional<int64_t> number = whole_of(attribute.value());
+        if (!number || *number < 0 || *number > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+            fail(subject_, ": ", name, " is ", in_quotes(attribute.value()), "; expected a whole number from 0 to ",
+                 MOST_TIFF_PAGES);
+        }
+        return *number;
+    }
+
+    int64_t first_plane(const pugi::xml_node& data) const
+    {
+        int64_t plane = 0;
+        int64_t step = 1;
+        for (const char axis : order_) {
+            const char* const name = axis == 'Z' ? "FirstZ" : axis == 'C' ? "FirstC" : "FirstT";
+            int64_t first = whole(data, name, 0);
+            if (axis == 'C') first /= samples_;
+            if (first >= size(axis)) {
+                fail(subject_, ": ", name, " is ", first, "; expected less than the ", size(axis), " there are");
+            }
+            plane += first * step;
+            step *= size(axis);
+        }
+        return plane;
+    }
+
+    void read_planes(const pugi::xml_node& pixels)
+    {
+        const auto planes = static_cast<int64_t>(result_.pages.size());
+        std::set<std::string> files;
+        int64_t stated = 0;
+        bool is_stated = false;
+        for_each_child(pixels, "TiffData", [&](const pugi::xml_node& data) {
+            is_stated = true;
+            if (const pugi::xml_node file = first_child(data, "UUID"); file.attribute("FileName")) {
+                files.insert(file.attribute("FileName").value());
+            }
+            if (files.size() > 1 && role_ == TiffRole::whole) {
+                fail(subject_, " spreads the stack over several files, ", in_quotes(*files.begin()), " and ",
+                     in_quotes(*files.rbegin()), " among them; expected one: save it as one file, for example from ",
+                     "Fiji");
+            }
+            const int64_t page = whole(data, "IFD", 0);
+            const int64_t first = first_plane(data);
+            const int64_t count = whole(data, "PlaneCount", data.attribute("IFD") ? 1 : planes - first);
+            stated += count;
+            if (stated > 2 * static_cast<int64_t>(MOST_TIFF_PAGES)) {
+                fail(subject_, " places ", stated, " planes; expected the ", planes, " there are");
+            }
+            for (int64_t i = 0; i < std::min(count, planes - first); ++i) {
+                result_.pages[place_of(first + i)] = static_cast<uint32_t>(page + i);
+            }
+        });
+        for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = static_cast<uint32_t>(i);
+    }
+
+    std::string subject_;
+    int samples_;
+    TiffRole role_;
+    std::string order_;
+    TiffDescription result_;
+};
+
+}  // namespace
+
+TiffDescription read_ome_description(const TiffFile& file, std::string_view text, int samples, TiffRole role)
+{
+    return OmeReader(file, samples, role).read(text);
+}
+
+}  // namespace shvr

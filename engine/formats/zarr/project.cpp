@@ -1,0 +1,337 @@
+#include "engine/formats/zarr/project.h"
+
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <cmath>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/text.h"
+#include "engine/formats/zarr/zarr_json.h"
+
+namespace shvr {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+using Path = std::filesystem::path;
+
+constexpr int VERSION = 1;
+constexpr int64_t LARGEST_RECORD = int64_t{1} << 20;
+constexpr size_t HEADER_BYTES = 64;
+constexpr char MAGIC[] = "SHVRTAB1";
+/// Ranges of 10^13 voxels.
+constexpr int64_t LARGEST_TABLE = int64_t{2} << 30;
+/// Zstd's smallest block is four bytes long, and gives at most 128 KiB.
+constexpr int64_t MOST_OUT_OF_A_BYTE = int64_t{32} << 10;
+
+// ---- volume.json ----------------------------------------------------------------------------------------------------
+
+OrderedJson list_of(const glm::dvec3& vector)
+{
+    return {vector.x, vector.y, vector.z};
+}
+
+/// The values of one object, each checked as it is taken.
+class ProjectReader {
+public:
+    ProjectReader(const Path& path, const nlohmann::json& object) : path_(path), object_(object) {}
+
+    double number(const char* key) const { return number(value(key, "a finite number"), key); }
+    int64_t whole(const char* key, int64_t lower, int64_t upper) const
+    {
+        return whole(value(key, "a whole number"), key, lower, upper);
+    }
+    std::string text(const char* key) const
+    {
+        const nlohmann::json& found = value(key, "a text");
+        if (!found.is_string()) refuse_json(path_, key, found, "a text");
+        return found.get<std::string>();
+    }
+    glm::dvec3 vector(const char* key) const { return vector(value(key, "three numbers"), key); }
+    glm::dmat3 matrix(const char* key) const
+    {
+        const nlohmann::json& rows = list(key, 3);
+        return {vector(rows[0], key), vector(rows[1], key), vector(rows[2], key)};
+    }
+    Size3 size(const char* key) const
+    {
+        const nlohmann::json& sides = list(key, 3);
+        constexpr int64_t MOST = int64_t{1} << 20;
+        return {whole(sides[0], key, 1, MOST), whole(sides[1], key, 1, MOST), whole(sides[2], key, 1, MOST)};
+    }
+    std::vector<int64_t> counts(const char* key, size_t length) const
+    {
+        std::vector<int64_t> counts;
+        for (const nlohmann::json& count : list(key, length)) {
+            counts.push_back(whole(count, key, 0, std::numeric_limits<int64_t>::max()));
+        }
+        return counts;
+    }
+    std::vector<std::string> texts(const char* key) const
+    {
+        std::vector<std::string> texts;
+        const nlohmann::json& found = value(key, "a list of texts");
+        if (!found.is_array()) refuse_json(path_, key, found, "a list of texts");
+        for (const nlohmann::json& text : found) {
+            if (!text.is_string()) refuse_json(path_, key, found, "a list of texts");
+            texts.push_back(text.get<std::string>());
+        }
+        return texts;
+    }
+    [[noreturn]] void refuse(const char* key, const std::string& expected) const
+    {
+        refuse_json(path_, key, value(key, expected.c_str()), expected);
+    }
+    bool has(const char* key) const { return object_.contains(key); }
+    ProjectReader object(const char* key) const
+    {
+        const nlohmann::json& found = value(key, "an object");
+        if (!found.is_object()) refuse_json(path_, key, found, "an object");
+        return {path_, found};
+    }
+
+private:
+    const nlohmann::json& value(const char* key, const char* expected) const
+    {
+        return required(path_, object_, key, expected);
+    }
+    const nlohmann::json& list(const char* key, size_t length) const
+    {
+        const std::string expected = sentence("a list of ", length);
+        const nlohmann::json& found = value(key, expected.c_str());
+        if (!found.is_array() || found.size() != length) refuse_json(path_, key, found, expected);
+        return found;
+    }
+    double number(const nlohmann::json& found, const char* key) const
+    {
+        if (!found.is_number() || !std::isfinite(found.get<double>())) {
+            refuse_json(path_, key, found, "a finite number");
+        }
+        return found.get<double>();
+    }
+    int64_t whole(const nlohmann::json& found, const char* key, int64_t lower, int64_t upper) const
+    {
+        const bool fits = found.is_number_integer() && !(found.is_number_unsigned() && found.get<int64_t>() < 0) &&
+                          found.get<int64_t>() >= lower && found.get<int64_t>() <= upper;
+        if (!fits) refuse_json(path_, key, found, sentence("a whole number from ", lower, " to ", upper));
+        return found.get<int64_t>();
+    }
+    glm::dvec3 vector(const nlohmann::json& found, const char* key) const
+    {
+        if (!found.is_array() || found.size() != 3) refuse_json(path_, key, found, "three numbers");
+        return {number(found[0], key), number(found[1], key), number(found[2], key)};
+    }
+
+    const Path& path_;
+    const nlohmann::json& object_;
+};
+
+bool are_axes(const glm::dmat3& directions)
+{
+    constexpr double TOLERANCE = 1e-6;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(glm::length(directions[axis]) - 1.0) < TOLERANCE)) return false;
+    }
+    return glm::determinant(directions) > 0.0;
+}
+
+VolumeStatistics read_statistics(const ProjectReader& reader)
+{
+    VolumeStatistics statistics{.minimum = reader.number("min"),
+                                .maximum = reader.number("max"),
+                                .mean = reader.number("mean"),
+                                .not_finite = reader.whole("not_finite", 0, std::numeric_limits<int64_t>::max()),
+                                .histogram = reader.counts("histogram", 256)};
+    if (!(statistics.minimum <= statistics.maximum)) reader.refuse("max", "at least min");
+    if (reader.has("bulk")) {
+        const ProjectReader bulk = reader.object("bulk");
+        statistics.bulk = {bulk.number("min"), bulk.number("max")};
+        if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk.refuse("max", "at least min");
+        statistics.beyond_bulk = bulk.whole("beyond", 0, std::numeric_limits<int64_t>::max());
+    }
+    return statistics;
+}
+
+// ---- Tables ---------------------------------------------------------------------------------------------------------
+
+template <class T>
+void put(std::vector<std::byte>& bytes, const T& value)
+{
+    const auto* const first = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof(T));
+}
+
+/// Everything of the header but its checksum.
+std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes)
+{
+    std::vector<std::byte> header;
+    for (size_t i = 0; i < 8; ++i) put(header, MAGIC[i]);
+    for (size_t i = 0; i < 8; ++i) put(header, i < table.kind.size() ? table.kind[i] : '\0');
+    put(header, static_cast<int32_t>(table.level));
+    put(header, static_cast<uint32_t>(table.element_bytes));
+    put(header, table.counts);
+    put(header, frame_bytes);
+    SHVR_CHECK(header.size() == HEADER_BYTES - sizeof(uint64_t), header.size());
+    return header;
+}
+
+uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
+{
+    // The header's hash is the seed of the elements'.
+    return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
+}
+
+int64_t bytes_of_table(const Path& file, const ProjectTable& table)
+{
+    auto bytes = static_cast<int64_t>(table.element_bytes);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (__builtin_mul_overflow(bytes, table.counts[axis], &bytes) || bytes > LARGEST_TABLE) {
+            fail(file.string(), ": would hold more than ", LARGEST_TABLE >> 20, " MiB; expected a smaller volume");
+        }
+    }
+    return bytes;
+}
+
+template <class T>
+ValueRange range_as(std::span<const std::byte> element)
+{
+    T voxels[2];
+    std::memcpy(voxels, element.data(), sizeof(voxels));
+    return {static_cast<double>(voxels[0]), static_cast<double>(voxels[1])};
+}
+
+}  // namespace
+
+std::string to_text(const ProjectRecord& record)
+{
+    const VolumeInfo& info = record.info;
+    const VolumeStatistics& statistics = record.statistics;
+    OrderedJson measured = {{"min", statistics.minimum},
+                            {"max", statistics.maximum},
+                            {"mean", statistics.mean},
+                            {"not_finite", statistics.not_finite}};
+    if (statistics.bulk) {
+        measured["bulk"] = {
+            {"min", statistics.bulk->lower}, {"max", statistics.bulk->upper}, {"beyond", statistics.beyond_bulk}};
+    }
+    measured["histogram"] = statistics.histogram;
+    const OrderedJson document = {
+        {"shvr_volume", VERSION},
+        {"source", record.source},
+        {"preparation", record.preparation},
+        {"size", {info.size.x, info.size.y, info.size.z}},
+        {"type", name_of(info.type)},
+        {"spacing", list_of(info.spacing)},
+        {"unit", info.unit},
+        {"directions", {list_of(info.directions[0]), list_of(info.directions[1]), list_of(info.directions[2])}},
+        {"origin", list_of(info.origin)},
+        {"frame", info.frame},
+        {"levels", record.levels},
+        {"content_hash", record.content_hash},
+        {"statistics", measured},
+        {"warnings", info.warnings}};
+    return document.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+ProjectRecord read_project_record(const Path& file)
+{
+    const nlohmann::json document = read_json_object(file, LARGEST_RECORD);
+    const ProjectReader reader(file, document);
+    reader.whole("shvr_volume", VERSION, VERSION);
+    ProjectRecord record;
+    record.source = reader.text("source");
+    record.preparation = reader.text("preparation");
+    record.content_hash = reader.text("content_hash");
+    record.levels = static_cast<int>(reader.whole("levels", 1, 32));
+    VolumeInfo& info = record.info;
+    info.size = reader.size("size");
+    const std::optional<VoxelType> type = voxel_type_of(reader.text("type"));
+    if (!type) refuse_json(file, "type", document["type"], VOXEL_TYPE_NAMES);
+    info.type = *type;
+    info.spacing = reader.vector("spacing");
+    if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) {
+        refuse_json(file, "spacing", document["spacing"], "three numbers above 0");
+    }
+    info.unit = printable(reader.text("unit"));
+    info.directions = reader.matrix("directions");
+    if (!are_axes(info.directions)) {
+        refuse_json(file, "directions", document["directions"], "three right-handed vectors of length 1");
+    }
+    info.origin = reader.vector("origin");
+    info.frame = printable(reader.text("frame"));
+    for (const std::string& warning : reader.texts("warnings")) info.warnings.push_back(printable(warning));
+    record.statistics = read_statistics(reader.object("statistics"));
+    return record;
+}
+
+Path ranges_path(const Path& project, int level)
+{
+    return project / sentence("shvr/ranges-", level);
+}
+
+Path checksums_path(const Path& project, int level)
+{
+    return project / sentence("shvr/checksums-", level);
+}
+
+std::vector<std::byte> to_bytes(const ProjectTable& table)
+{
+    SHVR_CHECK(table.elements.size() == static_cast<size_t>(bytes_of_table(table.kind, table)), table.elements.size());
+    std::vector<std::byte> frame(ZSTD_compressBound(table.elements.size()));
+    const size_t made = ZSTD_compress(frame.data(), frame.size(), table.elements.data(), table.elements.size(), 3);
+    SHVR_CHECK(ZSTD_isError(made) == 0, ZSTD_getErrorName(made));
+    frame.resize(made);
+    std::vector<std::byte> bytes = header_of(table, made);
+    put(bytes, checksum_of(bytes, table.elements));
+    bytes.insert(bytes.end(), frame.begin(), frame.end());
+    return bytes;
+}
+
+ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
+{
+    const int64_t decoded_bytes = bytes_of_table(file, expected);
+    const auto longest = static_cast<int64_t>(HEADER_BYTES + ZSTD_compressBound(static_cast<size_t>(decoded_bytes)));
+    const std::vector<std::byte> bytes = read_file(file, longest);
+    if (bytes.size() < HEADER_BYTES || std::memcmp(bytes.data(), MAGIC, 8) != 0) {
+        fail(file.string(), ": does not begin with ", MAGIC, "; expected a table of a project");
+    }
+    const std::span<const std::byte> frame = std::span(bytes).subspan(HEADER_BYTES);
+    const std::vector<std::byte> header = header_of(expected, frame.size());
+    if (std::memcmp(bytes.data(), header.data(), header.size()) != 0) {
+        fail(file.string(), ": was made for another volume, or was cut short; expected ", expected.kind, " of ",
+             expected.counts.x, "x", expected.counts.y, "x", expected.counts.z, " elements");
+    }
+    if (decoded_bytes / MOST_OUT_OF_A_BYTE > static_cast<int64_t>(frame.size())) {
+        fail(file.string(), ": holds ", frame.size(), " compressed bytes; expected enough for ", decoded_bytes);
+    }
+    ProjectTable table = expected;
+    table.elements.resize(static_cast<size_t>(decoded_bytes));
+    const size_t made = ZSTD_decompress(table.elements.data(), table.elements.size(), frame.data(), frame.size());
+    uint64_t checksum = 0;
+    std::memcpy(&checksum, bytes.data() + header.size(), sizeof(checksum));
+    if (made != table.elements.size() || checksum != checksum_of(header, table.elements)) {
+        fail(file.string(), ": is damaged; expected a table whose checksum holds");
+    }
+    return table;
+}
+
+ValueRange range_of(VoxelType type, std::span<const std::byte> element)
+{
+    switch (type) {
+        case VoxelType::uint8: return range_as<uint8_t>(element);
+        case VoxelType::int8: return range_as<int8_t>(element);
+        case VoxelType::uint16: return range_as<uint16_t>(element);
+        case VoxelType::int16: return range_as<int16_t>(element);
+        case VoxelType::uint32: return range_as<uint32_t>(element);
+        case VoxelType::int32: return range_as<int32_t>(element);
+        case VoxelType::float32: return range_as<float>(element);
+        case VoxelType::float64: return range_as<double>(element);
+    }
+    return {};
+}
+
+}  // namespace shvr

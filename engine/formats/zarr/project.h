@@ -1,0 +1,56 @@
+#pragma once
+// What a project folder holds of its volume besides the image, which is an OME-Zarr that other programs read. All of it
+// can be computed anew from the image; where a file is damaged, the image still opens.
+//
+//   PROJECT/shvr/volume.json      where the volume came from, how it lies in space, statistics, a hash of its content
+//   PROJECT/shvr/ranges-LEVEL     smallest and largest value under every brick
+//   PROJECT/shvr/checksums-LEVEL  of every chunk as it is stored
+//   PROJECT/shvr/session.json     engine/session/session.h
+//
+// Files with a level are tables, one element a brick or chunk, x fastest; 64 bytes of header, then the elements in a
+// zstd frame. Header: "SHVRTAB1", kind (8 bytes), level and bytes of an element (4 each), counts x, y, z (8 each), bytes
+// of the frame (8), XXH3-64 of the 56 bytes before and the elements (8); little-endian. Any thread may call these.
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+/// The content of volume.json.
+struct ProjectRecord {
+    VolumeInfo info{};  ///< without name and format; its warnings are those of the import
+    int levels = 1;
+    VolumeStatistics statistics{};  ///< of level 0
+    std::string content_hash{};     ///< of level 0; content_hash.h
+    std::string source{};           ///< path of the file it was imported from
+    std::string preparation{};      ///< what was done to the voxels, in words; empty: nothing
+};
+inline constexpr const char* PROJECT_RECORD = "shvr/volume.json";
+inline constexpr const char* PROJECT_SESSION = "shvr/session.json";
+
+std::string to_text(const ProjectRecord& record);
+ProjectRecord read_project_record(const std::filesystem::path& file);
+
+struct ProjectTable {
+    std::string kind{};  ///< "ranges" or "checksum"
+    int level = 0;
+    size_t element_bytes = 1;
+    Size3 counts{0};
+    std::vector<std::byte> elements{};  ///< native byte order
+};
+std::filesystem::path ranges_path(const std::filesystem::path& project, int level);
+std::filesystem::path checksums_path(const std::filesystem::path& project, int level);
+
+std::vector<std::byte> to_bytes(const ProjectTable& table);
+/// The table in `file`, which must have the kind, level, counts and size of elements of `expected`.
+ProjectTable read_project_table(const std::filesystem::path& file, const ProjectTable& expected);
+
+/// An element of ranges-LEVEL is two voxels: the smallest and the largest finite value; the first is larger where there
+/// is none.
+ValueRange range_of(VoxelType type, std::span<const std::byte> element);
+
+}  // namespace shvr

@@ -1,0 +1,96 @@
+#include "engine/formats/zarr/project_knowledge.h"
+
+#include <cstring>
+
+#include "engine/base/error.h"
+#include "engine/volume/source.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+ProjectTable table_for(const VolumeInfo& info, int level)
+{
+    return {.kind = "ranges",
+            .level = level,
+            .element_bytes = 2 * bytes_of(info.type),
+            .counts = size_of_level(size_of_level(info.size, level), 5)};
+}
+
+template <class Read>
+void try_to(const Read& read, std::vector<std::string>& warnings)
+{
+    try {
+        read();
+    } catch (const Error& error) {
+        warnings.push_back(sentence(error.what(), "; it is not used"));
+    }
+}
+
+}  // namespace
+
+ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info, std::vector<ZarrVolume>& volumes)
+{
+    ProjectKnowledge knowledge;
+    const fs::path file = folder / PROJECT_RECORD;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return knowledge;
+    std::vector<std::string> damage;
+    try_to(
+        [&] {
+            ProjectRecord record = read_project_record(file);
+            const bool fits = record.info.size == info.size && record.info.type == info.type &&
+                              record.levels >= static_cast<int>(volumes.size());
+            if (!fits) fail(file.string(), ": describes another volume; expected that of this folder");
+            knowledge.record = std::move(record);
+        },
+        damage);
+    if (knowledge.record) {
+        const VolumeInfo& known = knowledge.record->info;
+        info.spacing = known.spacing;
+        info.unit = known.unit;
+        info.directions = known.directions;
+        info.origin = known.origin;
+        info.frame = known.frame;
+        info.warnings = known.warnings;
+    }
+    knowledge.ranges.resize(volumes.size());
+    for (int level = 0; level < static_cast<int>(volumes.size()); ++level) {
+        const auto index = static_cast<size_t>(level);
+        try_to(
+            [&] {
+                knowledge.ranges[index] =
+                    read_project_table(ranges_path(folder, level), table_for(info, level)).elements;
+            },
+            damage);
+        try_to(
+            [&] {
+                const ProjectTable table =
+                    read_project_table(checksums_path(folder, level), {.kind = "checksum",
+                                                                       .level = level,
+                                                                       .element_bytes = sizeof(uint64_t),
+                                                                       .counts = volumes[index].counts()});
+                std::vector<uint64_t> checksums(table.elements.size() / sizeof(uint64_t));
+                std::memcpy(checksums.data(), table.elements.data(), table.elements.size());
+                volumes[index].expect(std::move(checksums));
+            },
+            damage);
+    }
+    info.warnings.insert(info.warnings.end(), damage.begin(), damage.end());
+    return knowledge;
+}
+
+std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
+                                   const Size3& brick)
+{
+    const auto index = static_cast<size_t>(level);
+    if (index >= knowledge.ranges.size() || knowledge.ranges[index].empty()) return std::nullopt;
+    const ProjectTable table = table_for(info, level);
+    const int64_t element = brick.x + table.counts.x * (brick.y + table.counts.y * brick.z);
+    return range_of(info.type, std::span(knowledge.ranges[index])
+                                   .subspan(static_cast<size_t>(element) * table.element_bytes, table.element_bytes));
+}
+
+}  // namespace shvr

@@ -1,0 +1,326 @@
+// OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2), and bare Zarr arrays, in a local folder. A project is such an
+// image with a folder shvr/ in it (project.h), which knows ranges and statistics.
+//
+// Levels are the datasets that lie on level 0 as source.h wants it: twice as coarse each, along every axis. What does
+// not, is left out and said.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/formats/header_fields.h"
+#include "engine/formats/readers.h"
+#include "engine/formats/zarr/ome_zarr.h"
+#include "engine/formats/zarr/project_knowledge.h"
+#include "engine/formats/zarr/zarr_gaps.h"
+#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/zarr_volume.h"
+#include "engine/volume/grid.h"
+#include "shaders/bricks.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
+constexpr int MOST_LEVELS = 24;
+
+class OmeZarrSource : public VolumeSource {
+public:
+    OmeZarrSource(VolumeInfo info, std::vector<ZarrVolume> volumes, ProjectKnowledge knowledge)
+        : VolumeSource(std::move(info)),
+          volumes_(std::move(volumes)),
+          knowledge_(std::move(knowledge)),
+          gaps_(volumes_),
+          cache_(CACHE_BYTES)
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+
+    int levels() const override { return static_cast<int>(volumes_.size()); }
+
+    Size3 block() const override { return volumes_[0].chunk(); }
+
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        SHVR_CHECK(level >= 0 && level < levels(), level);
+        const ZarrVolume& volume = volumes_[static_cast<size_t>(level)];
+        if (glm::all(glm::lessThanEqual(box.upper, volume.size()))) return read_stored(level, box, voxels);
+        read_beyond(level, box, voxels);
+    }
+
+    std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
+    {
+        if (level < 0 || level >= levels()) return std::nullopt;
+        const Size3 size = size_of_level(info().size, level);
+        const Size3 counts = size_of_level(size, 5);
+        static_assert(BRICK_SIDE == 32);
+        const bool is_inside =
+            glm::all(glm::greaterThanEqual(brick, Size3(0))) && glm::all(glm::lessThan(brick, counts));
+        if (!is_inside) return std::nullopt;
+        if (const std::optional<ValueRange> known = range_of(knowledge_, info(), level, brick)) return known;
+        return gaps_.range(level, {glm::max(brick * BRICK_SIDE - int64_t{1}, Size3(0)),
+                                   glm::min((brick + int64_t{1}) * BRICK_SIDE + int64_t{1}, size)});
+    }
+
+    std::optional<VolumeStatistics> statistics() const override
+    {
+        if (!knowledge_.record) return std::nullopt;
+        return knowledge_.record->statistics;
+    }
+
+private:
+    void read_stored(int level, const VoxelBox& box, std::span<std::byte> voxels) const
+    {
+        const ZarrVolume& volume = volumes_[static_cast<size_t>(level)];
+        volume.read(box, voxels, [&](const Size3& chunk) {
+            return cache_.get({level, volume.index_of(chunk)}, [&] { return volume.load(chunk); });
+        });
+    }
+
+    /// A level whose size was rounded down lacks its last voxel, for which the one before stands.
+    void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
+    {
+        const Size3 size = volumes_[static_cast<size_t>(level)].size();
+        const VoxelBox stored{glm::min(box.lower, size - int64_t{1}), glm::min(box.upper, size)};
+        const Size3 from = stored.size();
+        const Size3 to = box.size();
+        const size_t bytes = bytes_of(info().type);
+        std::vector<std::byte> inside(static_cast<size_t>(from.x * from.y * from.z) * bytes);
+        read_stored(level, stored, inside);
+        std::byte* voxel = voxels.data();
+        for (int64_t z = 0; z < to.z; ++z) {
+            for (int64_t y = 0; y < to.y; ++y) {
+                for (int64_t x = 0; x < to.x; ++x, voxel += bytes) {
+                    const Size3 at = glm::min(Size3(x, y, z), from - int64_t{1});
+                    const auto index = static_cast<size_t>(index_of(at, from));
+                    std::memcpy(voxel, inside.data() + index * bytes, bytes);
+                }
+            }
+        }
+    }
+
+    std::vector<ZarrVolume> volumes_;
+    ProjectKnowledge knowledge_;
+    ZarrGaps gaps_;  ///< of volumes_
+    mutable ChunkCache cache_;
+};
+
+bool is_there(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::exists(path, ignored);
+}
+
+std::string name_of_folder(const fs::path& path)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+// ---- What to take where there is more than one ----------------------------------------------------------------------
+
+/// `what`: "channel" or "frame".
+int64_t chosen(const fs::path& path, const char* what, const std::string& wanted, int64_t count,
+               const std::vector<std::string>& names)
+{
+    for (size_t i = 0; i < names.size() && static_cast<int64_t>(i) < count; ++i) {
+        if (!names[i].empty() && lower_case(names[i]) == lower_case(wanted)) return static_cast<int64_t>(i);
+    }
+    const std::optional<int64_t> number = whole_of(wanted);
+    if (number && *number >= 1 && *number <= count) return *number - 1;
+    if (wanted.empty() && count == 1) return 0;
+    std::string choices = sentence("1 to ", count);
+    constexpr size_t MOST_NAMES = 16;
+    for (size_t i = 0; i < std::min(names.size(), MOST_NAMES); ++i) {
+        if (!names[i].empty()) choices += sentence(i == 0 ? "; " : ", ", i + 1, " is ", in_quotes(names[i]));
+    }
+    if (wanted.empty()) {
+        fail(path.string(), ": holds ", count, " ", what, "s; expected a ", what, " to be chosen (", choices, ")");
+    }
+    fail(path.string(), ": has no ", what, " ", in_quotes(wanted), "; expected one of ", count, " (", choices, ")");
+}
+
+ZarrView view_of(const fs::path& path, const OmeImage& image, const ZarrMetadata& metadata, const OpenOptions& options)
+{
+    ZarrView view{.xyz = image.xyz, .at = std::vector<int64_t>(image.axes)};
+    const auto choose = [&](const std::optional<size_t>& axis, const char* what, const std::string& wanted,
+                            const std::vector<std::string>& names) {
+        const int64_t index = chosen(path, what, wanted, axis ? metadata.shape[*axis] : 1, names);
+        if (axis) view.at[*axis] = index;
+    };
+    choose(image.channel, "channel", options.channel, image.channels);
+    choose(image.time, "frame", options.frame, {});
+    return view;
+}
+
+// ---- Levels ---------------------------------------------------------------------------------------------------------
+
+Size3 size_along(const ZarrMetadata& metadata, const std::array<size_t, 3>& xyz)
+{
+    return {metadata.shape[xyz[0]], metadata.shape[xyz[1]], metadata.shape[xyz[2]]};
+}
+
+/// Why a dataset cannot be level `level`; empty where it can.
+std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t dataset, const ZarrMetadata& metadata,
+                      int level)
+{
+    if (metadata.shape.size() != image.axes) return "has another number of axes";
+    if (metadata.type != first.type)
+        return sentence("holds ", name_of(metadata.type), ", level 0 ", name_of(first.type));
+    for (const auto& axis : {image.channel, image.time}) {
+        if (axis && metadata.shape[*axis] != first.shape[*axis]) return "has other channels or points in time";
+    }
+    const Size3 size = size_along(first, image.xyz);
+    const Size3 coarse = size_along(metadata, image.xyz);
+    const auto factor = static_cast<double>(int64_t{1} << level);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int64_t floor = std::max<int64_t>(1, size[axis] >> level);
+        const int64_t ceiling = size_of_level(size, level)[axis];
+        if (coarse[axis] < floor || coarse[axis] > ceiling) {
+            return sentence("has ", coarse[axis], " voxels along ", "xyz"[axis], ", not ", ceiling);
+        }
+    }
+    const OmeImage::Level& fine = image.levels[0];
+    const OmeImage::Level& stated = image.levels[dataset];
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!fine.scale || !stated.scale) break;
+        const double ratio = (*stated.scale)[axis] / (*fine.scale)[axis];
+        if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
+            return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
+        }
+        // Its first voxel lies in the middle of those it stands for. Where it is put on the first of them, that is taken
+        // for the lack of a translation, which older programs do not write.
+        const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
+                              (fine.translation ? (*fine.translation)[axis] : 0.0);
+        const double voxels = offset / (*fine.scale)[axis];
+        const double tolerance = 0.05 * factor;
+        if (std::abs(voxels) > 1e-3 && !(std::abs(voxels - 0.5 * (factor - 1.0)) <= tolerance)) {
+            return sentence("lies ", voxels, " voxels off along ", "xyz"[axis], ", not ", 0.5 * (factor - 1.0));
+        }
+    }
+    return {};
+}
+
+std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& image, const OpenOptions& options,
+                                    std::vector<std::string>& warnings)
+{
+    const fs::path array = folder / image.levels[0].path;
+    const ZarrMetadata first = read_zarr_metadata(array);
+    if (first.shape.size() != image.axes) {
+        fail((array / ".zarray").string(), ": shape has ", first.shape.size(), " axes; expected ", image.axes,
+             ", as the image says");
+    }
+    const ZarrView view = view_of(folder, image, first, options);
+    std::vector<ZarrVolume> volumes;
+    volumes.emplace_back(array, first, view);
+    std::vector<std::string> left_out;
+    std::string reason;
+    for (size_t dataset = 1; dataset < image.levels.size() && volumes.size() < MOST_LEVELS; ++dataset) {
+        const std::string& path = image.levels[dataset].path;
+        std::string why;
+        try {
+            ZarrMetadata metadata = read_zarr_metadata(folder / path);
+            why = objection(image, first, dataset, metadata, static_cast<int>(volumes.size()));
+            if (why.empty()) volumes.emplace_back(folder / path, std::move(metadata), view);
+        } catch (const Error& error) {
+            why = sentence("cannot be read (", error.what(), ")");
+        }
+        if (why.empty()) continue;
+        if (left_out.empty()) reason = sentence("level ", in_quotes(path), " ", why);
+        left_out.push_back(path);
+    }
+    if (!left_out.empty()) {
+        std::string names;
+        for (const std::string& path : left_out) names += (names.empty() ? "" : ", ") + in_quotes(path);
+        warnings.push_back(sentence(left_out.size() == 1 ? "level " : "levels ", names, " of the image ",
+                                    left_out.size() == 1 ? "is" : "are", " left out: ", reason));
+    }
+    return volumes;
+}
+
+// ---- What kind of folder it is --------------------------------------------------------------------------------------
+
+std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& attributes, const OpenOptions& options)
+{
+    const OmeImage image = read_ome_image(folder / ".zattrs", attributes);
+    std::vector<std::string> left_out;
+    std::vector<ZarrVolume> volumes = open_levels(folder, image, options, left_out);
+    VolumeInfo info{.name = name_of_folder(folder), .format = "ome-zarr", .size = volumes[0].size()};
+    info.type = volumes[0].metadata().type;
+    static_cast<void>(voxel_count(info));
+    info.warnings = image.warnings;
+    apply_spacing(info, image.levels[0].scale, image.unit, "um");
+    info.origin = image.levels[0].translation.value_or(glm::dvec3(0.0));
+    ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
+    info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
+    if (attributes.contains("image-label"))
+        info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
+    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
+}
+
+/// An array by itself says nothing of axes.
+std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptions& options)
+{
+    ZarrMetadata metadata = read_zarr_metadata(folder);
+    const size_t axes = metadata.shape.size();
+    OmeImage image{.axes = axes};
+    bool is_volume = axes >= 3;
+    for (size_t axis = 0; axis + 3 < axes; ++axis) is_volume = is_volume && metadata.shape[axis] == 1;
+    if (!is_volume) {
+        refuse_json(folder / ".zarray", "shape", metadata.shape, "three axes z, y, x, those before them 1 voxel long");
+    }
+    image.xyz = {axes - 1, axes - 2, axes - 3};
+    VolumeInfo info{.name = name_of_folder(folder), .format = "ome-zarr", .size = size_along(metadata, image.xyz)};
+    info.type = metadata.type;
+    static_cast<void>(voxel_count(info));
+    info.warnings.emplace_back("a Zarr array alone does not name its axes; z, y, x assumed");
+    apply_spacing(info, std::nullopt, std::nullopt, "um");
+    std::vector<ZarrVolume> volumes;
+    const ZarrView view = view_of(folder, image, metadata, options);
+    volumes.emplace_back(folder, std::move(metadata), view);
+    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
+}
+
+/// A group that is no image itself may hold some: bioformats2raw puts them into 0, 1, ...
+std::unique_ptr<VolumeSource> open_group(const fs::path& folder, const Json& attributes, const OpenOptions& options)
+{
+    if (attributes.contains("plate") || attributes.contains("well")) {
+        fail(folder.string(), ": is a plate of many images; expected one of them, as in ",
+             (folder / (attributes.contains("plate") ? "A/1/0" : "0")).string());
+    }
+    if (!is_there(folder / "0" / ".zattrs")) {
+        fail((folder / ".zattrs").string(),
+             ": multiscales is missing; expected an OME-Zarr image, or one of its arrays");
+    }
+    if (is_there(folder / "1" / ".zattrs")) {
+        fail(folder.string(), ": holds several images; expected one of them, as in ", (folder / "0").string());
+    }
+    return open_image(folder / "0", read_json_object(folder / "0" / ".zattrs", LARGEST_ZARR_ATTRIBUTES), options);
+}
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOptions& options)
+{
+    std::error_code ignored;
+    if (!fs::is_directory(path, ignored)) return nullptr;
+    if (is_there(path / ".zarray")) return open_array(path, options);
+    const bool has_attributes = is_there(path / ".zattrs");
+    if (!has_attributes && !is_there(path / ".zgroup")) {
+        if (!is_there(path / "zarr.json")) return nullptr;
+        fail((path / "zarr.json").string(), ": is Zarr version 3, which is not supported yet; expected version 2, as ",
+             "OME-Zarr 0.4 has it");
+    }
+    const Json attributes =
+        has_attributes ? read_json_object(path / ".zattrs", LARGEST_ZARR_ATTRIBUTES) : Json(Json::object());
+    if (attributes.contains("multiscales")) return open_image(path, attributes, options);
+    return open_group(path, attributes, options);
+}
+
+}  // namespace shvr

@@ -1,0 +1,141 @@
+#include "engine/formats/zarr/zarr_codec.h"
+
+#include <blosc.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+[[noreturn]] void refuse_size(const std::string& name, const char* what, uint64_t found, uint64_t expected)
+{
+    fail(name, ": ", what, " ", found, " bytes; expected ", expected, " for the voxels of a chunk");
+}
+
+void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::string& name)
+{
+    if (stored.size() < BLOSC_MIN_HEADER_LENGTH) {
+        fail(name, ": holds ", stored.size(), " bytes; expected a blosc header of ", BLOSC_MIN_HEADER_LENGTH);
+    }
+    // The header's own words come first: `blosc_cbuffer_validate` believes them where they agree with each other.
+    size_t bytes = 0, stored_bytes = 0, block_bytes = 0;
+    blosc_cbuffer_sizes(stored.data(), &bytes, &stored_bytes, &block_bytes);
+    if (stored_bytes != stored.size()) {
+        fail(name, ": holds ", stored.size(), " bytes; expected ", stored_bytes, ", as its blosc header says");
+    }
+    if (bytes != chunk.size()) refuse_size(name, "its blosc header promises", bytes, chunk.size());
+    if (blosc_cbuffer_validate(stored.data(), stored.size(), &bytes) != 0 || bytes != chunk.size()) {
+        fail(name, ": has a blosc header that contradicts itself; expected a whole chunk");
+    }
+    // On one thread: parallel are the chunks.
+    const int made = blosc_decompress_ctx(stored.data(), chunk.data(), chunk.size(), 1);
+    if (made < 0 || static_cast<size_t>(made) != chunk.size()) {
+        fail(name, ": cannot be decoded by blosc (error ", made, "); expected a whole chunk");
+    }
+}
+
+void decompress_zstd(Bytes stored, std::span<std::byte> chunk, const std::string& name)
+{
+    const size_t made = ZSTD_decompress(chunk.data(), chunk.size(), stored.data(), stored.size());
+    if (ZSTD_isError(made) != 0) {
+        fail(name, ": cannot be decoded by zstd (", ZSTD_getErrorName(made), "); expected ", chunk.size(), " bytes");
+    }
+    if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
+}
+
+/// Ends the stream whatever happens.
+struct Inflater {
+    z_stream stream{};
+    bool is_ready = false;
+    ~Inflater()
+    {
+        if (is_ready) inflateEnd(&stream);
+    }
+};
+
+/// Both wrappings of deflate; gzip files may hold several members, one after the other.
+void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::string& name)
+{
+    Inflater inflater;
+    constexpr int ZLIB_OR_GZIP = 32 + MAX_WBITS;
+    inflater.is_ready = inflateInit2(&inflater.stream, ZLIB_OR_GZIP) == Z_OK;
+    if (!inflater.is_ready) fail(name, ": cannot be decoded: zlib has no memory");
+    z_stream& stream = inflater.stream;
+    // zlib's interface is older than const.
+    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(stored.data()));
+    stream.avail_in = static_cast<uInt>(stored.size());
+    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    stream.avail_out = static_cast<uInt>(chunk.size());
+    int status = Z_OK;
+    while (status == Z_OK) {
+        status = inflate(&stream, Z_FINISH);
+        const bool has_more = status == Z_STREAM_END && stream.avail_in > 0 && stream.avail_out > 0;
+        if (has_more) status = inflateReset(&stream);
+    }
+    const size_t made = chunk.size() - stream.avail_out;
+    if (status == Z_BUF_ERROR && stream.avail_out == 0) {
+        fail(name, ": decodes to more than ", made, " bytes; expected ", chunk.size(), " for the voxels of a chunk");
+    }
+    if (status != Z_STREAM_END) {
+        fail(name, ": cannot be decoded by zlib (", stream.msg != nullptr ? stream.msg : "it ends too early",
+             "); expected ", chunk.size(), " bytes");
+    }
+    if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
+}
+
+}  // namespace
+
+int64_t longest_stored(int64_t chunk_bytes)
+{
+    // Deflate, the worst of them, adds five bytes to blocks of at least 16 KiB; headers are small.
+    return chunk_bytes + chunk_bytes / 1024 + 4096;
+}
+
+void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
+{
+    if (kind == ZarrCompressor::Kind::none) {
+        if (stored_bytes != chunk_bytes) refuse_size(name, "holds", stored_bytes, chunk_bytes);
+        return;
+    }
+    // Deflate: 258 bytes out of two bits. Zstd, also within blosc: 128 KiB out of a block of four bytes.
+    const bool is_deflate = kind == ZarrCompressor::Kind::zlib || kind == ZarrCompressor::Kind::gzip;
+    const size_t most_out_of_a_byte = is_deflate ? 1032 : 32768;
+    if (chunk_bytes / most_out_of_a_byte > stored_bytes) {
+        fail(name, ": holds ", stored_bytes, " bytes; expected enough for the ", chunk_bytes, " of a chunk");
+    }
+}
+
+void decompress_chunk(ZarrCompressor::Kind kind, Bytes stored, std::span<std::byte> chunk, const std::string& name)
+{
+    switch (kind) {
+        case ZarrCompressor::Kind::none:
+            check_stored_size(kind, stored.size(), chunk.size(), name);
+            std::memcpy(chunk.data(), stored.data(), chunk.size());
+            return;
+        case ZarrCompressor::Kind::blosc: return decompress_blosc(stored, chunk, name);
+        case ZarrCompressor::Kind::zstd: return decompress_zstd(stored, chunk, name);
+        case ZarrCompressor::Kind::zlib:
+        case ZarrCompressor::Kind::gzip: return decompress_deflate(stored, chunk, name);
+    }
+}
+
+Bytes compress_chunk(const ZarrCompressor& compressor, Bytes chunk, size_t voxel_bytes, std::vector<std::byte>& memory)
+{
+    if (compressor.kind == ZarrCompressor::Kind::none) return chunk;
+    SHVR_CHECK(compressor.kind == ZarrCompressor::Kind::blosc, static_cast<int>(compressor.kind));
+    memory.resize(std::max(memory.size(), chunk.size() + BLOSC_MAX_OVERHEAD));
+    const int made = blosc_compress_ctx(compressor.level, compressor.shuffle, voxel_bytes, chunk.size(), chunk.data(),
+                                        memory.data(), memory.size(), compressor.codec.c_str(), 0, 1);
+    SHVR_CHECK(made > 0, made, " ", compressor.codec);
+    return Bytes(memory).first(static_cast<size_t>(made));
+}
+
+}  // namespace shvr

@@ -1,0 +1,44 @@
+#pragma once
+// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. A compute pass answers, and
+// the answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
+//
+// One thread, the renderer's.
+
+#include <optional>
+#include <vector>
+
+#include "engine/annotation/region.h"
+#include "engine/picture/renderer.h"
+
+namespace shvr {
+
+/// Bits of a box of voxels: bit b of word w of row (y, z) is voxel x = box.lower.x + 32 w + b.
+struct RelevanceBits {
+    VoxelBox box;
+    int64_t words_per_row = 0;
+    std::vector<uint32_t> words;  ///< word + words_per_row * (y + size.y * z)
+    uint64_t asked_ns = 0;        ///< as `ask` was told: the answer is at least as old
+    double gpu_ms = 0.0;          ///< 0 where the device has no timestamps
+};
+
+class Relevance {
+public:
+    static constexpr int64_t SIDE = 64;  ///< voxels
+
+    explicit Relevance(Renderer& renderer) : renderer_(renderer) {}
+
+    /// Asks for the cube around a point (voxels), cut at the volume's border. Drops an answer not yet taken. Asks
+    /// nothing while bricks of the cube are on their way to the device. Fails where the point is not a number.
+    void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
+    bool is_asking() const { return bool(answer_); }
+    /// Nothing while the device is at it.
+    std::optional<RelevanceBits> take();
+
+private:
+    Renderer& renderer_;
+    BrushRegion region_;
+    uint64_t asked_ns_ = 0;
+    gpu::Submission answer_;
+};
+
+}  // namespace shvr

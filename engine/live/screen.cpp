@@ -1,0 +1,201 @@
+#include "engine/live/screen.h"
+
+#include <algorithm>
+
+namespace shvr {
+
+void Screen::look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel)
+{
+    session_ = session;
+    camera_ = camera;
+    pixels_ = pixels;
+    probe_voxel_ = probe_voxel;
+    arrange(true);
+}
+
+void Screen::look_from(const Camera& camera, const glm::dvec3& probe_voxel)
+{
+    camera_ = camera;
+    probe_voxel_ = probe_voxel;
+    arrange(false);
+}
+
+void Screen::arrange(bool session_changed)
+{
+    const std::vector<Pane> panes = panes_of(session_.view, camera_, pixels_, renderer_.volume().info(), probe_voxel_);
+    while (parts_.size() > panes.size()) {
+        parts_.back().view->wait();
+        retired_submissions_ += parts_.back().view->submissions();
+        retired_revisions_ += parts_.back().view->revision() + 1;
+        parts_.pop_back();
+    }
+    for (size_t i = 0; i < panes.size(); ++i) {
+        const Pane& pane = panes[i];
+        const glm::uvec2 size = pane.box.end - pane.box.begin;
+        const bool is_new = i == parts_.size();
+        if (is_new) parts_.push_back({.pane = pane, .view = std::make_unique<View>(renderer_, options_)});
+        Pane& before = parts_[i].pane;
+        const bool looks_the_same = before.shot == pane.shot && before.box.end - before.box.begin == size;
+        before = pane;
+        if (is_new || session_changed || !looks_the_same) parts_[i].view->look(session_, pane.shot, size);
+    }
+}
+
+void Screen::show_probe(const ProbeLook& probe)
+{
+    // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel of any slice that shows all of the volume.
+    constexpr double STIR_VOXELS = 0.05;
+    const glm::dvec3 voxel = probe.center / renderer_.volume().info().spacing;
+    const bool follows = session_.view.arrangement == Arrangement::slices && !parts_.empty();
+    if (follows && glm::distance(voxel, probe_voxel_) > STIR_VOXELS) look_from(camera_, voxel);
+    for (const Part& part : parts_)
+        part.view->show_probe(part.pane.kind == Pane::Kind::slice && !probe.preview ? std::nullopt
+                                                                                    : std::optional(probe));
+}
+
+void Screen::changed(const VoxelBox& voxels)
+{
+    for (const Part& part : parts_) part.view->changed(voxels);
+}
+
+void Screen::update_occlusion()
+{
+    for (const Part& part : parts_)
+        if (!part.pane.shot.is_slice) return part.view->update_occlusion();
+}
+
+bool Screen::is_loading() const
+{
+    return renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+}
+
+/// The volume loads what one pane needs at a time. One that is interrupted is to be drawn again when its turn comes.
+void Screen::give_turn(size_t part)
+{
+    if (part == turn_) return;
+    if (is_loading() && turn_ < parts_.size()) parts_[turn_].view->came({Size3(0), renderer_.volume().info().size});
+    turn_ = part;
+}
+
+void Screen::advance()
+{
+    for (const Part& part : parts_) part.view->collect();
+    if (renderer_.paged())
+        for (const VoxelBox& voxels : renderer_.paged()->advance())
+            if (turn_ < parts_.size()) parts_[turn_].view->came(voxels);
+    const auto first = [&](const auto& wants) {
+        size_t part = 0;
+        while (part < parts_.size() && !wants(part)) ++part;
+        return part;
+    };
+    const size_t unsketched = first([&](size_t part) { return !parts_[part].view->is_sketched(); });
+    const size_t next = unsketched < parts_.size() ? unsketched : first([&](size_t part) {
+        return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
+    });
+    if (next == parts_.size()) return;
+    // One at a time, so that what is on its way stays short whoever sent it.
+    for (size_t part = 0; part < parts_.size(); ++part)
+        if (part != next && !parts_[part].view->is_idle()) return;
+    give_turn(next);
+    if (unsketched < parts_.size())
+        parts_[next].view->submit_sketches();
+    else
+        parts_[next].view->submit_due();
+}
+
+void Screen::wait()
+{
+    for (const Part& part : parts_) part.view->wait();
+}
+
+bool Screen::complete() const
+{
+    return !is_loading() && std::ranges::all_of(parts_, [](const Part& part) { return part.view->is_finished(); });
+}
+
+std::optional<size_t> Screen::part_at(const glm::dvec2& pixel) const
+{
+    for (size_t i = 0; i < parts_.size(); ++i) {
+        const PixelBox& box = parts_[i].pane.box;
+        if (glm::all(glm::greaterThanEqual(pixel, glm::dvec2(box.begin))) &&
+            glm::all(glm::lessThan(pixel, glm::dvec2(box.end))))
+            return i;
+    }
+    return std::nullopt;
+}
+
+std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks) const
+{
+    if (!part.view->shown_camera() || !shows_anything()) return {};
+    Pane shown = part.pane;
+    shown.shot.camera = *part.view->shown_camera();  // so that they lie on what is seen, which may lag behind
+    const PixelBox& box = parts_[0].pane.box;
+    return strokes_of(shown,
+                      {.main = camera_,
+                       .main_pixels = box.end - box.begin,
+                       .probe = {.center = probe.center, .radius = probe.radius, .color = probe.color},
+                       .balls = marks.balls,
+                       .lines = marks.lines},
+                      renderer_.volume().info());
+}
+
+Image8 Screen::read_back()
+{
+    Image8 whole{int(pixels_.x), int(pixels_.y), std::vector<uint8_t>(size_t(pixels_.x) * pixels_.y * 4)};
+    for (const Part& part : parts_) {
+        const Image8 shown = part.view->read_back();
+        const PixelBox& box = part.pane.box;
+        for (uint32_t y = 0; y < uint32_t(shown.height); ++y)
+            std::ranges::copy_n(&shown.rgba[4 * size_t(shown.width) * y], 4 * shown.width,
+                                &whole.rgba[4 * (box.begin.x + size_t(pixels_.x) * (box.begin.y + y))]);
+        const bool is_map = part.pane.kind == Pane::Kind::map || part.pane.kind == Pane::Kind::slice;
+        if (!is_map) continue;
+        const glm::dvec3 probe = probe_voxel_ * renderer_.volume().info().spacing;
+        const OverlayScene scene{.main = camera_,
+                                 .main_pixels = parts_[0].pane.box.end - parts_[0].pane.box.begin,
+                                 .probe = {.center = probe, .is_outlined = false}};
+        draw_strokes(whole, strokes_of(part.pane, scene, renderer_.volume().info()), box);
+    }
+    return whole;
+}
+
+std::vector<View::Layer> Screen::layers() const
+{
+    std::vector<View::Layer> layers;
+    for (const Part& part : parts_)
+        for (View::Layer layer : part.view->layers()) {
+            layer.target = {layer.target.begin + part.pane.box.begin, layer.target.end + part.pane.box.begin};
+            layers.push_back(layer);
+        }
+    return layers;
+}
+
+uint64_t Screen::revision() const
+{
+    uint64_t sum = retired_revisions_;
+    for (const Part& part : parts_) sum += part.view->revision();
+    return sum;
+}
+
+uint64_t Screen::submissions() const
+{
+    uint64_t sum = retired_submissions_;
+    for (const Part& part : parts_) sum += part.view->submissions();
+    return sum;
+}
+
+std::vector<View::PassTime> Screen::pass_times() const
+{
+    std::vector<View::PassTime> sum;
+    for (const Part& part : parts_)
+        for (const View::PassTime& pass : part.view->pass_times()) {
+            auto known = std::ranges::find(sum, pass.name, &View::PassTime::name);
+            if (known == sum.end()) known = sum.insert(known, {.name = pass.name});
+            known->runs += pass.runs;
+            known->total_ms += pass.total_ms;
+            known->longest_ms = std::max(known->longest_ms, pass.longest_ms);
+        }
+    return sum;
+}
+
+}  // namespace shvr

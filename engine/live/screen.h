@@ -1,0 +1,72 @@
+#pragma once
+// What somebody looks at: the panes of a picture, each a View, that take turns at the device.
+//
+// Sketches come first, pane by pane, so that all of the screen follows the hand; then each pane is made sharp, the first
+// one first. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call waits for
+// the device but where it says so.
+
+#include <memory>
+
+#include "engine/live/trace_look.h"
+#include "engine/live/view.h"
+#include "engine/look/overlay.h"
+
+namespace shvr {
+
+class Screen {
+public:
+    Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
+
+    /// What is to be seen; all of it is drawn anew. Not to be called where nothing changed.
+    void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
+    /// The same session from elsewhere: panes that stay as they are, are not drawn again.
+    void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
+    /// Slices go where the probe goes.
+    void show_probe(const ProbeLook& probe);
+    /// These voxels have been painted.
+    void changed(const VoxelBox& voxels);
+    void update_occlusion();
+
+    void advance();
+    void wait();
+    bool complete() const;
+
+    struct Part {
+        Pane pane;
+        std::unique_ptr<View> view;
+    };
+    /// The panes that are wanted; the first is the camera's.
+    const std::vector<Part>& parts() const { return parts_; }
+    /// Which pane a pixel belongs to; nothing beside all of them.
+    std::optional<size_t> part_at(const glm::dvec2& pixel) const;
+    /// The lines over what is shown of a pane, in its pixels.
+    std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {}) const;
+    /// Something of the first pane can be seen.
+    bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
+
+    /// What is shown, with the lines over maps and slices but without the probe's; waits for the device.
+    Image8 read_back();
+
+    // Of all panes together
+    std::vector<View::Layer> layers() const;
+    uint64_t revision() const;
+    uint64_t submissions() const;
+    std::vector<View::PassTime> pass_times() const;
+
+private:
+    void arrange(bool session_changed);
+    void give_turn(size_t part);
+    bool is_loading() const;
+
+    Renderer& renderer_;
+    View::Options options_;
+    Session session_;
+    Camera camera_;
+    glm::uvec2 pixels_{0};
+    glm::dvec3 probe_voxel_{0.0};
+    std::vector<Part> parts_;
+    size_t turn_ = 0;                                           ///< of parts_: whose bricks are being loaded
+    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< of panes that are gone
+};
+
+}  // namespace shvr

@@ -1,0 +1,201 @@
+#include "engine/live/trace_look.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace shvr {
+
+namespace {
+
+/// Finds the look of a group once.
+class TraceLook {
+public:
+    TraceLook(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
+        : trace_(trace), groups_(groups), least_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
+    {}
+
+    /// Nothing where the group is hidden.
+    std::optional<KeyedSurface> of(uint32_t number, const TraceNode& node)
+    {
+        const Look& look = look_of(node.group);
+        if (!look.visible) return std::nullopt;
+        const double radius = shown(node.radius);
+        return KeyedSurface{surface_key(SurfaceKind::node, number),
+                            {node.position, node.position, radius, radius, look.color}};
+    }
+    std::optional<KeyedSurface> of(uint32_t number, const TraceInternode& internode)
+    {
+        const Look& look = look_of(internode.group);
+        if (!look.visible) return std::nullopt;
+        return KeyedSurface{
+            surface_key(SurfaceKind::internode, number),
+            {trace_.node(internode.a).position, trace_.node(internode.b).position,
+             shown(trace_.radius_of(internode, 0.0)), shown(trace_.radius_of(internode, 1.0)), look.color}};
+    }
+
+private:
+    struct Look {
+        bool visible;
+        glm::dvec3 color;
+    };
+    double shown(double radius) const { return radius > 0.0 ? radius : least_; }
+    const Look& look_of(uint8_t group)
+    {
+        std::optional<Look>& look = looks_[group];
+        if (!look) {
+            const ColorGroup found = group_of(groups_, group);
+            look = Look{found.visible, found.color};
+        }
+        return *look;
+    }
+
+    const TraceGraph& trace_;
+    const Groups& groups_;
+    double least_;
+    std::array<std::optional<Look>, 256> looks_{};
+};
+
+}  // namespace
+
+std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
+{
+    TraceLook look(trace, groups, spacing);
+    std::vector<KeyedSurface> surfaces;
+    surfaces.reserve(trace.nodes().size() + trace.internodes().size());
+    const auto add = [&](const auto& numbered) {
+        for (const auto& [number, what] : numbered)
+            if (const auto surface = look.of(number, what)) surfaces.push_back(*surface);
+    };
+    add(trace.nodes());
+    add(trace.internodes());
+    return surfaces;
+}
+
+void show_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
+                   const Groups& groups)
+{
+    std::vector<KeyedSurface> all = keyed(surfaces);
+    const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, renderer.volume().info().spacing);
+    all.insert(all.end(), of_trace.begin(), of_trace.end());
+    renderer.set_keyed_surfaces(std::move(all));
+}
+
+void show_changed_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
+                           const Groups& groups, std::span<const Change> changes)
+{
+    std::set<uint32_t> nodes, internodes;
+    for (const Change& change : changes) {
+        const auto* const of_trace = std::get_if<TraceChange>(&change);
+        if (!of_trace) continue;
+        if (const auto* node = std::get_if<TraceNodeChange>(of_trace)) {
+            nodes.insert(node->node);
+            const std::span<const uint32_t> around = trace.internodes_of(node->node);
+            internodes.insert(around.begin(), around.end());
+        } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
+            internodes.insert(internode->internode);
+        } else if (std::holds_alternative<TraceSizeChange>(*of_trace)) {
+            return show_surfaces(renderer, surfaces, trace, groups);
+        }
+    }
+    TraceLook look(trace, groups, renderer.volume().info().spacing);
+    std::vector<uint64_t> keys;
+    std::vector<KeyedSurface> now;
+    const auto add = [&](SurfaceKind kind, const std::set<uint32_t>& changed, const auto& numbered) {
+        for (const uint32_t number : changed) {
+            keys.push_back(surface_key(kind, number));
+            const auto found = numbered.find(number);
+            if (found == numbered.end()) continue;
+            if (const auto surface = look.of(number, found->second)) now.push_back(*surface);
+        }
+    };
+    add(SurfaceKind::node, nodes, trace.nodes());
+    add(SurfaceKind::internode, internodes, trace.internodes());
+    if (!renderer.replace_surfaces(keys, now)) show_surfaces(renderer, surfaces, trace, groups);
+}
+
+namespace {
+
+/// The box around balls.
+class Reach {
+public:
+    void add(const TraceNode& node) { add(node.position, node.radius); }
+    void add(const glm::dvec3& position, double radius)
+    {
+        lower_ = glm::min(lower_, position - radius);
+        upper_ = glm::max(upper_, position + radius);
+    }
+    /// A voxel more on each side: what has no radius is drawn with some.
+    VoxelBox box(const glm::dvec3& spacing) const
+    {
+        if (lower_.x > upper_.x) return {};
+        return {Size3(glm::floor(lower_ / spacing)) - int64_t{1}, Size3(glm::ceil(upper_ / spacing)) + int64_t{1}};
+    }
+
+private:
+    glm::dvec3 lower_{1e300}, upper_{-1e300};
+};
+
+}  // namespace
+
+VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing)
+{
+    Reach reach;
+    double thickest = 0.0;
+    for (const auto& [group, radius] : trace.internode_radii()) thickest = std::max(thickest, radius);
+    const auto add_node = [&](uint32_t number) {
+        const auto found = trace.nodes().find(number);
+        if (found == trace.nodes().end()) return;  // its own change tells where it was
+        reach.add(found->second);
+        reach.add(found->second.position, thickest);
+    };
+    const auto add_changed = [&](uint32_t number, const std::optional<TraceNode>& node) {
+        if (!node) return;
+        reach.add(*node);
+        reach.add(node->position, thickest);
+        if (!trace.nodes().contains(number)) return;
+        for (const uint32_t internode : trace.internodes_of(number)) add_node(trace.internode(internode).other(number));
+    };
+    for (const Change& change : changes) {
+        const auto* const of_trace = std::get_if<TraceChange>(&change);
+        if (!of_trace) continue;
+        if (const auto* node = std::get_if<TraceNodeChange>(of_trace)) {
+            add_changed(node->node, node->before);
+            add_changed(node->node, node->after);
+        } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
+            for (const auto& ends : {internode->before, internode->after})
+                if (ends) add_node(ends->a), add_node(ends->b);
+        } else if (const auto* size = std::get_if<TraceSizeChange>(of_trace)) {
+            const double largest = std::max({thickest, size->before.value_or(0.0), size->after.value_or(0.0)});
+            for (const auto& [number, any] : trace.nodes()) reach.add(any.position, std::max(largest, any.radius));
+        }
+    }
+    return reach.box(spacing);
+}
+
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+                       const std::optional<glm::dvec3>& moved_to)
+{
+    TraceMarks marks;
+    const auto add_ball = [&](const glm::dvec3& at, double radius, const glm::dvec3& color) {
+        if (marks.balls.size() < MOST_MARKS) marks.balls.push_back({at, std::max(radius, least_radius), color});
+    };
+    const TraceSelection& selected = trace.selection();
+    if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
+    for (const uint32_t number : selected.internodes) {
+        if (marks.lines.size() == MOST_MARKS) break;
+        const TraceInternode& internode = trace.internode(number);
+        marks.lines.push_back({trace.node(internode.a).position, trace.node(internode.b).position, SELECTED_COLOR});
+    }
+    const bool is_moved = moved_to && selected.node();
+    for (const uint32_t node : selected.nodes) {
+        add_ball(is_moved ? *moved_to : trace.node(node).position, trace.node(node).radius, SELECTED_COLOR);
+        if (!is_moved) continue;
+        for (const uint32_t number : trace.internodes_of(node))
+            marks.lines.push_back(
+                {*moved_to, trace.node(trace.internode(number).other(node)).position, SELECTED_COLOR});
+    }
+    return marks;
+}
+
+}  // namespace shvr

@@ -1,0 +1,427 @@
+#include "engine/live/view.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "engine/passes/encode.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr double PREPARATION_MS = 5.0;
+/// Seen through a translucent background.
+constexpr glm::vec3 BEHIND(0.05f);
+
+double now_s()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
+{
+    return (pixels + scale - 1u) / scale;
+}
+
+}  // namespace
+
+void View::look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
+{
+    SHVR_CHECK(pixels.x > 0 && pixels.y > 0);
+    scene_ = std::make_shared<const Scene>(Scene{session, shot, pixels});
+}
+
+void View::show_probe(const std::optional<ProbeLook>& probe)
+{
+    probe_ = probe;
+}
+
+void View::changed(const VoxelBox& voxels)
+{
+    patch_is_dirty_ = true;
+    if (base_.job) changed_during_base_.push_back(voxels);
+    if (shown_scene_) mark_voxels(voxels);
+}
+
+void View::came(const VoxelBox& voxels)
+{
+    patch_is_dirty_ = true;
+    if (base_.job) changed_during_base_.push_back(voxels);
+    if (shown_scene_) mark_voxels(voxels, false);
+}
+
+/// The pixels in which a camera, or either of two, may see them.
+PixelBox View::pixels_of(const Scene& scene, const VoxelBox& voxels) const
+{
+    // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
+    const glm::dvec3& spacing = renderer_.volume().info().spacing;
+    const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
+    const PixelBox one = pixels_of_box(scene.shot.camera, scene.pixels, lower, upper);
+    if (!scene.shot.right_eye) return one;
+    return united(one, pixels_of_box(*scene.shot.right_eye, scene.pixels, lower, upper));
+}
+
+void View::mark_voxels(const VoxelBox& voxels, bool is_urgent)
+{
+    mark_due(pixels_of(*shown_scene_, voxels), is_urgent);
+}
+
+glm::uvec2 View::tile_counts() const
+{
+    return divided(shown_scene_->pixels, TILE);
+}
+
+void View::mark_due(const PixelBox& pixels, bool is_urgent)
+{
+    if (pixels.empty()) return;
+    const glm::uvec2 counts = tile_counts(), first = pixels.begin / TILE, last = (pixels.end - 1u) / TILE;
+    for (uint32_t y = first.y; y <= last.y; ++y)
+        for (uint32_t x = first.x; x <= last.x; ++x) {
+            Tile& tile = tiles_[x + counts.x * y];
+            tile.is_due = true;
+            tile.is_urgent = tile.is_urgent || is_urgent;
+        }
+}
+
+void View::reset_tiles()
+{
+    const glm::uvec2 counts = tile_counts();
+    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = base_.shown.share < 1.0});
+}
+
+void View::reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels)
+{
+    if (image && glm::all(glm::greaterThanEqual(glm::uvec2(image.desc().texels), pixels))) return;
+    const glm::uvec2 before = image ? glm::uvec2(image.desc().texels) : glm::uvec2(0);
+    image.reset();
+    image = renderer_.memory().create(name, image_desc(format, glm::uvec3(glm::max(before, pixels), 1)));
+}
+
+// ---- What comes next ------------------------------------------------------------------------------------------------
+
+void View::advance()
+{
+    reap();
+    if (renderer_.paged())
+        for (const VoxelBox& voxels : renderer_.paged()->advance()) came(voxels);
+    submit_due();
+}
+
+void View::submit_due()
+{
+    while (in_flight_ms_ < options_.in_flight_ms && submit_next(false)) {
+    }
+}
+
+void View::submit_sketches()
+{
+    while (in_flight_ms_ < options_.in_flight_ms && submit_next(true)) {
+    }
+}
+
+bool View::patch_is_due() const
+{
+    return patch_.shown.scene != shown_scene_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
+}
+
+bool View::submit_next(bool sketches_alone)
+{
+    if (!scene_) return false;
+    if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
+    if (base_.job || patch_.job) return false;  // on their way
+    if (scene_ != shown_scene_) {
+        pass_times_.clear();
+        changed_during_base_.clear();
+        start(base_, scene_, std::nullopt, options_.motion_ms);
+        if (probe_) start(patch_, scene_, probe_, options_.probe_ms);  // shown together with it
+        patch_is_dirty_ = false;
+        return submit_next(sketches_alone);
+    }
+    if (patch_is_due()) {
+        patch_is_dirty_ = false;
+        start(patch_, scene_, probe_, options_.probe_ms);
+        finish_sketches();  // there may be nothing to draw
+        return submit_next(sketches_alone);
+    }
+    if (sketches_alone) return false;
+    if (submit_occlusion()) return true;
+    if (patch_is_due()) return submit_next(sketches_alone);
+    if (submit_tiles()) return true;
+    if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
+        start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
+        return submit_next(sketches_alone);
+    }
+    return running_.empty() && submit_refinement();
+}
+
+bool View::submit_refinement()
+{
+    std::optional<FrameGraph> graph = renderer_.next_refinement(shown_scene_->session);
+    if (!graph) return false;
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    return true;
+}
+
+bool View::submit_preparation(const Scene& scene)
+{
+    std::optional<FrameGraph> graph = renderer_.next_preparation(scene.session);
+    if (!graph) return false;
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    return true;
+}
+
+Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running)
+{
+    const Scene& scene = *running.scene;
+    Renderer::Drawn drawn =
+        renderer_.draw(graph, scene.session, scene.shot, part, graph.import("light", work_.import()));
+    running.reached = drawn.reached;
+    running.tree = std::move(drawn.tree);
+    return drawn.target;
+}
+
+gpu::EncodeParams View::encoding() const
+{
+    gpu::EncodeParams params{};
+    params.step = glm::vec2(1.0f);
+    params.behind = BEHIND;
+    params.swap_red_blue = options_.swap_red_blue;
+    return params;
+}
+
+bool View::occlusion_is_due() const
+{
+    const OcclusionSettings& settings = shown_scene_->session.light.occlusion;
+    return !shown_scene_->shot.is_slice && (settings.automatic || occlusion_is_asked_for_) &&
+           renderer_.occlusion().is_due();
+}
+
+/// A slice of what keeps ambient light off. Its bricks lie behind each other, so sharp tiles wait until all are done.
+bool View::submit_occlusion()
+{
+    constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
+    const Scene& scene = *shown_scene_;
+    if (scene.shot.is_slice) return false;
+    if (!scene.session.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
+    std::optional<Renderer::OcclusionSlice> slice = renderer_.next_occlusion(scene.session, scene.shot.camera, MOST);
+    if (!slice) {
+        occlusion_is_asked_for_ = false;
+        patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
+        occlusion_was_renewed_ = false;
+        return false;
+    }
+    for (const VoxelBox& voxels : slice->renewed) mark_voxels(voxels);
+    occlusion_was_renewed_ = occlusion_was_renewed_ || !slice->renewed.empty();
+    submit(std::move(slice->graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    return true;
+}
+
+bool View::may_draw(const Tile& tile) const
+{
+    constexpr double AGAIN_S = 0.25;
+    if (!tile.is_due || !tile.is_shown || tile.is_urgent) return tile.is_due;
+    const bool more_comes = renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
+}
+
+bool View::submit_tiles()
+{
+    const glm::uvec2 counts = tile_counts(), pixels = shown_scene_->pixels;
+    glm::dvec2 focus = 0.5 * glm::dvec2(pixels);
+    if (probe_)
+        if (const auto seen = project(shown_scene_->shot.camera, pixels, probe_->center)) focus = seen->pixel;
+    std::optional<glm::uvec2> nearest;
+    double best = 0.0;
+    for (uint32_t y = 0; y < counts.y; ++y)
+        for (uint32_t x = 0; x < counts.x; ++x) {
+            if (!may_draw(tiles_[x + counts.x * y])) continue;
+            const glm::dvec2 apart = (glm::dvec2(x, y) + 0.5) * double(TILE) - focus;
+            const double square = glm::dot(apart, apart);
+            if (!nearest || square < best) nearest = glm::uvec2(x, y), best = square;
+        }
+    if (!nearest) return false;
+    if (submit_preparation(*shown_scene_)) return true;
+
+    // As many neighbours in its row as a step affords.
+    const auto is_due = [&](uint32_t x) { return may_draw(tiles_[x + counts.x * nearest->y]); };
+    uint32_t begin = nearest->x, end = nearest->x + 1;
+    const double tile_ms = cost_ms(uint64_t(TILE) * TILE);
+    const auto affords_more = [&] { return (end - begin + 1) * tile_ms <= options_.step_ms; };
+    while (affords_more() && end < counts.x && is_due(end)) ++end;
+    while (affords_more() && begin > 0 && is_due(begin - 1)) --begin;
+
+    reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
+    Running running{.purpose = Purpose::tiles, .scene = shown_scene_};
+    for (uint32_t x = begin; x < end; ++x) {
+        Tile& tile = tiles_[x + counts.x * nearest->y];
+        tile.is_due = tile.is_urgent = false;
+        tile.drawn_s = now_s();
+        running.tiles.push_back(x + counts.x * nearest->y);
+    }
+    PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
+    part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
+    running.pixels = PixelBox{part.begin, part.end}.area();
+    const glm::uvec2 size = part.end - part.begin;
+    reserve(work_, "light", Format::rgba32_float, size);
+    FrameGraph graph;
+    const Resource light = draw(graph, part, running);
+    gpu::EncodeParams params = encoding();
+    params.target = part.begin;
+    params.size = size;
+    params.first = glm::vec2(0.5f);
+    params.last = size - 1u;
+    static_cast<void>(encode(graph, light, graph.import("display", sharp_.import()), params));
+    submit(std::move(graph), std::move(running));
+    return true;
+}
+
+void View::submit(FrameGraph graph, Running running)
+{
+    if (running.pixels > 0) running.estimate_ms = cost_ms(running.pixels);
+    if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
+    running.submission = renderer_.executor().submit(std::move(graph));
+    in_flight_ms_ += running.estimate_ms;
+    ++submissions_;
+    running_.push_back(std::move(running));
+}
+
+// ---- What is done ---------------------------------------------------------------------------------------------------
+
+void View::note(const std::string& pass, double ms)
+{
+    auto known = std::ranges::find(pass_times_, pass, &PassTime::name);
+    if (known == pass_times_.end()) known = pass_times_.insert(known, {.name = pass});
+    ++known->runs;
+    known->total_ms += ms;
+    known->longest_ms = std::max(known->longest_ms, ms);
+}
+
+/// A picture costs twenty times more here than there, so the estimate rises at once and falls slowly: a graph that takes
+/// less time than it might is the smaller evil.
+void View::learn(double ms, uint64_t pixels)
+{
+    constexpr double FALL = 0.1;
+    const double seen = std::max(ms / double(pixels), 1e-7);
+    ms_per_pixel_ = std::max(seen, ms_per_pixel_ + FALL * (seen - ms_per_pixel_));
+}
+
+void View::account(const gpu::FrameResult& result, uint64_t pixels)
+{
+    const auto now = std::chrono::steady_clock::now();
+    const double host_ms = std::chrono::duration<double, std::milli>(now - busy_since_).count();
+    busy_since_ = now;
+    double gpu_ms = 0.0;
+    for (const gpu::PassReport& pass : result.passes) {
+        gpu_ms += pass.gpu_ms;
+        if (!host_tells_time()) note(pass.name, pass.gpu_ms);
+    }
+    const double ms = host_tells_time() ? host_ms : gpu_ms;
+    // What only the host can time is put down to the pass that takes nearly all of it.
+    if (host_tells_time() && !result.passes.empty()) note(pixels > 0 ? "raycast" : result.passes.back().name, ms);
+    if (pixels == 0) return;
+    learn(ms, pixels);
+    sketch_ms_ += ms;
+}
+
+void View::wait()
+{
+    while (!running_.empty()) {
+        running_.front().submission.wait();
+        reap();
+    }
+}
+
+void View::reap()
+{
+    while (!running_.empty() && running_.front().submission.done()) {
+        Running done = std::move(running_.front());
+        running_.pop_front();
+        in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
+        const gpu::FrameResult result = done.submission.finish();
+        account(result, done.pixels);
+        if (done.reached && renderer_.paged())
+            renderer_.paged()->note_reached(done.tree, result.read_backs[*done.reached]);
+        switch (done.purpose) {
+            case Purpose::preparation: break;
+            case Purpose::base: --base_.running; break;
+            case Purpose::patch: --patch_.running; break;
+            case Purpose::tiles:
+                if (done.scene != shown_scene_) break;
+                for (uint32_t tile : done.tiles) tiles_[tile].is_shown = true;
+                ++revision_;
+                break;
+        }
+        finish_sketches();
+    }
+}
+
+bool View::complete() const
+{
+    if (!scene_) return true;
+    if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
+    return is_finished();
+}
+
+bool View::is_finished() const
+{
+    if (!scene_) return true;
+    if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
+    if (occlusion_is_due() || renderer_.refinement_is_due()) return false;
+    return (patch_.shown.share == 1.0 || patch_.shown.part.empty()) &&
+           std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
+}
+
+std::vector<View::Layer> View::layers() const
+{
+    std::vector<Layer> layers;
+    if (!shown_scene_) return layers;
+    const glm::uvec2 pixels = shown_scene_->pixels;
+    const auto add_sketch = [&](const Sketch& sketch) {
+        const Sketch::Content& shown = sketch.shown;
+        if (shown.scene != shown_scene_ || shown.part.empty()) return;
+        layers.push_back({.image = sketch.images[sketch.front].import(),
+                          .source = {glm::uvec2(0), shown.target.end - shown.target.begin},
+                          .target = shown.target});
+    };
+    const bool is_sharp = std::ranges::all_of(tiles_, &Tile::is_shown);
+    if (!is_sharp) add_sketch(base_);
+    const glm::uvec2 counts = tile_counts();
+    const auto add_tiles = [&](uint32_t begin, uint32_t end, uint32_t y, uint32_t rows) {
+        const PixelBox box{glm::uvec2(begin, y) * TILE, glm::min(glm::uvec2(end, y + rows) * TILE, pixels)};
+        layers.push_back({.image = sharp_.import(), .source = box, .target = box});
+    };
+    if (is_sharp) add_tiles(0, counts.x, 0, counts.y);
+    for (uint32_t y = 0; !is_sharp && y < counts.y; ++y)
+        for (uint32_t x = 0; x < counts.x; ++x) {
+            const uint32_t begin = x;
+            while (x < counts.x && tiles_[x + counts.x * y].is_shown) ++x;
+            if (x > begin) add_tiles(begin, x, y, 1);
+        }
+    add_sketch(patch_);
+    return layers;
+}
+
+Image8 View::read_back()
+{
+    const glm::uvec2 pixels = shown_scene_ ? shown_scene_->pixels : glm::uvec2(0);
+    Image8 picture{int(pixels.x), int(pixels.y), std::vector<uint8_t>(size_t(pixels.x) * pixels.y * 4)};
+    for (const Layer& layer : layers()) {
+        const glm::uvec2 size = layer.target.end - layer.target.begin;
+        FrameGraph graph;
+        graph.read_back(graph.import("layer", layer.image));
+        const gpu::FrameResult result = renderer_.executor().run(std::move(graph), {.timestamps = false});
+        const size_t source_width = layer.image.desc.texels.x;
+        for (uint32_t y = 0; y < size.y; ++y)
+            std::memcpy(&picture.rgba[4 * ((layer.target.begin.y + y) * size_t(pixels.x) + layer.target.begin.x)],
+                        &result.read_backs[0][4 * ((layer.source.begin.y + y) * source_width + layer.source.begin.x)],
+                        4 * size_t(size.x));
+    }
+    if (options_.swap_red_blue)
+        for (size_t pixel = 0; pixel < picture.rgba.size(); pixel += 4)
+            std::swap(picture.rgba[pixel], picture.rgba[pixel + 2]);
+    return picture;
+}
+
+}  // namespace shvr

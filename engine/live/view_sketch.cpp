@@ -1,0 +1,144 @@
+// Sketches of a view (view.h): the whole picture, and the pixels that the probe may cover, as coarse as they must be.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/live/view.h"
+#include "engine/passes/encode.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr double MOST_SCALE = 8.0;
+
+/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; no more than `most`, and no
+/// coarser than is any use. Whole pictures take `ms`.
+double share_for(double ms, double target_ms, double most)
+{
+    return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MOST_SCALE, most), most);
+}
+
+}  // namespace
+
+void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms)
+{
+    const bool is_patch = &sketch == &patch_;
+    PixelBox part{glm::uvec2(0), scene->pixels};
+    if (is_patch) part = PixelBox{};
+    if (is_patch && probe) {
+        const glm::dvec3& spacing = renderer_.volume().info().spacing;
+        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach(spacing));
+        if (const auto& eye = scene->shot.right_eye)
+            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach(spacing)));
+    }
+    // Where all is still it is made sharp, whatever it costs.
+    const double most = std::isinf(target_ms) ? 1.0 : scene->session.interaction.resolution;
+    const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
+    sketch_ms_ = 0.0;
+    Sketch::Content content{.scene = scene, .probe = probe, .share = share};
+    content.pixels = glm::uvec2(glm::ceil(glm::dvec2(scene->pixels) * share));
+    if (!part.empty()) {
+        const glm::dvec2 scale = glm::dvec2(content.pixels) / glm::dvec2(scene->pixels);
+        content.part = {glm::uvec2(glm::floor(glm::dvec2(part.begin) * scale)),
+                        glm::min(glm::uvec2(glm::ceil(glm::dvec2(part.end) * scale)), content.pixels)};
+        content.target = {content.part.begin * scene->pixels / content.pixels,
+                          content.part.end * scene->pixels / content.pixels};
+        reserve(sketch.images[1 - sketch.front], is_patch ? "probe's pixels" : "sketch", Format::rgba8_unorm,
+                content.target.end - content.target.begin);
+        reserve(work_, "light", Format::rgba32_float, content.part.end - content.part.begin);
+    }
+    sketch.next_row = content.part.begin.y;
+    sketch.next_encoded = content.target.begin.y;
+    sketch.job = std::move(content);
+}
+
+/// The next graph of a sketch; false where all of them are on their way.
+bool View::submit_sketch(Sketch& sketch, Purpose purpose)
+{
+    if (!sketch.job) return false;
+    if (sketch.next_row < sketch.job->part.end.y) {
+        if (!submit_preparation(*sketch.job->scene)) submit_rows(sketch, purpose);
+        return true;
+    }
+    if (sketch.next_encoded >= sketch.job->target.end.y) return false;
+    submit_encoding(sketch, purpose);
+    return true;
+}
+
+void View::submit_rows(Sketch& sketch, Purpose purpose)
+{
+    const Sketch::Content& job = *sketch.job;
+    const uint32_t width = job.part.end.x - job.part.begin.x;
+    const auto affordable = uint32_t(std::min(options_.step_ms / cost_ms(width), 65536.0));
+    const uint32_t rows = std::min(std::max(affordable / 8 * 8, 8u), job.part.end.y - sketch.next_row);
+    const PicturePart part{.pixels = job.pixels,
+                           .begin = {job.part.begin.x, sketch.next_row},
+                           .end = {job.part.end.x, sketch.next_row + rows},
+                           .target = {0, sketch.next_row - job.part.begin.y},
+                           .detail_pixels = job.scene->pixels,
+                           .probe = job.probe};
+    FrameGraph graph;
+    Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene};
+    const Resource light = draw(graph, part, running);
+    sketch.next_row += rows;
+    if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, when all are there
+        encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
+        sketch.next_encoded = sketch.next_row;
+    }
+    ++sketch.running;
+    submit(std::move(graph), std::move(running));
+}
+
+void View::submit_encoding(Sketch& sketch, Purpose purpose)
+{
+    constexpr double ENLARGING_MS = 2e-5;  ///< a pixel, on two cores of a server; a GPU does not notice
+    const uint32_t width = sketch.job->target.end.x - sketch.job->target.begin.x;
+    const auto affordable = std::max(uint32_t(options_.step_ms / (ENLARGING_MS * width)), 8u);
+    const uint32_t end = std::min(sketch.next_encoded + affordable, sketch.job->target.end.y);
+    FrameGraph graph;
+    encode_rows(graph, graph.import("light", work_.import()), sketch, sketch.next_encoded, end);
+    const double estimate_ms = ENLARGING_MS * width * (end - sketch.next_encoded);
+    sketch.next_encoded = end;
+    ++sketch.running;
+    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .scene = sketch.job->scene});
+}
+
+/// Rows of the sketch's target, from the light that starts at the sketch's part.
+void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end)
+{
+    const Sketch::Content& job = *sketch.job;
+    const glm::dvec2 step = glm::dvec2(job.pixels) / glm::dvec2(job.scene->pixels);
+    const glm::uvec2 from(job.target.begin.x, begin);
+    gpu::EncodeParams params = encoding();
+    params.target = from - job.target.begin;
+    params.size = {job.target.end.x - job.target.begin.x, end - begin};
+    params.first = (glm::dvec2(from) + 0.5) * step - glm::dvec2(job.part.begin);
+    params.step = step;
+    params.last = job.part.end - job.part.begin - 1u;
+    static_cast<void>(encode(graph, light, graph.import("display", sketch.images[1 - sketch.front].import()), params));
+}
+
+void View::flip(Sketch& sketch)
+{
+    sketch.front = 1 - sketch.front;
+    sketch.shown = std::move(*sketch.job);
+    sketch.job.reset();
+    ++revision_;
+}
+
+void View::finish_sketches()
+{
+    if (!base_.is_drawn() || !patch_.is_drawn()) return;
+    // A picture and the probe in it are shown together.
+    if (patch_.job) flip(patch_);
+    if (!base_.job) return;
+    average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());
+    flip(base_);
+    shown_scene_ = base_.shown.scene;
+    reset_tiles();
+    for (const VoxelBox& voxels : std::exchange(changed_during_base_, {})) changed(voxels);
+}
+
+}  // namespace shvr

@@ -1,0 +1,83 @@
+#pragma once
+// Cameras, and the rays they make. All of it is double precision on the CPU; the device gets two parallel planes of
+// points close to the volume and joins them, so that a camera a million voxels away loses nothing.
+
+#include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+inline double radians(double degrees)
+{
+    return degrees * (std::numbers::pi / 180.0);
+}
+
+struct Camera {
+    enum class Projection { perspective, orthographic };
+    Projection projection = Projection::perspective;
+    glm::dvec3 eye{0.0, 0.0, 1.0};  ///< volume space (physical units of the file)
+    glm::dvec3 target{0.0};         ///< volume space
+    glm::dvec3 up{0.0, 0.0, 1.0};   ///< not parallel to target - eye
+    double fov_y_degrees = 30.0;    ///< perspective: full vertical angle
+    double height = 1.0;            ///< orthographic: height of the view, physical units
+    double near_distance = 0.0;     ///< clip planes along the view direction, physical units; nothing behind the
+    double far_distance = 0.0;      ///< eye is seen, whatever the projection; far 0 = no far plane
+    /// Off-axis views (Bourke 1999, "Calculating stereo pairs"): the middle of the picture lies so many heights of the view
+    /// to the right of the line from eye to target, at every depth. The picture's plane stays upright to that line.
+    double shift_right = 0.0;
+    bool operator==(const Camera&) const = default;
+};
+
+/// A camera that follows the volume: one of `camera_sides()`, then turned and tilted about the volume's centre.
+struct SideView {
+    std::string side = "front";
+    double zoom = 1.0;          ///< the eye's distance is divided by it
+    double turn_degrees = 0.0;  ///< about the view's vertical axis; the eye moves to the viewer's right
+    double tilt_degrees = 0.0;  ///< the eye rises; at 90 it looks straight down
+    bool operator==(const SideView&) const = default;
+};
+
+/// What a session stores: numbers, or a view that takes its numbers from the volume (`camera_of`).
+using CameraSpec = std::variant<Camera, SideView>;
+
+/// The ray of pixel (x, y), y down, pixel centres at + 0.5, runs from near_corner + x' * near_dx + y' * near_dy to the
+/// same on the far plane, with x' = x + 0.5, y' = y + 0.5. Everything in voxel space.
+struct RayPlanes {
+    glm::dvec3 near_corner, near_dx, near_dy;
+    glm::dvec3 far_corner, far_dx, far_dy;
+    bool empty =
+        false;  ///< near plane behind far plane, or volume out of the clip range: nothing of the volume is seen
+    // Shares of the way from the near plane to the far one, for what may lie beyond the volume.
+    double begin = 0.0;   ///< where the camera's clip range begins; at most 0 unless `empty`
+    double middle = 0.5;  ///< where its target is, or the plane of the two that is closer to it
+    double end = 1.0;     ///< where the clip range ends; infinite without a far clip plane
+};
+
+/// The planes stand perpendicular to the view direction, touching the volume's bounding sphere (or at the clip
+/// distances where those are tighter; a perspective eye in or at the sphere puts the near plane 1/1000 of the finest
+/// spacing before the eye). Where the volume is out of the clip range they stand in that range instead, one bounding
+/// sphere apart. Fails as `check_camera` does.
+RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);
+
+/// The depth of a voxel position along the view, as a share: dot(xyz, voxel) + w is 0 where the box `lower` ... `upper`
+/// (voxels) begins in front of the eye, or of the near clip plane, and 1 where it ends. Fails as `check_camera` does.
+glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
+                       const glm::dvec3& spacing);
+
+/// Fails where the camera is degenerate (eye at target, up parallel to the view, angle outside (0, 180), not finite).
+void check_camera(const Camera& camera);
+
+/// A camera that sees the whole volume from a direction: "front" (the eye on the -y side), "back" (+y), "left" (-x),
+/// "right" (+x), all with z up; "top" (+z) and "bottom" (-z) with y up. The bounding sphere fits a square picture of
+/// 30 degrees with a margin of 5 %.
+Camera camera_looking(const std::string& side, const VolumeInfo& volume);
+std::vector<std::string> camera_sides();
+Camera camera_of(const CameraSpec& spec, const VolumeInfo& volume);
+
+}  // namespace shvr

@@ -1,0 +1,67 @@
+#include "engine/look/groups.h"
+
+#include <iterator>
+
+#include "engine/base/error.h"
+#include "engine/look/session_color.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr const char* GROUP_COLORS[] = {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
+                                        "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"};
+
+}  // namespace
+
+ColorGroup default_group(uint8_t group)
+{
+    if (group == 0) return {.name = "unpainted", .opacity = 0.0};
+    const char* color = GROUP_COLORS[(group - 1u) % std::size(GROUP_COLORS)];
+    return {.name = sentence("group ", int{group}), .color = glm::dvec3(color_of(color).value())};
+}
+
+uint8_t parent_of(const Groups& groups, uint8_t group)
+{
+    const auto found = groups.find(group);
+    return found == groups.end() ? uint8_t{0} : found->second.parent;
+}
+
+ColorGroup group_of(const Groups& groups, uint8_t group)
+{
+    ColorGroup look = default_group(group);
+    std::optional<glm::dvec3> color;
+    std::optional<double> opacity;
+    for (uint8_t at = group; at != 0; at = parent_of(groups, at)) {
+        const auto found = groups.find(at);
+        const GroupSettings settings = found == groups.end() ? GroupSettings{} : found->second;
+        if (at == group && !settings.name.empty()) look.name = settings.name;
+        // The topmost group without a colour has one of the ten; what is below it takes that.
+        if (!color) color = settings.color;
+        if (!color && settings.parent == 0) color = default_group(at).color;
+        if (!opacity) opacity = settings.opacity;
+        look.visible = look.visible && settings.visible;
+    }
+    look.color = color.value_or(look.color);
+    look.opacity = opacity.value_or(look.opacity);
+    return look;
+}
+
+bool is_within(const Groups& groups, uint8_t group, uint8_t above)
+{
+    for (; group != 0; group = parent_of(groups, group))
+        if (group == above) return true;
+    return false;
+}
+
+std::optional<uint8_t> group_in_cycle(const Groups& groups)
+{
+    for (const auto& [group, settings] : groups) {
+        uint8_t at = settings.parent;
+        for (size_t steps = 0; at != 0 && at != group && steps < groups.size(); ++steps) at = parent_of(groups, at);
+        if (at == group) return group;
+    }
+    return std::nullopt;
+}
+
+}  // namespace shvr

@@ -1,0 +1,300 @@
+#include "engine/look/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace shvr {
+
+namespace {
+
+constexpr double WIDTH = 1.5;        ///< pixels
+constexpr double TRACE_WIDTH = 2.5;  ///< of what stands out of the trace
+constexpr double HALO = 2.0;         ///< pixels more, of what sets a stroke off from what is below it
+constexpr double DASH = 5.0, GAP = 4.0;
+constexpr glm::dvec3 DARK(0.02);
+/// Of x, y and z, and of the four edges of a frustum that run away from the eye.
+constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
+                                           glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
+
+/// The part of a line that a pane shows, a little more of it (Liang and Barsky 1984).
+std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& from, const glm::dvec2& to,
+                                                         const glm::uvec2& pixels)
+{
+    constexpr double SPARE = 8.0;
+    const glm::dvec2 way = to - from;
+    double begin = 0.0, end = 1.0;
+    for (int axis = 0; axis < 2; ++axis)
+        for (const int side : {-1, 1}) {
+            const double room = side > 0 ? pixels[axis] + SPARE - from[axis] : from[axis] + SPARE;
+            const double speed = side * way[axis];
+            if (speed == 0.0) {
+                if (room < 0.0) return std::nullopt;
+            } else if (speed > 0.0) {
+                end = std::min(end, room / speed);
+            } else {
+                begin = std::max(begin, room / speed);
+            }
+        }
+    if (!(begin < end)) return std::nullopt;
+    return std::pair{from + begin * way, from + end * way};
+}
+
+class Strokes {
+public:
+    explicit Strokes(const glm::uvec2& pixels) : pixels_(pixels) {}
+
+    void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, bool stippled = false,
+              double width = WIDTH)
+    {
+        const auto seen = clipped(from, to, pixels_);
+        if (!seen) return;
+        const auto [a, b] = *seen;
+        const double length = glm::distance(a, b);
+        if (!stippled) return add(a, b, color, width);
+        for (double at = 0.0; at < length; at += DASH + GAP)
+            add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color, width);
+    }
+    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = WIDTH)
+    {
+        for (size_t i = 0; i < points.size(); ++i)
+            line(points[i], points[(i + 1) % points.size()], color, false, width);
+    }
+    /// Halos first, so that none lies on a neighbour's stroke.
+    std::vector<Stroke> taken()
+    {
+        std::vector<Stroke> all;
+        for (Stroke stroke : strokes_) {
+            stroke.color = DARK;
+            stroke.width += HALO;
+            all.push_back(stroke);
+        }
+        all.insert(all.end(), strokes_.begin(), strokes_.end());
+        return all;
+    }
+
+private:
+    void add(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
+    {
+        strokes_.push_back({from, to, color, width});
+    }
+    glm::uvec2 pixels_;
+    std::vector<Stroke> strokes_;
+};
+
+/// Corners of what a camera sees: near 0 ... 3 and far 4 ... 7, each top left, top right, bottom left, bottom right. Without
+/// a far plane it ends where the volume does.
+std::array<glm::dvec3, 8> frustum_corners(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume)
+{
+    const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
+    const glm::dvec3 forward = axes_of(camera).forward;
+    const double behind = glm::dot(0.5 * extent - camera.eye, forward) + 0.5 * glm::length(extent);
+    const double near = camera.near_distance;
+    const double far = camera.far_distance > 0.0 ? camera.far_distance : std::max(behind, near);
+    std::array<glm::dvec3, 8> corners;
+    for (size_t i = 0; i < 8; ++i)
+        corners[i] = unproject(camera, pixels, glm::dvec2(pixels) * glm::dvec2(i & 1, i >> 1 & 1), i < 4 ? near : far);
+    return corners;
+}
+
+void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene,
+                 const VolumeInfo& volume)
+{
+    const std::array<glm::dvec3, 8> corners = frustum_corners(scene.main, scene.main_pixels, volume);
+    const glm::dvec3 forward = axes_of(pane.shot.camera).forward;
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& corner : corners) middle += corner / 8.0;
+    const auto edge = [&](size_t a, size_t b) {
+        const auto from = project(pane.shot.camera, pixels, corners[a]);
+        const auto to = project(pane.shot.camera, pixels, corners[b]);
+        if (!from || !to || corners[a] == corners[b]) return;
+        // Edges before the frustum's middle are solid, those behind it stippled.
+        const bool is_far = glm::dot(0.5 * (corners[a] + corners[b]) - middle, forward) > 0.0;
+        strokes.line(from->pixel, to->pixel, 0.5 * (COLORS[a % 4] + COLORS[b % 4]), is_far);
+    };
+    for (size_t i = 0; i < 4; ++i) edge(i, i + 4);
+    for (const size_t plane : {0, 4})
+        for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 3}, std::pair{2, 3}})
+            edge(plane + size_t(a), plane + size_t(b));
+}
+
+/// Where the other two slices cut this one, in the colours of the axes they lie across, open around the probe.
+void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
+{
+    constexpr double OPEN = 12.0;  ///< pixels
+    const auto at = project(pane.shot.camera, pixels, scene.probe.center);
+    if (!at) return;
+    const CameraAxes axes = axes_of(pane.shot.camera);
+    const auto axis_of = [](const glm::dvec3& direction) {
+        const glm::dvec3 size = glm::abs(direction);
+        return size.x > size.y && size.x > size.z ? 0u : size.y > size.z ? 1u : 2u;
+    };
+    const glm::dvec2 end(pixels), pixel = at->pixel;
+    const glm::dvec3 upright = COLORS[axis_of(axes.right)], level = COLORS[axis_of(axes.up)];
+    strokes.line({pixel.x, 0.0}, {pixel.x, pixel.y - OPEN}, upright);
+    strokes.line({pixel.x, pixel.y + OPEN}, {pixel.x, end.y}, upright);
+    strokes.line({0.0, pixel.y}, {pixel.x - OPEN, pixel.y}, level);
+    strokes.line({pixel.x + OPEN, pixel.y}, {end.x, pixel.y}, level);
+}
+
+/// At the border of the pane, towards where the probe is.
+void add_arrow(Strokes& strokes, const glm::uvec2& pixels, const glm::dvec2& way, const glm::dvec3& color)
+{
+    constexpr double SPARE = 14.0, SHAFT = 34.0, HEAD = 11.0;
+    const glm::dvec2 middle = 0.5 * glm::dvec2(pixels), room = glm::max(middle - SPARE, glm::dvec2(1.0));
+    const glm::dvec2 shares = glm::abs(way) / room;
+    const glm::dvec2 tip = middle + way / std::max(shares.x, shares.y);
+    const glm::dvec2 along = glm::normalize(way), across(-along.y, along.x);
+    strokes.line(tip - SHAFT * along, tip, color);
+    for (const double side : {-1.0, 1.0}) strokes.line(tip, tip - HEAD * along + 0.6 * side * HEAD * across, color);
+}
+
+/// Where a pane meets others.
+void add_border(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels)
+{
+    constexpr glm::dvec3 GREY(0.2);
+    if (pane.box.begin.x > 0) strokes.line({0.0, 0.0}, {0.0, pixels.y}, GREY);
+    if (pane.box.begin.y > 0) strokes.line({0.0, 0.0}, {pixels.x, 0.0}, GREY);
+}
+
+void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, const OverlayScene::Probe& probe)
+{
+    const std::vector<glm::dvec2> outline = silhouette_of(camera, pixels, probe.center, probe.radius);
+    const bool is_in_sight = std::ranges::any_of(outline, [&](const glm::dvec2& at) {
+        return glm::all(glm::greaterThanEqual(at, glm::dvec2(0.0))) && glm::all(glm::lessThan(at, glm::dvec2(pixels)));
+    });
+    if (is_in_sight) return strokes.closed(outline, probe.color);
+    const CameraAxes axes = axes_of(camera);
+    const glm::dvec3 from_eye = probe.center - camera.eye;
+    glm::dvec2 way(glm::dot(from_eye, axes.right), -glm::dot(from_eye, axes.up));
+    if (const auto at = project(camera, pixels, probe.center)) {
+        way = at->pixel - 0.5 * glm::dvec2(pixels);
+        const glm::dvec2 inside = glm::abs(way) - 0.5 * glm::dvec2(pixels);
+        if (inside.x < 0.0 && inside.y < 0.0) return;  // it fills the pane, or holds the eye
+    }
+    if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
+}
+
+/// Not smaller than a person sees, however far away it is.
+void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene::Ball& ball)
+{
+    constexpr double LEAST = 5.0, APART = 2.5;  ///< pixels
+    const Camera& camera = pane.shot.camera;
+    double radius = ball.radius;
+    if (pane.kind == Pane::Kind::slice) {  // the circle in which the plane cuts it
+        const double depth = glm::dot(ball.center - camera.eye, axes_of(camera).forward);
+        const double away = depth - 0.5 * (camera.near_distance + camera.far_distance);
+        if (!(std::abs(away) < radius)) return;
+        radius = std::sqrt(radius * radius - away * away);
+    }
+    const auto at = project(camera, pixels, ball.center);
+    if (!at) return;
+    const std::vector<glm::dvec2> outline = silhouette_of(camera, pixels, ball.center, radius);
+    double reach = 0.0;
+    for (const glm::dvec2& point : outline) reach = std::max(reach, glm::distance(point, at->pixel));
+    if (outline.empty()) return;
+    const double scale = std::max(reach + APART, LEAST) / std::max(reach, 1e-9);
+    std::vector<glm::dvec2> ring;
+    for (const glm::dvec2& point : outline) ring.push_back(at->pixel + scale * (point - at->pixel));
+    strokes.closed(ring, ball.color, TRACE_WIDTH);
+}
+
+void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
+{
+    if (pane.kind != Pane::Kind::slice)  // where a line lies beside the plane
+        for (const OverlayScene::Line& line : scene.lines) {
+            const auto from = project(pane.shot.camera, pixels, line.from);
+            const auto to = project(pane.shot.camera, pixels, line.to);
+            if (from && to) strokes.line(from->pixel, to->pixel, line.color, false, TRACE_WIDTH);
+        }
+    for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
+}
+
+/// The pixels that a stroke touches, and how much of each.
+template <class Paint>
+void for_each_covered(const Stroke& stroke, const PixelBox& pane, const Paint& paint)
+{
+    const glm::dvec2 from = stroke.from + glm::dvec2(pane.begin), to = stroke.to + glm::dvec2(pane.begin);
+    const double reach = 0.5 * stroke.width + 0.5;
+    const glm::dvec2 lower = glm::max(glm::floor(glm::min(from, to) - reach), glm::dvec2(pane.begin));
+    const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
+    const glm::dvec2 way = to - from;
+    const double square = glm::dot(way, way);
+    for (int y = int(lower.y); y < int(upper.y); ++y)
+        for (int x = int(lower.x); x < int(upper.x); ++x) {
+            const glm::dvec2 at = glm::dvec2(x, y) + 0.5 - from;
+            const double share = square > 0.0 ? std::clamp(glm::dot(at, way) / square, 0.0, 1.0) : 0.0;
+            const double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
+            if (covered > 0.0) paint(size_t(x), size_t(y), covered);
+        }
+}
+
+}  // namespace
+
+std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
+                                      double radius)
+{
+    constexpr int CORNERS = 48;
+    const CameraAxes axes = axes_of(camera);
+    glm::dvec3 middle = center, right = axes.right, up = axes.up;
+    double reach = radius;
+    if (camera.projection == Camera::Projection::perspective) {
+        const glm::dvec3 to_eye = camera.eye - center;
+        const double distance = glm::length(to_eye);
+        if (!(distance > radius)) return {};
+        const double sine = radius / distance;
+        middle += to_eye * (sine * sine);
+        reach *= std::sqrt(1.0 - sine * sine);
+        const glm::dvec3 towards = to_eye / distance;
+        right = glm::normalize(glm::cross(axes.up, towards));
+        up = glm::cross(towards, right);
+    }
+    std::vector<glm::dvec2> outline;
+    for (int i = 0; i < CORNERS; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / CORNERS;
+        const auto at = project(camera, pixels, middle + reach * (std::cos(angle) * right + std::sin(angle) * up));
+        if (!at) return {};
+        outline.push_back(at->pixel);
+    }
+    return outline;
+}
+
+std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume)
+{
+    const glm::uvec2 pixels = pane.box.end - pane.box.begin;
+    Strokes strokes(pixels);
+    if (pane.kind == Pane::Kind::map || pane.kind == Pane::Kind::slice) add_border(strokes, pane, pixels);
+    if (pane.kind == Pane::Kind::map) add_frustum(strokes, pane, pixels, scene, volume);
+    if (pane.kind == Pane::Kind::slice) add_cross(strokes, pane, pixels, scene);
+    // Two eyes see a line at two depths where only one of them has a camera: an anaglyph goes without.
+    if (scene.probe.is_outlined && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
+        add_probe(strokes, pane.shot.camera, pixels, scene.probe);
+    if (!pane.shot.right_eye) add_trace(strokes, pane, pixels, scene);
+    return strokes.taken();
+}
+
+void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane)
+{
+    for (const Stroke& stroke : strokes)
+        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
+            float* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+            for (int c = 0; c < 4; ++c)
+                pixel[c] = float(pixel[c] + covered * ((c < 3 ? stroke.color[c] : 1.0) - pixel[c]));
+        });
+}
+
+void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane)
+{
+    for (const Stroke& stroke : strokes)
+        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
+            uint8_t* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+            for (int c = 0; c < 3; ++c) {
+                const double light = glm::mix(srgb_decode(pixel[c] / 255.0), stroke.color[c], covered);
+                pixel[c] = uint8_t(std::lround(255.0 * srgb_encode(std::clamp(light, 0.0, 1.0))));
+            }
+        });
+}
+
+}  // namespace shvr

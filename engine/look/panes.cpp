@@ -1,0 +1,138 @@
+#include "engine/look/panes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace shvr {
+
+namespace {
+
+constexpr uint32_t LEAST_PANE = 16;    ///< pixels a side
+constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
+constexpr double MAP_MARGIN = 1.5;     ///< and what looks at it
+
+PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
+{
+    return {pixels * at / counts, pixels * (at + 1u) / counts};
+}
+
+glm::uvec2 size_of(const PixelBox& box)
+{
+    return box.end - box.begin;
+}
+
+/// The height of an orthographic view that holds `extent` (width, height).
+double height_for(const glm::dvec2& extent, const glm::uvec2& pixels)
+{
+    return std::max(extent.y, extent.x * pixels.y / pixels.x);
+}
+
+/// The whole volume from a side; `around`: heights of the view for one of the volume.
+Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& volume, double around)
+{
+    Camera camera = camera_looking(side, volume);
+    camera.projection = Camera::Projection::orthographic;
+    const CameraAxes axes = axes_of(camera);
+    const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
+    camera.height = around * height_for({glm::dot(glm::abs(axes.right), extent), glm::dot(glm::abs(axes.up), extent)},
+                                        size_of(box));
+    return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
+}
+
+/// The plane across `axis` through the probe, seen as the sides of the volume are: z from the top, y from the front, x
+/// from the right.
+Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel, double zoom)
+{
+    const char* const SIDE_BY_AXIS[] = {"right", "front", "top"};
+    Pane pane = map_pane(SIDE_BY_AXIS[axis], box, volume, SLICE_MARGIN / zoom);
+    Camera& camera = pane.shot.camera;
+    const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
+    const glm::dvec3 size(volume.size);
+    const double voxel = std::clamp(probe_voxel[axis], 0.0, std::nextafter(size[axis], 0.0));
+    // Where it is enlarged the probe stays in the middle.
+    if (zoom > 1.0) {
+        const glm::dvec3 way = glm::clamp(probe_voxel, glm::dvec3(0.0), size) * volume.spacing - camera.target;
+        camera.target += way;
+        camera.eye += way;
+    }
+    const double depth = std::abs(voxel * volume.spacing[axis] - camera.eye[axis]);
+    const double half = 0.5 * std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
+    camera.target = camera.eye + forward * depth;
+    camera.near_distance = std::max(depth - half, 0.0);
+    camera.far_distance = camera.near_distance + 2.0 * half;
+    pane.kind = Pane::Kind::slice;
+    pane.shot.is_slice = true;
+    pane.axis = axis;
+    pane.name = std::string("slice across ") + "xyz"[axis];
+    return pane;
+}
+
+std::vector<Pane> stereo_panes(const StereoSettings& settings, const Camera& main, const glm::uvec2& pixels)
+{
+    const auto [left, right] = eyes_of(main, settings);
+    if (settings.output == StereoOutput::anaglyph) {
+        Pane both{.kind = Pane::Kind::main, .shot = left, .box = {glm::uvec2(0), pixels}, .name = "both eyes"};
+        both.shot.right_eye = right;
+        return {both};
+    }
+    const glm::uvec2 counts = settings.output == StereoOutput::side_by_side ? glm::uvec2(2, 1) : glm::uvec2(1, 2);
+    return {
+        {.kind = Pane::Kind::left_eye, .shot = left, .box = part_of(pixels, counts, glm::uvec2(0)), .name = "left eye"},
+        {.kind = Pane::Kind::right_eye,
+         .shot = right,
+         .box = part_of(pixels, counts, counts - 1u),
+         .name = "right eye"}};
+}
+
+}  // namespace
+
+std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings)
+{
+    const CameraAxes axes = axes_of(camera);
+    const double reach = glm::distance(camera.eye, camera.target);
+    const double half = 0.5 * settings.eye_distance * reach;
+    const bool is_perspective = camera.projection == Camera::Projection::perspective;
+    std::array<Camera, 2> eyes{camera, camera};
+    for (const int side : {-1, 1}) {
+        Camera& eye = eyes[side > 0];
+        const glm::dvec3 way = double(side) * half * axes.right;
+        eye.eye += way;
+        if (half > 0.0 && (settings.toe_in || !is_perspective)) {
+            eye.up = axes.up;  // turned about it, so that neither eye rolls
+            continue;
+        }
+        eye.target += way;
+        const double height = 2.0 * std::tan(camera.fov_y_degrees * (0.5 * std::numbers::pi / 180.0)) * reach;
+        eye.shift_right -= side * half / height;
+    }
+    return {eyes[0], eyes[1]};
+}
+
+std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
+                           const VolumeInfo& volume, const glm::dvec3& probe_voxel)
+{
+    const std::vector<Pane> one{
+        {.kind = Pane::Kind::main, .shot = main, .box = {glm::uvec2(0), pixels}, .name = "camera"}};
+    const bool is_divided = settings.arrangement != Arrangement::single;
+    if (!is_divided || glm::any(glm::lessThan(pixels, glm::uvec2(2 * LEAST_PANE)))) return one;
+    if (settings.arrangement == Arrangement::stereo) return stereo_panes(settings.stereo, main, pixels);
+
+    const glm::uvec2 counts(2);
+    const auto quarter = [&](uint32_t x, uint32_t y) { return part_of(pixels, counts, {x, y}); };
+    std::vector<Pane> panes = one;
+    panes[0].box = quarter(0, 0);
+    if (settings.arrangement == Arrangement::overview) {
+        panes.push_back(map_pane("top", quarter(1, 0), volume, MAP_MARGIN / settings.overview_zoom));
+        panes.push_back(map_pane("front", quarter(0, 1), volume, MAP_MARGIN / settings.overview_zoom));
+        panes.push_back(map_pane("right", quarter(1, 1), volume, MAP_MARGIN / settings.overview_zoom));
+    } else {
+        panes.push_back(slice_pane(2, quarter(1, 0), volume, probe_voxel, settings.slices.zoom));
+        panes.push_back(slice_pane(1, quarter(0, 1), volume, probe_voxel, settings.slices.zoom));
+        panes.push_back(slice_pane(0, quarter(1, 1), volume, probe_voxel, settings.slices.zoom));
+    }
+    return panes;
+}
+
+}  // namespace shvr

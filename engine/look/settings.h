@@ -1,0 +1,74 @@
+#pragma once
+// What a picture is made with beside camera, transfer function and groups, as plain values. Pure; any thread.
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/glm.hpp>
+
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+/// How much of the ambient light reaches a place (shaders/occlusion.h).
+struct OcclusionSettings {
+    double strength = 0.0;     ///< 0: off, 1: nothing is left of the ambient light where none arrives
+    double radius = 16.0;      ///< reference lengths that light comes from
+    uint32_t rays = 32;        ///< for each voxel
+    bool full_sphere = false;  ///< rays from behind surfaces, too
+    double curve = 1.0;        ///< exponent of what arrives: above 1 darker
+    bool automatic = true;     ///< false: the window renews it when it is asked to
+    bool operator==(const OcclusionSettings&) const = default;
+};
+
+struct Light {
+    bool shaded = true;
+    double ambient = 0.3;
+    double diffuse = 0.7;
+    double specular = 0.2;
+    double shininess = 32.0;
+    glm::dvec3 direction{
+        0.0};  ///< towards the light, camera axes (right, up, back); 0,0,0 = (0.3, 0.5, 1), over the viewer's shoulder
+    double gradient_fade =
+        0.03;  ///< gradients well below this share of `intensity_range` per voxel count as "no surface"
+    OcclusionSettings occlusion;
+    bool operator==(const Light&) const = default;
+};
+
+/// Distance colour blending (Rheingans and Ebert 2001): the farther, the more of another colour. Its share at depth d,
+/// 0 where what is drawn of the volume's box begins along the view and 1 where it ends, is clamp(size d^rate, 0, 1),
+/// with 0^0 = 1. Size 0: none. What is transparent stays so.
+struct DistanceBlend {
+    double size = 0.0;
+    double rate = 1.0;
+    std::optional<glm::dvec3> color;  ///< linear light; the background's
+    bool operator==(const DistanceBlend&) const = default;
+};
+
+enum class Sampling { automatic, exact, hardware };
+
+/// Whether bricks come and go on the device. Automatic: where there are levels to choose from, or the budget asks for it.
+enum class Paging { automatic, always, never };
+
+struct RenderSettings {
+    glm::uvec2 size{512, 512};                  ///< pixels
+    double step_voxels = 0.5;                   ///< reference lengths (voxels along the finest axis)
+    double opacity_limit = 1.0 - 1.0 / 1024;    ///< a ray stops once its opacity reaches this
+    glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
+    Sampling sampling = Sampling::automatic;
+    Paging paging = Paging::automatic;
+    double detail = 1.0;  ///< voxels per pixel at least, where there are levels to choose from; 0: the finest always
+    bool skip_empty_space = true;
+    bool preintegration =
+        false;  ///< steps are classified by both of their ends (preintegration.h); for steps of at most 1
+    bool operator==(const RenderSettings&) const = default;
+};
+
+/// The six cutting planes: the part of the volume that is drawn, in voxels.
+struct CutBox {
+    glm::dvec3 lower{0.0};
+    glm::dvec3 upper{double(LARGEST_SIDE)};
+    bool operator==(const CutBox&) const = default;
+};
+
+}  // namespace shvr

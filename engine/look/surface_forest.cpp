@@ -1,0 +1,77 @@
+#include "engine/look/surface_forest.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf)
+    : most_in_leaf_(most_in_leaf)
+{
+    SurfaceTree tree = surface_tree(surfaces, volume, most_in_leaf);
+    nodes_ = std::move(tree.nodes);
+    list_ = std::move(tree.list);
+    keys_ = std::move(tree.keys);
+    base_nodes_ = nodes_.size();
+    base_list_ = list_.size();
+    if (!may_grow()) return;
+    nodes_.reserve(most_nodes());
+    list_.reserve(most_surfaces());
+    leaves_.resize(base_list_);
+    for (uint32_t node = 0; node < base_nodes_; ++node)
+        for (uint32_t i = nodes_[node].begin; i < nodes_[node].end; ++i) leaves_[i] = node;
+    places_.reserve(base_list_);
+    for (uint32_t i = 0; i < base_list_; ++i) places_.push_back({keys_[i], i});
+    std::ranges::sort(places_, {}, &Place::key);
+}
+
+/// From the large hierarchy: the last surface of the leaf takes its place.
+void SurfaceForest::remove(uint64_t key)
+{
+    const auto found = std::ranges::lower_bound(places_, key, {}, &Place::key);
+    if (found == places_.end() || found->key != key || found->at == GONE) return;
+    const uint32_t at = std::exchange(found->at, GONE), leaf = leaves_[at];
+    const uint32_t last = --nodes_[leaf].end;
+    written_.nodes.push_back(leaf);
+    if (last == at) return;
+    list_[at] = list_[last];
+    keys_[at] = keys_[last];
+    std::ranges::lower_bound(places_, keys_[at], {}, &Place::key)->at = at;
+    written_.list.push_back(at);
+}
+
+bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces,
+                            const VolumeInfo& volume)
+{
+    if (!may_grow() || keys.size() > MOST_ADDED || surfaces.size() > MOST_ADDED) return false;
+    std::vector<uint64_t> gone(keys.begin(), keys.end());
+    for (const KeyedSurface& surface : surfaces) gone.push_back(surface.key);
+    std::ranges::sort(gone);
+    std::vector<KeyedSurface> added = added_;
+    std::erase_if(added, [&](const KeyedSurface& surface) { return std::ranges::binary_search(gone, surface.key); });
+    added.insert(added.end(), surfaces.begin(), surfaces.end());
+    std::ranges::sort(added, {}, &KeyedSurface::key);
+    if (added.size() > MOST_ADDED) return false;
+    const SurfaceTree tree = surface_tree(added, volume, most_in_leaf_);
+
+    added_ = std::move(added);
+    for (const uint64_t key : gone) remove(key);
+    nodes_.resize(base_nodes_);
+    list_.resize(base_list_);
+    for (gpu::SurfaceNode node : tree.nodes) {
+        node.skip += uint32_t(base_nodes_);
+        node.begin += uint32_t(base_list_);
+        node.end += uint32_t(base_list_);
+        written_.nodes.push_back(uint32_t(nodes_.size()));
+        nodes_.push_back(node);
+    }
+    for (const gpu::Surface& surface : tree.list) {
+        written_.list.push_back(uint32_t(list_.size()));
+        list_.push_back(surface);
+    }
+    SHVR_CHECK(nodes_.size() <= most_nodes() && list_.size() <= most_surfaces());
+    return true;
+}
+
+}  // namespace shvr

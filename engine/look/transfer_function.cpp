@@ -1,0 +1,92 @@
+#include "engine/look/transfer_function.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+void check_share(double value, size_t point, const char* what)
+{
+    if (!(value >= 0.0 && value <= 1.0))
+        fail("transfer function: ", what, " of point ", point, " is ", value, "; expected 0 to 1");
+}
+
+void check_point(const ControlPoint& point, size_t index)
+{
+    constexpr double LARGEST = std::numeric_limits<float>::max();
+    if (!(std::abs(point.intensity) <= LARGEST))
+        fail("transfer function: intensity of point ", index, " is ", point.intensity,
+             "; expected a number in the range of float32");
+    for (int channel = 0; channel < 3; ++channel) check_share(point.color[channel], index, "colour");
+    check_share(point.opacity, index, "opacity");
+}
+
+glm::dvec4 value_of(const ControlPoint& point)
+{
+    return {point.color, point.opacity};
+}
+
+}  // namespace
+
+TransferFunction::TransferFunction(std::vector<ControlPoint> points) : points_(std::move(points))
+{
+    for (size_t index = 0; index < points_.size(); ++index) check_point(points_[index], index);
+    std::ranges::stable_sort(points_, {}, &ControlPoint::intensity);
+}
+
+bool TransferFunction::draws_nothing() const
+{
+    return !(lower() < upper()) || std::ranges::all_of(
+                                       points_, [](double opacity) { return opacity <= 0.0; }, &ControlPoint::opacity);
+}
+
+glm::dvec4 TransferFunction::at(double intensity) const
+{
+    if (!(lower() < upper()) || !(intensity >= lower() && intensity <= upper())) return glm::dvec4(0.0);
+    const auto next = std::ranges::upper_bound(points_, intensity, {}, &ControlPoint::intensity);
+    const ControlPoint& before = *std::prev(next);
+    if (next == points_.end() || before.intensity == intensity) return value_of(before);
+    const double share = (intensity - before.intensity) / (next->intensity - before.intensity);
+    return value_of(before) + (value_of(*next) - value_of(before)) * share;
+}
+
+double opacity_of_step(double opacity, double step_voxels)
+{
+    SHVR_CHECK(step_voxels >= 0.0 && !std::isnan(opacity), step_voxels, " ", opacity);
+    if (opacity <= 0.0 || step_voxels == 0.0) return 0.0;
+    if (opacity >= 1.0) return 1.0;
+    return -std::expm1(step_voxels * std::log1p(-opacity));
+}
+
+std::vector<glm::vec4> bake_table(const TransferFunction& function, double step_voxels, uint32_t entries)
+{
+    SHVR_CHECK(entries >= 2, entries);
+    const double width = function.upper() - function.lower();
+    std::vector<glm::vec4> table(entries);
+    for (uint32_t entry = 0; entry < entries; ++entry) {
+        // Multiplied before it is divided, and the last one by name: where a table has one entry for each whole
+        // intensity, every entry lies exactly on its intensity.
+        const double intensity =
+            entry + 1 == entries ? function.upper() : function.lower() + width * entry / (entries - 1);
+        glm::dvec4 value = function.at(intensity);
+        value.a = opacity_of_step(value.a, step_voxels);
+        table[entry] = glm::vec4(value);
+    }
+    return table;
+}
+
+std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table)
+{
+    std::vector<uint32_t> visible_before(table.size(), 0);
+    for (size_t entry = 1; entry < table.size(); ++entry) {
+        const bool is_visible = table[entry - 1].a > 0.0f || table[entry].a > 0.0f;
+        visible_before[entry] = visible_before[entry - 1] + (is_visible ? 1u : 0u);
+    }
+    return visible_before;
+}
+
+}  // namespace shvr

@@ -1,0 +1,46 @@
+#pragma once
+// A picture that is made part by part, so that it may be larger than the device holds and leave room for other work
+// in between. The parts put together have the bits of a picture drawn whole. One thread, the renderer's.
+
+#include "engine/look/overlay.h"
+#include "engine/picture/renderer.h"
+
+namespace shvr {
+
+class PictureJob {
+public:
+    /// Fails where the host's budget does not hold the picture.
+    PictureJob(Renderer& renderer, Session session, const Camera& camera, const RenderOptions& options);
+
+    bool is_done() const { return parts_.empty() && pane_ + 1 >= panes_.size(); }
+    /// Draws the next part, and waits for it. Where bricks come and go it waits for those, too: a part is drawn again until
+    /// its rays come by nothing that is not there, and one that needs more at once than there is room for is quartered.
+    void step();
+    /// Of all pixels, the share that is drawn.
+    double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
+    /// The picture, once it is done.
+    Picture take();
+
+private:
+    void begin_pane();
+    void end_pane();
+    std::vector<gpu::PassReport> draw(const PicturePart& part);
+    void draw_paged(const PicturePart& part);
+    void renew_occlusion();
+    const Pane& pane() const { return panes_[pane_]; }
+
+    Renderer& renderer_;
+    Session session_;
+    Camera camera_;
+    RenderOptions options_;
+    glm::uvec2 size_;
+    OverlayScene overlay_;
+    std::optional<VoxelBox> always_shown_;
+    std::vector<Pane> panes_;
+    size_t pane_ = 0;
+    std::vector<PicturePart> parts_;  ///< of the pane, the next one last
+    Picture picture_;
+    uint64_t drawn_pixels_ = 0;
+};
+
+}  // namespace shvr

@@ -1,0 +1,93 @@
+#include "engine/projects/import_tally.h"
+
+#include <cstring>
+
+namespace shvr {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+size_t values_of(VoxelType type)
+{
+    return bytes_of(type) <= 2 ? size_t{1} << (8 * bytes_of(type)) : 0;
+}
+
+template <class Bits>
+void count_values(Bytes voxels, std::vector<int64_t>& counts)
+{
+    Bits value;
+    for (size_t at = 0; at < voxels.size(); at += sizeof(Bits)) {
+        std::memcpy(&value, voxels.data() + at, sizeof(Bits));
+        ++counts[value];
+    }
+}
+
+}  // namespace
+
+ImportTally::ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers)
+    : type_(info.type),
+      hashes_(static_cast<size_t>(info.size.z)),
+      hashers_(static_cast<size_t>(slices_at_once)),
+      counts_(static_cast<size_t>(workers), std::vector<int64_t>(values_of(info.type)))
+{}
+
+SliceHasher& ImportTally::hasher_of(int64_t slice)
+{
+    return hashers_[static_cast<size_t>(slice) % hashers_.size()];
+}
+
+void ImportTally::add(int64_t slice, Bytes rows, int worker)
+{
+    hasher_of(slice).add(rows);
+    std::vector<int64_t>& counts = counts_[static_cast<size_t>(worker)];
+    if (bytes_of(type_) == 1) count_values<uint8_t>(rows, counts);
+    if (bytes_of(type_) == 2) count_values<uint16_t>(rows, counts);
+}
+
+void ImportTally::finish(int64_t lower, int64_t upper)
+{
+    for (int64_t slice = lower; slice < upper; ++slice) {
+        hashes_[static_cast<size_t>(slice)] = hasher_of(slice).finish();
+    }
+}
+
+std::string ImportTally::content_hash() const
+{
+    return shvr::content_hash(hashes_);
+}
+
+std::vector<int64_t> ImportTally::total_counts() const
+{
+    std::vector<int64_t> total = counts_[0];
+    for (size_t worker = 1; worker < counts_.size(); ++worker) {
+        for (size_t value = 0; value < total.size(); ++value) total[value] += counts_[worker][value];
+    }
+    return total;
+}
+
+std::optional<VolumeStatistics> ImportTally::statistics() const
+{
+    const std::vector<int64_t> counts = total_counts();
+    if (counts.empty()) return std::nullopt;
+    const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
+    if (!is_signed) return statistics_of(counts, 0);
+    // By their bits, negative values come after the others.
+    const auto half = static_cast<std::ptrdiff_t>(counts.size() / 2);
+    std::vector<int64_t> ascending(counts.begin() + half, counts.end());
+    ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
+    return statistics_of(ascending, -static_cast<int>(half));
+}
+
+void ImportTally::save(StateWriter& state) const
+{
+    state.put_all(hashes_);
+    state.put_all(total_counts());
+}
+
+void ImportTally::load(StateReader& state)
+{
+    state.take_all(hashes_);
+    state.take_all(counts_[0]);
+}
+
+}  // namespace shvr

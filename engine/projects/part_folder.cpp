@@ -1,0 +1,182 @@
+#include "engine/projects/part_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Without a slash at its end, whose parent would be itself.
+fs::path plain(const fs::path& path)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
+fs::path with_suffix(const fs::path& path, const char* suffix)
+{
+    fs::path result = path;
+    return result += suffix;
+}
+
+bool is_there(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
+}
+
+bool is_empty_folder(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::is_directory(path, ignored) && !fs::is_symlink(path, ignored) && fs::is_empty(path, ignored);
+}
+
+[[noreturn]] void refuse_write(const fs::path& path, int error_number)
+{
+    fail(path.string(), ": cannot be written: ", reason_of(error_number));
+}
+
+void make_folder(const fs::path& path)
+{
+    if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) refuse_write(path, errno);
+}
+
+FileDescriptor locked(const fs::path& folder)
+{
+    FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!descriptor) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
+    if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) == 0) return descriptor;
+    // Some network file systems know no locks.
+    if (errno != EWOULDBLOCK) return descriptor;
+    fail(folder.string(), ": another process is working on it; expected to be the only one");
+}
+
+/// All that is in the folder.
+void remove_content(const fs::path& folder)
+{
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        fs::remove_all(entry.path(), error);
+        if (error) fail(entry.path().string(), ": cannot be removed: ", error.message());
+    }
+}
+
+}  // namespace
+
+PartFolder::PartFolder(const fs::path& target, bool overwrites)
+    : target_(plain(target)), part_(with_suffix(target_, ".part")), overwrites_(overwrites)
+{
+    refuse_target();
+    if (!is_there(part_)) make_folder(part_);
+    lock_.emplace(locked(part_));
+    // A folder that somebody else calls so is not ours to clear. Ours has the state, or is hardly begun.
+    if (is_there(state())) return;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
+        if (entry.path().filename() == "shvr") continue;
+        fail(part_.string(), ": is in the way; expected nothing there, or what a stopped import left");
+    }
+    make_folder(part_ / "shvr");
+}
+
+fs::path PartFolder::state() const
+{
+    return part_ / "shvr" / "import.state";
+}
+
+void PartFolder::refuse_target() const
+{
+    if (!is_there(target_) || is_empty_folder(target_)) return;
+    if (!overwrites_) fail(target_.string(), ": is there already; expected a new name, or --overwrite");
+    for (const char* name : {".zattrs", ".zgroup", ".zarray"}) {
+        if (is_there(target_ / name)) return;
+    }
+    fail(target_.string(), ": is no project; --overwrite replaces nothing else");
+}
+
+void PartFolder::clear() const
+{
+    remove_content(part_);
+    make_folder(part_ / "shvr");
+}
+
+void PartFolder::clear_temporary() const
+{
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(part_ / "shvr", error)) {
+        if (entry.path().filename().string().starts_with(".shvr-")) fs::remove(entry.path(), error);
+    }
+}
+
+void PartFolder::sync() const
+{
+    if (::syncfs(lock_->number()) != 0) refuse_write(part_, errno);
+}
+
+void PartFolder::finish()
+{
+    sync();
+    refuse_target();  // again: the work took a while
+    if (is_there(target_) && !is_empty_folder(target_)) {
+        // One moment, in which names are exchanged, and none in which there is no project.
+        if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+            refuse_write(target_, errno);
+        }
+        std::error_code error;
+        fs::remove_all(part_, error);
+        if (error) fail(part_.string(), ": is the project that was replaced, and cannot be removed: ", error.message());
+    } else if (::rename(part_.c_str(), target_.c_str()) != 0) {
+        refuse_write(target_, errno);
+    }
+    part_ = target_;
+    std::error_code ignored;  // it does no harm there
+    fs::remove(state(), ignored);
+    fs::remove(state().parent_path(), ignored);  // where it is empty
+    const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
+    if (parent && ::fsync(parent.number()) != 0 && errno != EINVAL && errno != EACCES) {
+        fail(target_.string(),
+             ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
+    }
+}
+
+void PartFolder::abandon()
+{
+    if (part_ == target_) return;
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+}
+
+void write_part_file(const fs::path& path, std::span<const std::byte> content)
+{
+    constexpr int FLAGS = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+    int number = ::open(path.c_str(), FLAGS, 0666);
+    if (number < 0 && errno == ENOENT) {
+        std::error_code error;
+        fs::create_directories(path.parent_path(), error);
+        if (error) fail(path.parent_path().string(), ": cannot be made: ", error.message());
+        number = ::open(path.c_str(), FLAGS, 0666);
+    }
+    const FileDescriptor file(number);
+    if (!file) refuse_write(path, errno);
+    while (!content.empty()) {
+        const ssize_t count = ::write(file.number(), content.data(), content.size());
+        if (count < 0 && errno == EINTR) continue;
+        // Some network file systems say "nothing written" where they mean "full".
+        if (count <= 0) refuse_write(path, count < 0 ? errno : ENOSPC);
+        content = content.subspan(static_cast<size_t>(count));
+    }
+    // The disk begins now instead of when all is to be synced. Where that cannot be asked for, nothing is lost.
+    static_cast<void>(::sync_file_range(file.number(), 0, 0, SYNC_FILE_RANGE_WRITE));
+}
+
+}  // namespace shvr

@@ -1,0 +1,68 @@
+#include "engine/session/label_looks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/base/image.h"
+#include "engine/formats/zarr/ome_zarr_labels.h"
+
+namespace shvr {
+
+namespace {
+
+uint8_t byte_of(double share)
+{
+    return uint8_t(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+}
+
+std::array<uint8_t, 4> rgba_of(const ColorGroup& look)
+{
+    const auto channel = [&](int index) { return byte_of(srgb_encode(std::clamp(look.color[index], 0.0, 1.0))); };
+    return {channel(0), channel(1), channel(2), byte_of(look.opacity)};
+}
+
+GroupSettings settings_of(const LabelLook& look, const ColorGroup& standard)
+{
+    GroupSettings settings;
+    if (look.name != standard.name) settings.name = look.name;
+    if (!look.rgba) return settings;
+    const std::array<uint8_t, 4>&rgba = *look.rgba, usual = rgba_of(standard);
+    if (!std::equal(rgba.begin(), rgba.begin() + 3, usual.begin()))
+        settings.color = {srgb_decode(rgba[0] / 255.0), srgb_decode(rgba[1] / 255.0), srgb_decode(rgba[2] / 255.0)};
+    if (rgba[3] != usual[3]) settings.opacity = rgba[3] / 255.0;
+    return settings;
+}
+
+}  // namespace
+
+std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask)
+{
+    std::vector<LabelImage::Color> looks;
+    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group) {
+        if (voxels[size_t(group)] == 0 && !groups.contains(uint8_t(group))) continue;
+        const ColorGroup look = group_of(groups, uint8_t(group));
+        looks.push_back({group, rgba_of(look), look.name});
+    }
+    return looks;
+}
+
+std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Groups& groups)
+{
+    if (mask.empty()) return {};
+    LabelLooks read;
+    try {
+        read = read_label_looks(mask);
+    } catch (const Error& error) {
+        return {error.what()};  // whoever reads the mask says more
+    }
+    for (const LabelLook& look : read.looks) {
+        if (look.value < 1 || look.value > 255 || groups.contains(uint8_t(look.value))) continue;
+        const GroupSettings settings = settings_of(look, default_group(uint8_t(look.value)));
+        if (settings != GroupSettings{}) groups[uint8_t(look.value)] = settings;
+    }
+    return read.warnings;
+}
+
+}  // namespace shvr

@@ -1,0 +1,135 @@
+#include "engine/session/session.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/formats/zarr/project.h"
+#include "engine/look/session_color.h"
+#include "engine/session/label_looks.h"
+#include "engine/session/session_json.h"
+#include "engine/session/transfer_presets.h"
+#include "engine/volume/content_hash.h"
+
+namespace shvr {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int64_t LARGEST_SESSION_FILE = int64_t{16} << 20;
+
+bool is_session_file(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    return extension == ".json";
+}
+
+/// The session file that `path` means; empty where it is a volume file.
+fs::path session_file_of(const fs::path& path)
+{
+    std::error_code ignored;  // what cannot be looked at is treated as absent
+    if (!fs::exists(path, ignored)) {
+        if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
+        fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
+    }
+    if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
+    const fs::path file = path / "shvr" / "session.json";
+    return fs::is_regular_file(file, ignored) ? file : fs::path();  // some volumes are folders
+}
+
+/// The smallest session for a volume file.
+nlohmann::json document_for_volume(const fs::path& path)
+{
+    return {{"shvr_session", 1}, {"volume", {{"path", fs::absolute(path).lexically_normal().string()}}}};
+}
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> open_source(const Session& session)
+{
+    if (session.procedural) return open_procedural(*session.procedural);
+    if (session.raw_layout) return open_raw(session.volume_path, *session.raw_layout);
+    return open_volume(session.volume_path, session.open_options);
+}
+
+namespace {
+
+std::pair<nlohmann::json, UnmeasuredSession> open_unmeasured(const fs::path& path,
+                                                             const std::vector<std::string>& settings)
+{
+    const fs::path session_file = session_file_of(path);
+    const fs::path file = session_file.empty() ? path : session_file;
+    nlohmann::json document = session_file.empty() ? document_for_volume(path)
+                                                   : json_of(read_text(file, LARGEST_SESSION_FILE), file.string());
+    apply_settings(document, settings);
+    UnmeasuredSession opened;
+    Session& session = opened.session;
+    session = read_session(document, fs::absolute(file).parent_path(), file.string());
+    if (!session_file.empty()) session.journal_path = journal_beside(session_file);
+    opened.source = open_source(session);
+    // A project whose record is sound knows its statistics, too.
+    std::error_code ignored;
+    const fs::path record = session.volume_path / PROJECT_RECORD;
+    if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))
+        session.volume_hash = read_project_record(record).content_hash;
+    return {std::move(document), std::move(opened)};
+}
+
+}  // namespace
+
+UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vector<std::string>& settings)
+{
+    return open_unmeasured(path, settings).second;
+}
+
+OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
+{
+    auto [document, unmeasured] = open_unmeasured(path, settings);
+    OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}};
+    const HashedSource hashed(*opened.source);
+    opened.statistics = measure(hashed);
+    if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();
+    opened.warnings = warnings_of(opened.statistics);
+    for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))
+        opened.warnings.push_back(std::move(warning));
+    if (std::string& preset = opened.session.transfer_preset; !preset.empty())
+        opened.session.transfer_function =
+            transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);
+    if (!document.contains("transfer_function")) {
+        TransferFunction& function = opened.session.transfer_function;
+        function = automatic_transfer_function(opened.statistics);
+        opened.warnings.push_back(sentence("no transfer function given; a ramp from ", function.lower(), " to ",
+                                           function.upper(), " was made from the histogram"));
+    }
+    return opened;
+}
+
+fs::path journal_beside(const fs::path& session_file)
+{
+    return fs::absolute(session_file).replace_extension(".journal");
+}
+
+Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume)
+{
+    const std::string name = name_or_json.empty() ? "front" : name_or_json;
+    const std::string origin = "camera";
+    if (is_camera_object(name)) {
+        const nlohmann::json document = json_of(name, origin);
+        return camera_of(read_camera(JsonNode(document, origin)), volume);
+    }
+    if (const auto found = session.cameras.find(name); found != session.cameras.end())
+        return camera_of(found->second, volume);
+    std::string known;
+    for (const auto& [camera, spec] : session.cameras) known += camera + ", ";
+    for (const std::string& side : camera_sides()) {
+        if (side == name) return camera_looking(side, volume);
+        if (!session.cameras.contains(side)) known += side + ", ";
+    }
+    fail("camera is \"", name, "\"; expected one of ", known, "or a JSON object");
+}
+
+}  // namespace shvr

@@ -1,0 +1,134 @@
+#pragma once
+// A session: everything that makes a picture, in one JSON file (version 1). It feeds the window, the command line, the
+// goldens and bug reports alike. engine/session/README.md lists every key; unknown keys are refused by name.
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "engine/annotation/brush.h"
+#include "engine/formats/open_volume.h"
+#include "engine/look/camera.h"
+#include "engine/look/groups.h"
+#include "engine/look/panes.h"
+#include "engine/look/settings.h"
+#include "engine/look/surface_tree.h"
+#include "engine/look/transfer_function.h"
+#include "engine/volume/source_procedural.h"
+
+namespace shvr {
+
+/// What the window does while somebody works.
+struct InteractionSettings {
+    double resolution = 0.7;  ///< of the screen's, along each axis, while something moves; less where that is slow
+    double frames_per_second = 30.0;  ///< at most
+    uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
+    bool operator==(const InteractionSettings&) const = default;
+};
+
+/// Where a person works, and with what. What is not given here is chosen for the volume.
+struct ProbeSettings {
+    std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
+    double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
+    uint8_t group = 1;                ///< that is painted
+    Brush brush = Brush::flood;
+    RegionShape region = RegionShape::ball;
+    int connectivity = 6;                    ///< 6 or 26
+    std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
+    std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    bool shown = false;                      ///< in pictures; the window shows it always
+    /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
+    bool shell = false;
+    double shell_opacity = 0.4;  ///< of one crossing
+    bool preview = false;        ///< what the brush would change there is drawn
+    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
+    std::optional<DensityBrush> density;
+    bool paints_group = true;  ///< false, where there is `density`: offsets alone
+    bool operator==(const ProbeSettings&) const = default;
+};
+
+/// Of one file.
+inline constexpr size_t MOST_SESSION_SURFACES = 100'000;
+
+struct Session {
+    std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
+    std::optional<ProceduralSpec> procedural;
+    std::optional<RawLayout> raw_layout;  ///< for bare voxels
+    OpenOptions open_options;             ///< what to take from files that hold more than one volume
+    /// Of the volume's voxels (content_hash.h), as `open_session` finds it; empty where not all were gone through, and in a
+    /// session that was only read. Not written.
+    std::string volume_hash;
+    std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
+    std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
+    TransferFunction transfer_function;
+    std::string transfer_preset;  ///< `open_session` makes a function of it, and forgets it
+    Groups groups;
+    Light light;
+    DistanceBlend blend;
+    RenderSettings render;
+    ViewSettings view;
+    InteractionSettings interaction;
+    CutBox cut;
+    ProbeSettings probe;
+    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
+    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
+    /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
+    std::filesystem::path trace_path;
+    std::filesystem::path density_path;  ///< the same, of density offsets
+    /// Of what was done, beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
+    std::filesystem::path journal_path;
+};
+
+/// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
+/// it: its path, and a transfer function from its statistics, which the caller is told of in `warnings`).
+/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
+/// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
+/// automatic one as a volume file. Session files hold at most 16 MiB.
+struct OpenedSession {
+    Session session;
+    std::shared_ptr<const VolumeSource> source;
+    VolumeStatistics statistics;
+    std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
+};
+OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
+/// Without what is found in the voxels, which are not gone through: a transfer function is as the file says, and the hash is
+/// known of projects alone.
+struct UnmeasuredSession {
+    Session session;
+    std::shared_ptr<const VolumeSource> source;
+};
+UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
+                                          const std::vector<std::string>& settings = {});
+
+/// "scan.journal" for "scan.json".
+std::filesystem::path journal_beside(const std::filesystem::path& session_file);
+
+/// The same from text; relative paths are relative to `folder`, `origin` names the text in messages.
+Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
+                      const std::vector<std::string>& settings = {});
+std::unique_ptr<VolumeSource> open_source(const Session& session);
+
+/// Where the darker of two classes of voxels ends, the air around a scanned object (Otsu's threshold, but never less than
+/// half of all voxels), and where nine tenths of the rest lie below.
+struct TissueRange {
+    double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
+};
+TissueRange tissue_range(const VolumeStatistics& statistics);
+
+/// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
+/// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
+TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
+
+/// The middle of what a transfer function shows, weighted by its opacity: what painting starts from where nothing else is
+/// said.
+double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
+
+/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
+Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
+
+/// Writes what `parse_session` reads: every key, paths inside `folder` (if that is a project's shvr: inside the project)
+/// relative to it and others absolute. Colours are rounded to the 8 bits of their spelling.
+std::string to_text(const Session& session, const std::filesystem::path& folder);
+
+}  // namespace shvr

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <numeric>
+
+#include "engine/look/session_color.h"
+#include "engine/session/session.h"
+
+namespace shvr {
+namespace {
+
+/// Where the ramp is full: this share of the voxels it shows is at or below.
+constexpr double FULL_QUANTILE = 0.9;
+
+ControlPoint point(double intensity, const char* color, double opacity)
+{
+    return {intensity, glm::dvec3(color_of(color).value()), opacity};
+}
+
+/// Otsu 1979: the number of bins in the lower class that makes the variance between the two classes largest.
+size_t otsu_split(const std::vector<int64_t>& histogram)
+{
+    double count = 0.0;
+    double sum = 0.0;
+    for (size_t bin = 0; bin < histogram.size(); ++bin) {
+        count += static_cast<double>(histogram[bin]);
+        sum += static_cast<double>(histogram[bin]) * static_cast<double>(bin);
+    }
+    double lower_count = 0.0;
+    double lower_sum = 0.0;
+    double best_variance = 0.0;
+    size_t best_split = 1;
+    for (size_t bin = 0; bin + 1 < histogram.size(); ++bin) {
+        lower_count += static_cast<double>(histogram[bin]);
+        lower_sum += static_cast<double>(histogram[bin]) * static_cast<double>(bin);
+        const double upper_count = count - lower_count;
+        if (lower_count == 0.0 || upper_count == 0.0) continue;
+        const double distance = lower_sum / lower_count - (sum - lower_sum) / upper_count;
+        const double variance = lower_count * upper_count * distance * distance;
+        if (variance > best_variance) {
+            best_variance = variance;
+            best_split = bin + 1;
+        }
+    }
+    return best_split;
+}
+
+/// The number of bins, counted from `first`, that hold at least `share` of the voxels in and above `first`.
+size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, double share)
+{
+    const auto begin = histogram.begin() + static_cast<std::ptrdiff_t>(first);
+    const double wanted = share * static_cast<double>(std::accumulate(begin, histogram.end(), int64_t{0}));
+    double found = 0.0;
+    size_t bin = first;
+    while (bin < histogram.size() && found < wanted) found += static_cast<double>(histogram[bin++]);
+    return bin;
+}
+
+}  // namespace
+
+double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics)
+{
+    double weight = 0.0, sum = 0.0;
+    for (const ControlPoint& point : function.points()) {
+        weight += point.opacity;
+        sum += point.opacity * point.intensity;
+    }
+    const auto [lower, upper] = statistics.range();
+    const double middle = weight > 0.0 ? sum / weight : 0.5 * (lower + upper);
+    return std::clamp(0.5 * (middle + function.lower()), lower, upper);
+}
+
+TissueRange tissue_range(const VolumeStatistics& statistics)
+{
+    const double minimum = statistics.range().lower;
+    const double maximum = statistics.range().upper;
+    const std::vector<int64_t>& histogram = statistics.histogram;
+    // Nothing tells voxels apart.
+    if (!(minimum < maximum) || histogram.size() < 4) return {minimum - 0.5, minimum + 0.5};
+    const auto bins = static_cast<double>(histogram.size());
+    const auto intensity_of = [&](size_t split) {
+        return minimum + (maximum - minimum) * static_cast<double>(split) / bins;
+    };
+    const size_t median = quantile_split(histogram, 0, 0.5);
+    const size_t lowest = std::min(std::max(otsu_split(histogram), median), histogram.size() - 2);
+    const size_t full = std::clamp(quantile_split(histogram, lowest, FULL_QUANTILE), lowest + 1, histogram.size() - 1);
+    return {intensity_of(lowest), intensity_of(full)};
+}
+
+TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
+{
+    const TissueRange tissue = tissue_range(statistics);
+    const auto [minimum, maximum] = statistics.range();
+    // A thin haze shows that there is a volume.
+    if (!(minimum < maximum) || statistics.histogram.size() < 4)
+        return TransferFunction({point(tissue.lower, "#808080", 0.02), point(tissue.upper, "#808080", 0.02)});
+    return TransferFunction(
+        {point(tissue.lower, "#5c6066", 0.0), point(tissue.upper, "#e8a860", 0.3), point(maximum, "#fff4e0", 0.6)});
+}
+
+}  // namespace shvr

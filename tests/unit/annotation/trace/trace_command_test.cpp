@@ -1,0 +1,212 @@
+// Operations on a trace as scripts and the window have them: voxels become the volume's unit, what is too far away is
+// refused, and what is marked and drawn again is what they are about.
+
+#include "engine/annotation/trace/trace_command.h"
+
+#include <algorithm>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/annotation/trace/trace_segments.h"
+#include "engine/base/error.h"
+#include "engine/live/trace_look.h"
+
+using namespace shvr;
+
+namespace {
+
+const TraceDefaults DEFAULTS{.spacing = {2.0, 3.0, 4.0}, .radius_voxels = 5.0, .group = 7};
+
+/// A document that takes operations.
+struct Work {
+    Document document{.mask = Mask(Size3(64)), .trace = {}};
+    History history;
+
+    const TraceGraph& trace() const { return document.trace; }
+    TraceEffect effect(const TraceOp& op) const { return effect_of(op, document.trace, DEFAULTS); }
+    void perform(const TraceOp& op)
+    {
+        const TraceEffect made = effect(op);
+        if (made.selection) document.trace.select(*made.selection);
+        history.perform(document, {made.label, {made.changes.begin(), made.changes.end()}});
+    }
+    NodeOp node_at(const glm::dvec3& voxel) const { return {.at = voxel, .radius_voxels = {}, .group = {}}; }
+};
+
+SelectOp nearest(const glm::dvec3& voxel, std::optional<double> within = {})
+{
+    return {.near = voxel, .number = {}, .is_internode = false, .within_voxels = within};
+}
+
+std::string refusal(const Work& work, const TraceOp& op)
+{
+    try {
+        static_cast<void>(work.effect(op));
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "(not refused)";
+}
+
+}  // namespace
+
+TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's size and group where none is given")
+{
+    Work work;
+    work.perform(work.node_at({10, 10, 10}));
+    CHECK(work.trace().node(0) == TraceNode{{20, 30, 40}, 10.0, 7});
+    work.perform(NodeOp{.at = {11, 10, 10}, .radius_voxels = 1.5, .group = 3});
+    CHECK(work.trace().node(1) == TraceNode{{22, 30, 40}, 3.0, 3});
+    CHECK(work.trace().internode_between(0, 1));
+    CHECK(work.effect(work.node_at({0, 0, 0})).label == "node, group 7");
+}
+
+TEST_CASE("selecting is no step of the history, and what is too far away is not taken")
+{
+    Work work;
+    for (const double x : {10.0, 20.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
+    const size_t steps = work.history.undoable();
+    CHECK(work.effect(nearest({19, 10, 10})).changes.empty());
+    work.perform(nearest({19, 10, 10}));
+    CHECK(work.trace().selection() == TraceSelection{{1}, {}});
+    CHECK(work.history.undoable() == steps);
+    CHECK(refusal(work, nearest({30, 10, 10}, 5.0)) == "the nearest node is 10 voxels away; expected one within 5");
+    CHECK(refusal(work, LinkOp{.near = glm::dvec3(60, 10, 10), .node = {}, .within_voxels = 12.0}) ==
+          "the nearest other node is 20 voxels away; expected one within 12");
+    work.perform(SelectOp{.near = glm::dvec3(31, 10, 10), .number = {}, .is_internode = true, .within_voxels = {}});
+    CHECK(work.trace().selection() == TraceSelection{{}, {1}});
+    work.perform(SelectSegmentOp{});
+    CHECK(work.trace().selection() == TraceSelection{{0, 1, 2}, {0, 1}});
+    work.perform(DeselectOp{});
+    CHECK(work.trace().selection().empty());
+    CHECK(refusal(work, SelectOp{.near = {}, .number = 9, .is_internode = false, .within_voxels = {}}) ==
+          "there is no node 9; expected one that the trace has");
+    CHECK(refusal(work, DeleteOp{}) == "nothing is selected; expected a node, an internode or a segment");
+}
+
+TEST_CASE("link, move, size, group and delete are one step each, and undone they leave what was")
+{
+    Work work;
+    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
+    const TraceOp edits[] = {LinkOp{.near = glm::dvec3(9, 10, 10), .node = {}, .within_voxels = 5.0},
+                             MoveOp{{31, 12, 10}},
+                             GroupOp{2},
+                             RadiusOp{.radius_voxels = 2.0},
+                             RadiusOp{.of = RadiusOp::Of::nodes, .radius_voxels = 3.0, .group = 7},
+                             RadiusOp{.of = RadiusOp::Of::internodes, .radius_voxels = 1.0, .group = 7},
+                             DeleteOp{}};
+    for (const TraceOp& op : edits) {
+        const size_t steps = work.history.undoable();
+        work.perform(op);
+        CHECK(work.history.undoable() == steps + 1);
+    }
+    CHECK(work.trace().nodes().size() == 2);
+    CHECK(work.trace().internodes().size() == 1);
+    CHECK(work.trace().node(0).radius == 6.0);
+    CHECK(work.trace().internode_radii().at(7) == 2.0);
+    for (size_t i = 0; i < std::size(edits); ++i) CHECK(work.history.undo(work.document) != nullptr);
+    CHECK(work.trace().nodes().size() == 3);
+    CHECK(work.trace().node(2) == TraceNode{{60, 30, 40}, 10.0, 7});
+    CHECK_FALSE(work.trace().internode_between(2, 0));
+}
+
+TEST_CASE("a summary counts segments and adds lengths up by group")
+{
+    Work work;
+    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
+    work.perform(nearest({20, 10, 10}));
+    work.perform(NodeOp{.at = {20, 20, 10}, .radius_voxels = 1.0, .group = 2});
+    const TraceSummary summary = summary_of(work.trace());
+    CHECK(summary.nodes == 4);
+    CHECK(summary.internodes == 3);
+    CHECK(summary.segments == 3);
+    CHECK(summary.length == doctest::Approx(70.0));
+    CHECK(summary.group_length.at(7) == doctest::Approx(40.0));
+    CHECK(summary.group_length.at(2) == doctest::Approx(30.0));
+}
+
+TEST_CASE("a summary of any trace has the segments that there are")
+{
+    std::mt19937 random(91);  // seed 91
+    const auto below = [&](uint32_t end) { return uint32_t(random() % end); };
+    size_t most_loops = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        CAPTURE(trial);
+        TraceGraph trace;
+        const uint32_t nodes = 1 + below(14), links = below(nodes + 4);
+        std::vector<uint32_t> numbers;
+        for (uint32_t i = 0, number = below(5); i < nodes; ++i, number += 1 + below(trial % 2 ? 1 : 3)) {
+            const TraceNode node{.position = {below(50), below(50), below(50)}, .radius = 1.0};
+            trace.apply(TraceNodeChange{number, {}, node}, Direction::forwards);
+            numbers.push_back(number);
+        }
+        uint32_t next = 0;
+        const auto link = [&](uint32_t a, uint32_t b) {
+            if (a == b || trace.internode_between(a, b)) return;
+            trace.apply(TraceInternodeChange{next++, {}, TraceInternode{a, b, uint8_t(1 + below(3))}},
+                        Direction::forwards);
+        };
+        for (size_t i = 2; i < nodes && trial % 3 == 0; i += 3) {  // triangles
+            link(numbers[i], numbers[i - 1]);
+            link(numbers[i - 1], numbers[i - 2]);
+            link(numbers[i - 2], numbers[i]);
+        }
+        for (uint32_t i = below(links + 1); i < links; ++i) link(numbers[below(nodes)], numbers[below(nodes)]);
+        const std::vector<TraceSegment> segments = segments_of(trace);
+        const TraceSummary summary = summary_of(trace);
+        CHECK(summary.segments == segments.size());
+        double length = 0.0;
+        for (const auto& [number, internode] : trace.internodes()) length += trace.length_of(internode);
+        CHECK(summary.length == length);
+        size_t loops = 0;
+        for (const TraceSegment& segment : segments)
+            loops += segment.is_loop() && trace.internodes_of(segment.nodes.front()).size() == 2;
+        most_loops = std::max(most_loops, loops);
+    }
+    CHECK(most_loops > 1);
+}
+
+TEST_CASE("what is drawn again holds what was there and what is there")
+{
+    Work work;
+    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
+    const auto reach_of_last = [&](const TraceOp& op) {
+        const TraceEffect made = work.effect(op);
+        const std::vector<Change> changes(made.changes.begin(), made.changes.end());
+        work.perform(op);
+        return trace_reach(work.trace(), changes, DEFAULTS.spacing);
+    };
+    const auto holds = [](const VoxelBox& box, const glm::dvec3& voxel) {
+        return glm::all(glm::lessThanEqual(glm::dvec3(box.lower), voxel)) &&
+               glm::all(glm::greaterThanEqual(glm::dvec3(box.upper), voxel));
+    };
+    // Node 2 goes away from node 1, and the rod between them with it. Its radius is 5 voxels along x.
+    const VoxelBox moved = reach_of_last(MoveOp{{30, 40, 10}});
+    for (const glm::dvec3& voxel : {glm::dvec3(35, 10, 10), glm::dvec3(30, 43, 10), glm::dvec3(15, 10, 10)})
+        CHECK(holds(moved, voxel));
+    CHECK_FALSE(holds(moved, {8, 10, 10}));
+    const VoxelBox deleted = reach_of_last(DeleteOp{});
+    for (const glm::dvec3& voxel : {glm::dvec3(30, 43, 10), glm::dvec3(20, 10, 10)}) CHECK(holds(deleted, voxel));
+    CHECK(trace_reach(work.trace(), {}, DEFAULTS.spacing) == VoxelBox{});
+}
+
+TEST_CASE("the selected node is marked yellow where it is or where it is dragged, and the nearby one purple")
+{
+    Work work;
+    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
+    const TraceMarks marks = trace_marks(work.trace(), 0, 1.0);
+    REQUIRE(marks.balls.size() == 2);
+    CHECK(marks.balls[0].color == NEARBY_COLOR);
+    CHECK(marks.balls[0].center == work.trace().node(0).position);
+    CHECK(marks.balls[1].color == SELECTED_COLOR);
+    CHECK(marks.balls[1].center == work.trace().node(2).position);
+    CHECK(marks.lines.empty());
+    const TraceMarks dragged = trace_marks(work.trace(), std::nullopt, 1.0, glm::dvec3(1, 2, 3));
+    REQUIRE(dragged.balls.size() == 1);
+    CHECK(dragged.balls[0].center == glm::dvec3(1, 2, 3));
+    REQUIRE(dragged.lines.size() == 1);
+    CHECK(dragged.lines[0].to == work.trace().node(1).position);
+    work.perform(SelectSegmentOp{});
+    CHECK(trace_marks(work.trace(), std::nullopt, 1.0).lines.size() == 2);
+}

@@ -1,0 +1,292 @@
+// A person's work: that it is there again, whatever happened in between.
+
+#include "engine/annotation/work/work.h"
+
+#include <algorithm>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/annotation/files/mask_file.h"
+#include "tests/support/random_annotation.h"
+#include "tests/support/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Desk : public TemporaryFolder {
+public:
+    WorkFiles files() const
+    {
+        return {.journal = path / "a.journal",
+                .mask = path / "a.mask",
+                .trace = path / "a.graphml",
+                .density = path / "a.offset",
+                .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
+                .volume = annotated_volume()};
+    }
+    /// A work as it was left; what opening said goes to `said`.
+    std::unique_ptr<Work> open(Work::Start start = Work::Start::as_left) const
+    {
+        auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
+        said.clear();
+        for (const std::string& message : work->open(files(), start)) said += message + "\n";
+        return work;
+    }
+    uint64_t hash() const { return hash_of(open()->document()); }
+    mutable std::string said;
+};
+
+/// One voxel more of a group, at a place of its own.
+Command dab(uint16_t at, uint8_t group = 1)
+{
+    return {"dab", {MaskBrickChange{.brick = 0, .runs = {{at, at, 0, group}}}}};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "work at random, left and taken up again, is one history: every state comes back, to the first and to the last")
+{
+    for (const uint32_t seed : {1u, 2u, 3u}) {
+        CAPTURE(seed);
+        const Desk desk;
+        std::mt19937 random(seed);
+        std::vector<uint64_t> states{hash_of(unannotated())};
+        size_t at = 0, wrong = 0, reopened = 0, saved = 0;
+        auto work = desk.open();
+        for (int step = 0; step < 1500; ++step) {
+            // Memory for few commands, and states so often that most of what is undone lies before the last.
+            work->set_limits({.history_bytes = 20000, .bytes_between_states = 3000, .steps_between_states = 40});
+            const auto choice = random() % 40;
+            if (choice < 11) {
+                at -= work->undo() != nullptr;
+            } else if (choice < 17) {
+                at += work->redo() != nullptr;
+            } else if (choice == 17) {
+                work.reset();
+                work = desk.open();
+                ++reopened;
+            } else if (choice == 18) {
+                work->save();
+                CHECK(work->unsaved() == 0);
+                ++saved;
+            } else {
+                Command command = random_command(work->document(), random);
+                if (command.changes.empty()) continue;
+                states.resize(++at);
+                // A stroke: the rest goes on with it.
+                const size_t first = command.changes.size() > 1 && choice < 24 ? command.changes.size() / 2 : 0;
+                std::vector<Change> rest;
+                if (first > 0) rest.assign(command.changes.begin() + ptrdiff_t(first), command.changes.end());
+                if (first > 0) command.changes.resize(first);
+                work->perform(std::move(command));
+                work->extend(std::move(rest));
+                states.push_back(hash_of(work->document()));
+            }
+            wrong += hash_of(work->document()) != states[at] || work->history().undoable() != at ||
+                     work->history().redoable() != states.size() - 1 - at;
+        }
+        CHECK(wrong == 0);
+        CHECK(reopened > 10);
+        CHECK(saved > 10);
+        work.reset();
+        work = desk.open();
+        while (work->redo()) wrong += hash_of(work->document()) != states[++at];
+        CHECK(at == states.size() - 1);
+        while (work->undo()) wrong += hash_of(work->document()) != states[--at];
+        CHECK(at == 0);
+        CHECK(wrong == 0);
+        CHECK(hash_of(work->document()) == hash_of(unannotated()));
+        work->flush();
+        const JournalScan scan = scan_journal(desk.files().journal);
+        CHECK(std::ranges::count(scan.records, RecordKind::state, &JournalRecord::kind) > 3);  // made beside the work
+    }
+}
+
+TEST_CASE("memory of the history is limited by its limit, and its commands come back from the journal")
+{
+    const Desk desk;
+    const auto work = desk.open();
+    work->set_limits({.history_bytes = 1000});
+    for (uint16_t i = 0; i < 500; ++i) {
+        work->perform(dab(uint16_t(2 * i)));
+        if (i % 50 == 0) work->flush();
+    }
+    work->flush();
+    work->perform(dab(2000));
+    CHECK(work->history().memory_bytes() < 10000);
+    CHECK(work->history().undoable() == 501);
+    for (int i = 0; i < 501; ++i) REQUIRE(work->undo() != nullptr);
+    CHECK(work->document().mask.painted_bricks().empty());
+}
+
+TEST_CASE("what was not saved is there, and it is said; what was saved needs no journal")
+{
+    const Desk desk;
+    {
+        const auto work = desk.open();
+        CHECK(desk.said.empty());
+        CHECK_FALSE(fs::exists(desk.files().journal));  // who only looks leaves no file
+        work->perform(dab(1));
+        work->save();
+        work->perform(dab(2));
+        work->perform(dab(3));
+        CHECK(work->unsaved() == 2);
+    }
+    {
+        const auto work = desk.open();
+        CHECK(contains(desk.said, "a.journal: holds 2 steps that were not saved"));
+        CHECK(work->unsaved() == 2);
+        CHECK(work->document().mask.voxels_by_group()[1] == 3);
+        CHECK(work->history().undoable() == 3);
+        work->save();
+    }
+    const auto saved = desk.open();
+    CHECK(desk.said.empty());
+    const uint64_t hash = hash_of(saved->document());
+    fs::remove(desk.files().journal);
+    CHECK(desk.hash() == hash);
+}
+
+TEST_CASE("files that others changed are taken, and the journal is kept beside them")
+{
+    const Desk desk;
+    {
+        const auto work = desk.open();
+        work->perform(dab(1));
+        work->save();
+        work->perform(dab(2));
+    }
+    Mask other(ANNOTATED_SIZE);
+    other.apply({.brick = 0, .runs = {{10, 19, 0, 7}}}, Direction::forwards);
+    save_mask(desk.files().mask, other);
+    const std::string journal = bytes_of_file(desk.files().journal);
+    {
+        const auto work = desk.open();
+        CHECK(contains(desk.said,
+                       "the saved files were changed since it was written; they are taken, and what the journal "
+                       "holds, with 1 steps that were not saved, will be set aside"));
+        CHECK(work->document().mask.voxels_by_group()[7] == 10);
+        CHECK(work->history().undoable() == 0);
+        CHECK(bytes_of_file(desk.files().journal) == journal);  // looking changes nothing
+        work->perform(dab(3));
+    }
+    CHECK(bytes_of_file(desk.path / "a.journal.old") == journal);
+    const auto work = desk.open();
+    CHECK(work->document().mask.voxels_by_group()[7] == 10);
+    CHECK(work->document().mask.voxels_by_group()[1] == 1);
+    REQUIRE(work->undo());
+    CHECK(work->undo() == nullptr);
+}
+
+TEST_CASE("a save that came to no end is of either state, and the journal knows which is last")
+{
+    const Desk desk;
+    uint64_t hash = 0;
+    {
+        const auto work = desk.open();
+        work->perform(dab(1));
+        work->save();
+        work->perform(dab(2));
+        hash = hash_of(work->document());
+        // The disk refuses the second file.
+        fs::create_directories(desk.files().density);
+        work->perform({"offset", {DensityBrickChange{.brick = 0, .runs = {{5, 5, 0, 9}}}}});
+        CHECK(contains(error_of([&] { work->save(); }), "a.offset: cannot be written: Is a directory"));
+        CHECK(work->unsaved() == 2);
+        work->undo();
+    }
+    CHECK(desk.hash() == hash);
+    CHECK(contains(desk.said, "holds 3 steps that were not saved"));
+}
+
+TEST_CASE("starting afresh leaves the journal there was under another name")
+{
+    const Desk desk;
+    desk.open()->perform(dab(1));
+    const std::string journal = bytes_of_file(desk.files().journal);
+    {
+        const auto work = desk.open(Work::Start::fresh);
+        CHECK(work->document().mask.painted_bricks().empty());
+        CHECK(bytes_of_file(desk.files().journal) == journal);
+        work->perform(dab(5, 2));
+    }
+    CHECK(bytes_of_file(desk.path / "a.journal.old") == journal);
+    const auto work = desk.open();
+    CHECK(work->document().mask.voxels_by_group()[2] == 1);
+    CHECK(work->document().mask.voxels_by_group()[1] == 0);
+}
+
+TEST_CASE("a journal of another volume is refused by what differs")
+{
+    const Desk desk;
+    desk.open()->perform(dab(1));
+    const auto refusal = [&](const Size3& size, VoxelType type, const std::string& hash) {
+        Work work(size, type);
+        WorkFiles files = desk.files();
+        files.volume_hash = hash;
+        return error_of([&] { work.open(files); });
+    };
+    const std::string hash = desk.files().volume_hash;
+    CHECK(contains(refusal({45, 40, 36}, ANNOTATED_TYPE, hash),
+                   "a.journal: is of a volume of 45x40x35 voxels of int16; expected 45x40x36 voxels of int16"));
+    CHECK(contains(refusal(ANNOTATED_SIZE, VoxelType::uint8, hash), "expected 45x40x35 voxels of uint8"));
+    CHECK(contains(refusal(ANNOTATED_SIZE, ANNOTATED_TYPE, "xxh3-128:1"), "is of an image with the hash " + hash));
+    CHECK(refusal(ANNOTATED_SIZE, ANNOTATED_TYPE, "").empty());
+}
+
+TEST_CASE("a second hand is refused, before it does anything")
+{
+    const Desk desk;
+    const auto first = desk.open(), second = desk.open();
+    first->perform(dab(1));
+    CHECK_THROWS_AS(second->perform(dab(2)), JournalTaken);
+    CHECK(second->document().mask.painted_bricks().empty());
+    CHECK(second->history().undoable() == 0);
+    first->perform(dab(3));
+    first->flush();
+    const auto third = desk.open();
+    CHECK(third->document().mask.voxels_by_group()[1] == 2);
+    CHECK_THROWS_AS(third->undo(), JournalTaken);
+    CHECK(third->document().mask.voxels_by_group()[1] == 2);
+}
+
+TEST_CASE("a journal whose checksums hold and whose records do not fit is taken as far as it fits")
+{
+    const Desk desk;
+    {
+        const auto work = desk.open();
+        work->perform(dab(1));
+        work->perform(dab(2));
+    }
+    const std::string good = bytes_of_file(desk.files().journal);
+    const auto check = [&](RecordKind kind, std::vector<std::byte> content, RecordNumber about, const char* why) {
+        desk.write("a.journal", good);
+        {
+            Journal journal(desk.files().journal, scan_journal(desk.files().journal));
+            journal.append(kind, "hostile", std::move(content), about);
+            journal.append(RecordKind::command, "after", bytes_of(dab(9).changes));
+        }
+        const auto work = desk.open();
+        CAPTURE(std::string(why));
+        CAPTURE(desk.said);
+        CHECK(contains(desk.said, std::string("record 6 cannot be taken: ") + why));
+        CHECK(contains(desk.said, "; what comes before is taken"));
+        CHECK(work->document().mask.voxels_by_group()[1] == 2);
+        CHECK(work->history().undoable() == 2);
+        work->perform(dab(4));
+        work->flush();
+        CHECK(desk.hash() == hash_of(work->document()));
+        CHECK(fs::remove(desk.path / "a.journal.rest1"));
+    };
+    check(RecordKind::command, bytes_of(dab(1).changes), 0, "brick 0 does not hold group 0 at 1 ... 1");
+    check(RecordKind::extension, std::vector(3, std::byte(99)), 0, "a change is of kind 99; expected 1 to 6");
+    check(RecordKind::redo, {}, 0, "more is done again than was undone");
+    check(RecordKind::state, bytes_of(unannotated()), 7, "a state is of record 7 behind it");
+    check(RecordKind::state, std::vector(1, std::byte(1)), 5, "it ends too early");
+}

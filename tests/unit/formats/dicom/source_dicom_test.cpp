@@ -1,0 +1,543 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <gdcmImageChangeTransferSyntax.h>
+#include <gdcmImageReader.h>
+#include <gdcmImageWriter.h>
+
+#include "engine/formats/open_volume.h"
+#include "tests/support/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* EXPLICIT_LITTLE = "1.2.840.10008.1.2.1";
+constexpr const char* IMPLICIT_LITTLE = "1.2.840.10008.1.2";
+constexpr const char* EXPLICIT_BIG = "1.2.840.10008.1.2.2";
+
+/// The phantom's voxel at x, y, z.
+int phantom(int64_t x, int64_t y, int64_t z)
+{
+    return static_cast<int>(x + 10 * y + 100 * z - 99);
+}
+
+std::string little(uint64_t number, size_t bytes)
+{
+    std::string text;
+    for (size_t i = 0; i < bytes; ++i) text += static_cast<char>(number >> (8 * i) & 255);
+    return text;
+}
+
+struct Value {
+    std::string type;
+    std::string bytes;
+};
+
+/// A DICOM file, element by element (PS3.5, 7.1). Values are given in little-endian order.
+struct Dicom {
+    std::string transfer_syntax = EXPLICIT_LITTLE;
+    std::map<uint32_t, Value> elements{};
+
+    Dicom& text(uint32_t tag, const char* type, std::string value)
+    {
+        if (value.size() % 2 == 1) value += std::string_view(type) == "UI" ? '\0' : ' ';
+        elements[tag] = {type, value};
+        return *this;
+    }
+    Dicom& number(uint32_t tag, uint16_t value)
+    {
+        elements[tag] = {"US", little(value, 2)};
+        return *this;
+    }
+    /// One item with `values`, or several.
+    Dicom& sequence(uint32_t tag, const std::vector<Dicom>& items)
+    {
+        std::string bytes;
+        for (const Dicom& item : items) {
+            const std::string content = item.data_set();
+            bytes += little(0xfffe, 2) + little(0xe000, 2) + little(content.size(), 4) + content;
+        }
+        elements[tag] = {"SQ", bytes};
+        return *this;
+    }
+
+    std::string element(uint32_t tag, const Value& value, bool is_explicit, bool big) const
+    {
+        const auto ordered = [&](uint64_t number, size_t bytes) {
+            std::string text = little(number, bytes);
+            if (big) std::reverse(text.begin(), text.end());
+            return text;
+        };
+        std::string bytes = value.bytes;
+        if (big && (value.type == "US" || value.type == "OW")) {
+            for (size_t i = 0; i + 1 < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
+        }
+        const std::string start = ordered(tag >> 16, 2) + ordered(tag & 0xffff, 2);
+        if (!is_explicit) return start + ordered(bytes.size(), 4) + bytes;
+        const bool is_long = value.type == "OW" || value.type == "OB" || value.type == "SQ" || value.type == "UN";
+        return start + value.type +
+               (is_long ? std::string(2, '\0') + ordered(bytes.size(), 4) : ordered(bytes.size(), 2)) + bytes;
+    }
+    std::string data_set() const
+    {
+        std::string bytes;
+        for (const auto& [tag, value] : elements) {
+            bytes += element(tag, value, transfer_syntax != IMPLICIT_LITTLE, transfer_syntax == EXPLICIT_BIG);
+        }
+        return bytes;
+    }
+    std::string file() const
+    {
+        Dicom meta;
+        meta.text(0x00020002, "UI", "1.2.840.10008.5.1.4.1.1.2").text(0x00020003, "UI", "1.2.3");
+        meta.text(0x00020010, "UI", transfer_syntax);
+        const std::string group = meta.data_set();
+        return std::string(128, '\0') + "DICM" + element(0x00020000, {"UL", little(group.size(), 4)}, true, false) +
+               group + data_set();
+    }
+};
+
+constexpr uint32_t POSITION = 0x00200032;
+constexpr uint32_t ORIENTATION = 0x00200037;
+constexpr uint32_t SPACING = 0x00280030;
+constexpr uint32_t INTERCEPT = 0x00281052;
+constexpr uint32_t SLOPE = 0x00281053;
+constexpr uint32_t PIXELS = 0x7fe00010;
+
+/// A CT image of 5 x 4 pixels without its place: those of slice `z` of the phantom.
+Dicom image_of(int64_t z)
+{
+    Dicom dicom;
+    dicom.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2").text(0x00080018, "UI", sentence("1.2.3.", z + 1));
+    dicom.text(0x00080060, "CS", "CT").text(0x0008103e, "LO", "Axial").text(0x0020000d, "UI", "1.2.8");
+    dicom.text(0x0020000e, "UI", "1.2.9").text(0x00200011, "IS", "3").text(0x00200013, "IS", std::to_string(z + 1));
+    dicom.number(0x00280002, 1).text(0x00280004, "CS", "MONOCHROME2").number(0x00280010, 4).number(0x00280011, 5);
+    dicom.number(0x00280100, 16).number(0x00280101, 16).number(0x00280102, 15).number(0x00280103, 1);
+    std::string pixels;
+    for (int64_t i = 0; i < 20; ++i) pixels += little(static_cast<uint16_t>(phantom(i % 5, i / 5, z)), 2);
+    dicom.elements[PIXELS] = {"OW", pixels};
+    return dicom;
+}
+
+/// With its first pixel at 10, 20, 30 + 1.25 z mm.
+Dicom slice_of(int64_t z)
+{
+    Dicom dicom = image_of(z);
+    dicom.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * static_cast<double>(z)));
+    dicom.text(ORIENTATION, "DS", "1\\0\\0\\0\\1\\0").text(SPACING, "DS", "0.5\\0.5");
+    return dicom;
+}
+
+/// `a.dcm` ... in an order that is none.
+fs::path folder_of(const TemporaryFolder& folder, const std::vector<Dicom>& slices)
+{
+    for (size_t i = 0; i < slices.size(); ++i) {
+        folder.write(sentence("dicom_", (i * 7 + 3) % slices.size()), slices[i].file());
+    }
+    return folder.path;
+}
+
+std::vector<Dicom> phantom_slices()
+{
+    return {slice_of(0), slice_of(1), slice_of(2)};
+}
+
+std::string refusal(const fs::path& path, const OpenOptions& options = {})
+{
+    return error_of([&] {
+        const auto source = open_volume(path, options);
+        std::vector<std::byte> voxels(static_cast<size_t>(voxel_count(source->info())) * bytes_of(source->info().type));
+        source->read({Size3(0), source->info().size}, voxels);
+    });
+}
+
+}  // namespace
+
+TEST_CASE("a folder of DICOM slices is the chirality phantom, in every uncompressed form")
+{
+    for (const char* syntax : {EXPLICIT_LITTLE, IMPLICIT_LITTLE, EXPLICIT_BIG}) {
+        CAPTURE(std::string(syntax));
+        const TemporaryFolder folder;
+        std::vector<Dicom> slices = phantom_slices();
+        for (Dicom& slice : slices) slice.transfer_syntax = syntax;
+        folder_of(folder, slices);
+        folder.write("readme.txt", "no slice");
+        for (const fs::path& path : {folder.path, folder.path / "dicom_1"}) {
+            const auto source = open_volume(path);
+            CHECK(is_chirality_phantom(*source));
+            CHECK(source->info().format == "dicom");
+            CHECK(source->info().spacing == glm::dvec3(0.5, 0.5, 1.25));
+            CHECK(source->info().unit == "mm");
+            CHECK(source->info().frame == "LPS");
+            CHECK(source->info().origin == glm::dvec3(10, 20, 30));
+            CHECK(source->info().directions == glm::dmat3(1.0));
+            CHECK(source->info().warnings.size() == (path == folder.path ? 0 : 1));
+        }
+        CHECK(
+            warns_of(*open_volume(folder.path / "dicom_1"), "one file of a series was opened; all 3 of it were read"));
+    }
+}
+
+TEST_CASE("wherever the axes of DICOM slices run, every voxel stays at its place and no hand changes")
+{
+    for (const char* orientation :
+         {"1\\0\\0\\0\\-1\\0", "-1\\0\\0\\0\\1\\0", "0\\1\\0\\0\\0\\-1", "0\\0\\1\\1\\0\\0", "0.8\\0.6\\0\\0\\0\\-1"}) {
+        CAPTURE(std::string(orientation));
+        const TemporaryFolder folder;
+        std::vector<Dicom> slices = phantom_slices();
+        for (Dicom& slice : slices) slice.text(ORIENTATION, "DS", orientation);
+        // Their positions run along the normal that the orientation has, or against it.
+        const auto flat = open_volume(folder_of(folder, {slices[0]}));
+        const glm::dvec3 normal = glm::cross(flat->info().directions[0], flat->info().directions[1]);
+        for (const double sign : {1.0, -1.0}) {
+            for (size_t z = 0; z < 3; ++z) {
+                const glm::dvec3 p = glm::dvec3(10, 20, 30) + sign * 1.25 * static_cast<double>(z) * normal;
+                slices[z].text(POSITION, "DS", sentence(p.x, "\\", p.y, "\\", p.z));
+            }
+            const auto source = open_volume(folder_of(folder, slices));
+            CHECK(glm::determinant(source->info().directions) == doctest::Approx(1.0));
+            const std::vector<int16_t> voxels = voxels_of<int16_t>(*source);
+            size_t wrong = 0;
+            for (int i = 0; i < 60; ++i) {
+                const glm::dvec3 index(i % 5, i / 5 % 4, i / 20);
+                const glm::dvec3 position =
+                    source->info().origin + source->info().directions * (source->info().spacing * index);
+                // The slice's own pixel that lies there.
+                const glm::dvec3 away = position - glm::dvec3(10, 20, 30);
+                const int64_t z = std::llround(sign * glm::dot(away, normal) / 1.25);
+                const int64_t x = std::llround(glm::dot(away, flat->info().directions[0]) / 0.5);
+                const int64_t y = std::llround(glm::dot(away, flat->info().directions[1]) / 0.5);
+                wrong += voxels[static_cast<size_t>(i)] != phantom(x, y, z);
+            }
+            CHECK(wrong == 0);
+        }
+    }
+}
+
+TEST_CASE("compressed DICOM slices equal the ones they were made of")
+{
+    const TemporaryFolder plain;
+    std::vector<Dicom> slices = phantom_slices();
+    for (Dicom& slice : slices) {  // GDCM's own JPEG 2000 encoder crashes on tiny images
+        slice.number(0x00280010, 64).number(0x00280011, 96);
+        std::string pixels;
+        for (int i = 0; i < 64 * 96; ++i) pixels += little(static_cast<uint16_t>(i * i % 1999 - 500), 2);
+        slice.elements[PIXELS].bytes = pixels;
+    }
+    folder_of(plain, slices);
+    const std::vector<int16_t> expected = voxels_of<int16_t>(*open_volume(plain.path));
+    for (const gdcm::TransferSyntax::TSType syntax :
+         {gdcm::TransferSyntax::JPEGLosslessProcess14_1, gdcm::TransferSyntax::JPEG2000Lossless,
+          gdcm::TransferSyntax::JPEGLSLossless, gdcm::TransferSyntax::RLELossless}) {
+        CAPTURE(static_cast<int>(syntax));
+        const TemporaryFolder folder;
+        for (const char* name : {"dicom_0", "dicom_1", "dicom_2"}) {
+            gdcm::ImageReader reader;
+            reader.SetFileName((plain.path / name).c_str());
+            REQUIRE(reader.Read());
+            gdcm::ImageChangeTransferSyntax change;
+            change.SetTransferSyntax(gdcm::TransferSyntax(syntax));
+            change.SetInput(reader.GetImage());
+            REQUIRE(change.Change());
+            gdcm::ImageWriter writer;
+            writer.SetFile(reader.GetFile());
+            writer.SetImage(change.GetOutput());
+            writer.SetFileName((folder.path / name).c_str());
+            REQUIRE(writer.Write());
+        }
+        const auto source = open_volume(folder.path);
+        CHECK(source->info().spacing == glm::dvec3(0.5, 0.5, 1.25));
+        CHECK(voxels_of<int16_t>(*source) == expected);
+    }
+}
+
+TEST_CASE("DICOM intensities are what stored numbers mean")
+{
+    const TemporaryFolder folder;
+    std::vector<Dicom> slices = phantom_slices();
+    for (Dicom& slice : slices) {
+        slice.text(INTERCEPT, "DS", "-1024").text(SLOPE, "DS", "1");
+        slice.number(0x00280101, 12).number(0x00280102, 11).number(0x00280103, 0);
+        for (size_t i = 1; i < slice.elements[PIXELS].bytes.size(); i += 2) slice.elements[PIXELS].bytes[i] = 1;
+    }
+    const auto shifted = open_volume(folder_of(folder, slices));
+    CHECK(shifted->info().type == VoxelType::int16);  // 12 bits, less 1024
+    CHECK(voxels_of<int16_t>(*shifted)[0] == 256 + 157 - 1024);
+
+    slices[1].text(SLOPE, "DS", "0.5");
+    const auto varying = open_volume(folder_of(folder, slices));
+    CHECK(varying->info().type == VoxelType::float32);
+    CHECK(voxels_of<float>(*varying)[20] == 0.5f * (256 + 1) - 1024.0f);
+
+    for (Dicom& slice : slices) slice.text(SLOPE, "DS", "2").text(0x00280004, "CS", "MONOCHROME1");
+    const auto inverted = open_volume(folder_of(folder, slices));
+    CHECK(inverted->info().type == VoxelType::int16);
+    CHECK(voxels_of<int16_t>(*inverted)[0] == 2 * (4095 - 256 - 157) - 1024);
+    CHECK(warns_of(*inverted, "small numbers are bright (MONOCHROME1); intensities were reversed"));
+}
+
+TEST_CASE("missing, doubled and odd DICOM slices are told")
+{
+    std::vector<std::unique_ptr<TemporaryFolder>> folders;  // slices are read when they are asked for
+    const auto opened = [&](const std::vector<Dicom>& slices) {
+        folders.push_back(std::make_unique<TemporaryFolder>());
+        return open_volume(folder_of(*folders.back(), slices));
+    };
+    const auto gap = opened({slice_of(0), slice_of(1), slice_of(2), slice_of(5), slice_of(6), slice_of(7)});
+    CHECK(gap->info().size.z == 6);
+    CHECK(gap->info().spacing.z == doctest::Approx(1.25));
+    CHECK(warns_of(*gap, "slices 3 and 4 ("));
+    CHECK(warns_of(*gap,
+                   "are 3.75 mm apart, most others 1.25: 2 are missing there; they are drawn as if equally far apart"));
+
+    Dicom moved = slice_of(3);
+    moved.text(POSITION, "DS", "10\\20\\33.9");
+    const auto uneven = opened({slice_of(0), slice_of(1), slice_of(2), moved});
+    CHECK(warns_of(*uneven, "are 1.4 mm apart, most others 1.25; they are drawn as if equally far apart"));
+
+    const auto copied = opened({slice_of(0), slice_of(1), slice_of(2), slice_of(1)});
+    CHECK(copied->info().size.z == 3);
+    CHECK(warns_of(*copied, "1 slices that were there twice were left out"));
+
+    std::vector<Dicom> times;
+    for (const int64_t time : {1, 2}) {
+        for (const int64_t z : {0, 1, 2}) {
+            times.push_back(slice_of(z));
+            times.back().text(0x00080018, "UI", sentence("1.", time, ".", z));
+            times.back().text(0x00200013, "IS", sentence(100 - 10 * time - z)).text(0x00200100, "IS", sentence(time));
+            times.back().elements[PIXELS].bytes[0] = static_cast<char>(time);
+        }
+    }
+    const TemporaryFolder moving;
+    folder_of(moving, times);
+    CHECK(contains(refusal(moving.path), "holds 2 points in time; expected frame to choose one: 1 to 2"));
+    CHECK((voxels_of<int16_t>(*open_volume(moving.path, {.frame = "2"}))[20] & 255) == 2);
+    times.pop_back();
+    const TemporaryFolder ragged;
+    folder_of(ragged, times);
+    CHECK(contains(refusal(ragged.path), "holds 5 slices at 3 places, not equally many at each"));
+
+    Dicom scout = slice_of(9);
+    scout.text(ORIENTATION, "DS", "0\\1\\0\\0\\0\\-1");
+    const auto with_scout = opened({slice_of(0), slice_of(1), slice_of(2), scout});
+    CHECK(is_chirality_phantom(*with_scout));
+    CHECK(warns_of(*with_scout, "1 slices of another size, type or direction were left out"));
+
+    std::vector<Dicom> tilted = phantom_slices();
+    for (size_t z = 0; z < 3; ++z) {
+        tilted[z].text(POSITION, "DS", sentence("10\\", 20.0 + 0.25 * double(z), "\\", 30.0 + 1.25 * double(z)));
+        tilted[z].text(0x00181120, "DS", "11.3");
+    }
+    const auto sheared = opened(tilted);
+    CHECK(warns_of(*sheared, "axes y and z meet at 78.7 degrees"));
+    CHECK(warns_of(*sheared, "the gantry was tilted by 11.3 degrees"));
+    CHECK(is_chirality_phantom(*sheared));
+
+    std::vector<Dicom> placeless = {image_of(2), image_of(0), image_of(1)};
+    for (Dicom& slice : placeless) slice.text(0x00180050, "DS", "3").text(0x00181164, "DS", "0.25\\0.75");
+    const auto numbered = opened(placeless);
+    CHECK(is_chirality_phantom(*numbered));
+    CHECK(numbered->info().spacing == glm::dvec3(0.75, 0.25, 3));
+    CHECK(warns_of(*numbered, "slices do not say where they are; they were sorted by their numbers"));
+    CHECK(warns_of(*numbered, "slices are 3 mm apart or thick, as their file says"));
+    CHECK(warns_of(*numbered, "that at the detector"));
+    CHECK(warns_of(*opened({image_of(0)}), "no spacing stated"));
+}
+
+TEST_CASE("of several DICOM series, one is chosen by number or description")
+{
+    const TemporaryFolder folder;
+    std::vector<Dicom> slices = phantom_slices();
+    for (const int64_t z : {0, 1}) {
+        slices.push_back(slice_of(z));
+        slices.back()
+            .text(0x0020000e, "UI", "1.2.10")
+            .text(0x00200011, "IS", "2")
+            .text(0x0008103e, "LO", "Scout lateral");
+    }
+    folder_of(folder, slices);
+    CHECK(contains(refusal(folder.path),
+                   "holds 2 series; expected channel to choose one by number or description: 1 \"Scout "
+                   "lateral\" (2 slices), 2 \"Axial\" (3 slices)"));
+    CHECK(is_chirality_phantom(*open_volume(folder.path, {.channel = "2"})));
+    CHECK(is_chirality_phantom(*open_volume(folder.path, {.channel = "Axial"})));
+    CHECK(open_volume(folder.path, {.channel = "1.2.10"})->info().size.z == 2);
+    CHECK(contains(refusal(folder.path, {.channel = "3"}), "channel is \"3\"; expected channel to choose one"));
+}
+
+TEST_CASE("a DICOM file of many frames is a volume, in the order of their places")
+{
+    const TemporaryFolder folder;
+    Dicom file = image_of(0);
+    std::string pixels;
+    std::vector<Dicom> frames;
+    for (const int64_t z : {1, 2, 0}) {
+        pixels += image_of(z).elements[PIXELS].bytes;
+        Dicom place;
+        place.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * static_cast<double>(z)));
+        frames.push_back(Dicom().sequence(0x00209113, {place}));
+    }
+    file.elements[PIXELS].bytes = pixels;
+    file.text(0x00280008, "IS", "3").sequence(0x52009230, frames);
+    file.sequence(0x52009229, {Dicom()
+                                   .sequence(0x00209116, {Dicom().text(ORIENTATION, "DS", "1\\0\\0\\0\\1\\0")})
+                                   .sequence(0x00289110, {Dicom().text(SPACING, "DS", "0.5\\0.5")})});
+    const fs::path path = folder.write("enhanced.dcm", file.file());
+    const auto source = open_volume(path);
+    CHECK(is_chirality_phantom(*source));
+    CHECK(source->info().origin == glm::dvec3(10, 20, 30));
+    CHECK(source->info().spacing == glm::dvec3(0.5, 0.5, 1.25));
+    CHECK(source->info().warnings.empty());
+    CHECK(is_chirality_phantom(*open_volume(folder.path)));
+
+    const std::string whole = file.file();
+    for (size_t length = 132; length < whole.size(); length += 1) {
+        const std::string said = refusal(folder.write("enhanced.dcm", whole.substr(0, length)));
+        CHECK(contains(said, "; expected "));
+    }
+    CHECK(contains(refusal(folder.write("enhanced.dcm", whole.substr(0, whole.size() - 2))),
+                   "element (7fe0,0010) at byte "));
+}
+
+TEST_CASE("what makes no volume among DICOM files is left out with words, or refused where it is all there is")
+{
+    const TemporaryFolder folder;
+    Dicom colors = slice_of(4);
+    colors.number(0x00280002, 3).text(0x00280004, "CS", "RGB");
+    Dicom report = slice_of(5);
+    report.elements.erase(PIXELS);
+    const std::string whole = slice_of(6).file();
+    const std::string cut = whole.substr(0, whole.size() - 1);
+    std::vector<Dicom> slices = phantom_slices();
+    slices.push_back(colors);
+    slices.push_back(report);
+    folder_of(folder, slices);
+    folder.write("cut", cut);
+    const auto source = open_volume(folder.path);
+    CHECK(is_chirality_phantom(*source));
+    CHECK(warns_of(*source, "2 files were left out, the first because "));
+
+    const auto alone = [](const std::string& file) {
+        const TemporaryFolder own;
+        return refusal(own.write("a.dcm", file));
+    };
+    CHECK(contains(alone(colors.file()), "Photometric Interpretation is \"RGB\"; expected MONOCHROME1 or MONOCHROME2"));
+    CHECK(contains(alone(report.file()), "is a DICOM file without Pixel Data; expected slices"));
+    CHECK(contains(alone(slice_of(0).number(0x00280100, 12).file()), "Bits Allocated is 12; expected 8, 16 or 32"));
+    CHECK(contains(alone(slice_of(0).number(0x00280101, 17).file()), "Bits Stored is 17; expected"));
+    CHECK(contains(alone(slice_of(0).number(0x00280010, 0).file()), "Rows or Columns is missing or 0; expected"));
+    CHECK(contains(alone(slice_of(0).text(0x00280008, "IS", "-1").file()), "Number of Frames is \"-1\"; expected"));
+    CHECK(contains(alone(slice_of(0).text(0x00280008, "IS", "9999999999").file()), "Number of Frames is "));
+    Dicom deflated = slice_of(0);
+    deflated.transfer_syntax = "1.2.840.10008.1.2.1.99";
+    CHECK(contains(alone(deflated.file()), "transfer syntax is 1.2.840.10008.1.2.1.99, which compresses the header"));
+}
+
+TEST_CASE("hostile lengths in a DICOM file are refused at once, before GDCM takes memory for them")
+{
+    const TemporaryFolder folder;
+    const Effort effort;
+    const auto with = [&](uint32_t tag, const std::string& bytes) {
+        // Between the elements that come before and after.
+        Dicom before = slice_of(0);
+        Dicom after = before;
+        std::erase_if(before.elements, [&](const auto& element) { return element.first >= tag; });
+        std::erase_if(after.elements, [&](const auto& element) { return element.first < tag || element.first == tag; });
+        return refusal(folder.write("a.dcm", before.file() + bytes + after.data_set()));
+    };
+    for (const uint32_t length : {0xfffffffeu, 0x7fffffffu, 0x10000000u}) {
+        CHECK(
+            contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("UN\0\0", 4) + little(length, 4)),
+                     sentence("has length ", length, "; expected at most ")));
+        CHECK(contains(
+            with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("SQ\0\0", 4) + little(16, 4) +
+                                 little(0xfffe, 2) + little(0xe000, 2) + little(length, 4) + std::string(8, 'x')),
+            sentence("has length ", length, "; expected at most ")));
+        CHECK(contains(with(PIXELS, little(0x7fe0, 2) + little(0x10, 2) + std::string("OW\0\0", 4) + little(length, 4)),
+                       sentence("has length ", length, "; expected at most 0")));
+    }
+    std::string nested;
+    for (int i = 0; i < 10000; ++i) {
+        nested += little(0x0018, 2) + little(1, 2) + std::string("SQ\0\0", 4) + little(0xffffffff, 4) +
+                  little(0xfffe, 2) + little(0xe000, 2) + little(0xffffffff, 4);
+    }
+    CHECK(contains(with(0x00180001, nested), "nests sequences deeper than 16"));
+    CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("\1\2\0\0", 4)), "states no type"));
+    CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("UY\1\0", 4)),
+                   "is of type \"UY\"; expected a type that DICOM knows"));
+    CHECK(
+        contains(refusal(folder.write("a.dcm", slice_of(0).number(0x00280010, 65535).number(0x00280011, 65535).file())),
+                 "Pixel Data holds 40 bytes; expected 8589672450 for 1 slices of 65535x65535 pixels of int16"));
+    Dicom packed = slice_of(0);
+    packed.number(0x00280010, 65535).number(0x00280011, 65535).transfer_syntax = "1.2.840.10008.1.2.4.90";
+    packed.elements.erase(PIXELS);
+    const std::string fragments = little(0x7fe0, 2) + little(0x10, 2) + std::string("OB\0\0", 4) +
+                                  little(0xffffffff, 4) + little(0xfffe, 2) + little(0xe000, 2) + little(0, 4) +
+                                  little(0xfffe, 2) + little(0xe000, 2) + little(8, 4) + std::string(8, 'x') +
+                                  little(0xfffe, 2) + little(0xe0dd, 2) + little(0, 4);
+    CHECK(contains(refusal(folder.write("a.dcm", packed.file() + fragments)),
+                   "Pixel Data holds 8 compressed bytes; expected enough for 65535x65535 pixels"));
+    CHECK(effort.is_below(AT_ONCE_BYTES));
+}
+
+TEST_CASE("damaged DICOM slices are errors, and nothing is written to standard error about them")
+{
+    const TemporaryFolder folder;
+    const fs::path said = folder.path / "said";
+    const int kept = ::dup(2);
+    const int file = ::open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    REQUIRE(::dup2(file, 2) == 2);
+    ::close(file);
+    std::vector<std::string> errors;
+    for (const char* syntax : {"1.2.840.10008.1.2.4.50", "1.2.840.10008.1.2.4.70", "1.2.840.10008.1.2.4.80",
+                               "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.5", "1.2.3.4"}) {
+        Dicom slice = slice_of(0);
+        slice.transfer_syntax = syntax;
+        slice.elements.erase(PIXELS);
+        const std::string bytes = slice.file() + little(0x7fe0, 2) + little(0x10, 2) + std::string("OB\0\0", 4) +
+                                  little(0xffffffff, 4) + little(0xfffe, 2) + little(0xe000, 2) + little(0, 4) +
+                                  little(0xfffe, 2) + little(0xe000, 2) + little(64, 4) + std::string(64, 'x') +
+                                  little(0xfffe, 2) + little(0xe0dd, 2) + little(0, 4);
+        errors.push_back(refusal(folder.write("a.dcm", bytes)));
+    }
+    const std::string whole = slice_of(0).file();
+    for (size_t length = 132; length < whole.size(); length += 7) {
+        errors.push_back(refusal(folder.write("a.dcm", whole.substr(0, length))));
+    }
+    ::dup2(kept, 2);
+    ::close(kept);
+    for (const std::string& error : errors) CHECK(contains(error, "; expected "));
+    std::ifstream read(said);
+    CHECK(std::string(std::istreambuf_iterator<char>(read), {}) == "");
+}
+
+TEST_CASE("boxes of a DICOM volume come from any thread")
+{
+    const TemporaryFolder folder;
+    folder_of(folder, phantom_slices());
+    const auto source = open_volume(folder.path);
+    size_t wrong[3] = {};
+    {
+        std::vector<std::jthread> threads;
+        for (size_t t = 0; t < 3; ++t) {
+            threads.emplace_back([&, t] {
+                for (int i = 0; i < 200; ++i) {
+                    const Size3 lower((i + t) % 5, i % 4, (i + 2 * t) % 3);
+                    wrong[t] += voxels_in<int16_t>(*source, {lower, lower + int64_t{1}})[0] !=
+                                phantom(lower.x, lower.y, lower.z);
+                }
+            });
+        }
+    }
+    CHECK(wrong[0] + wrong[1] + wrong[2] == 0);
+}

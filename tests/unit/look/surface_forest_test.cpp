@@ -1,0 +1,203 @@
+// Surfaces of which a few change at a time.
+
+#include "engine/look/surface_forest.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/error.h"
+
+using namespace shvr;
+
+namespace {
+
+VolumeInfo volume()
+{
+    VolumeInfo info;
+    info.size = Size3(1000);
+    return info;
+}
+
+class Random {
+public:
+    explicit Random(uint32_t seed) : random_(seed) {}
+    uint32_t below(uint32_t end) { return uint32_t(random_() % end); }
+    SurfaceLook rod()
+    {
+        const glm::dvec3 from(below(1000), below(1000), below(1000));
+        return {from, from + glm::dvec3(below(9), below(9), below(9)), 0.5 + below(4), 0.5 + below(4),
+                glm::dvec3(below(256)) / 255.0};
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+std::vector<KeyedSurface> rods(size_t count, Random& random)
+{
+    std::vector<KeyedSurface> surfaces;
+    for (uint32_t i = 0; i < count; ++i)
+        surfaces.push_back({surface_key(i % 2 ? SurfaceKind::internode : SurfaceKind::node, i), random.rod()});
+    return surfaces;
+}
+
+bool contains(const gpu::SurfaceNode& box, const gpu::Surface& surface)
+{
+    const glm::dvec3 from = glm::dvec3(surface.from) + glm::dvec3(surface.from_rest);
+    const glm::dvec3 to = from + glm::dvec3(surface.along);
+    const glm::dvec3 lower = glm::min(from - double(surface.radius_from), to - double(surface.radius_to));
+    const glm::dvec3 upper = glm::max(from + double(surface.radius_from), to + double(surface.radius_to));
+    return glm::all(glm::lessThanEqual(glm::dvec3(box.lower), lower)) &&
+           glm::all(glm::greaterThanEqual(glm::dvec3(box.upper), upper));
+}
+
+template <class Value>
+bool same_bytes(const Value& a, const Value& b)
+{
+    return std::memcmp(&a, &b, sizeof(Value)) == 0;
+}
+
+/// What a search that opens every box comes by, in any order; every surface in all of the boxes that were opened for it.
+std::vector<gpu::Surface> found_in(const std::vector<gpu::SurfaceNode>& nodes, const std::vector<gpu::Surface>& list)
+{
+    std::vector<gpu::Surface> found;
+    size_t outside = 0;
+    for (uint32_t node = 0; node < nodes.size(); ++node)
+        for (uint32_t i = nodes[node].begin; i < nodes[node].end; ++i) {
+            found.push_back(list.at(i));
+            for (uint32_t around = 0; around <= node; ++around)
+                if (nodes[around].skip > node) outside += !contains(nodes[around], list[i]);
+        }
+    CHECK(outside == 0);
+    return found;
+}
+
+bool is_before(const gpu::Surface& a, const gpu::Surface& b)
+{
+    return a.number < b.number;
+}
+
+/// The forest and what a device has of it hold exactly `truth`.
+struct Watched {
+    SurfaceForest forest;
+    std::map<uint64_t, SurfaceLook> truth;
+    std::vector<gpu::SurfaceNode> sent_nodes;
+    std::vector<gpu::Surface> sent_list;
+
+    explicit Watched(const std::vector<KeyedSurface>& surfaces) : forest(surfaces, volume())
+    {
+        for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
+        sent_nodes = forest.nodes();
+        sent_list = forest.list();
+        sent_nodes.resize(forest.most_nodes());
+        sent_list.resize(forest.most_surfaces());
+    }
+
+    bool replace(const std::vector<uint64_t>& keys, const std::vector<KeyedSurface>& surfaces)
+    {
+        if (!forest.replace(keys, surfaces, volume())) return false;
+        for (const uint64_t key : keys) truth.erase(key);
+        for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
+        return true;
+    }
+
+    void send()
+    {
+        const SurfaceForest::Written written = forest.take_written();
+        for (const uint32_t at : written.nodes)
+            if (at < forest.nodes().size()) sent_nodes.at(at) = forest.nodes()[at];
+        for (const uint32_t at : written.list)
+            if (at < forest.list().size()) sent_list.at(at) = forest.list()[at];
+    }
+
+    void check()
+    {
+        send();
+        std::vector<gpu::SurfaceNode> nodes(sent_nodes.begin(), sent_nodes.begin() + ptrdiff_t(forest.nodes().size()));
+        std::vector<gpu::Surface> found = found_in(nodes, sent_list);
+        std::vector<KeyedSurface> wanted;
+        for (const auto& [key, look] : truth) wanted.push_back({key, look});
+        std::vector<gpu::Surface> expected = surface_tree(wanted, volume()).list;
+        std::ranges::sort(found, is_before);
+        std::ranges::sort(expected, is_before);
+        REQUIRE(found.size() == expected.size());
+        size_t wrong = 0;
+        for (size_t i = 0; i < found.size(); ++i) wrong += !same_bytes(found[i], expected[i]);
+        CHECK(wrong == 0);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("after any changes a search finds the surfaces there are, on the device too")
+{
+    Random random(71);  // seed 71
+    Watched watched(rods(5000, random));
+    uint32_t next = 5000;
+    for (int turn = 0; turn < 60; ++turn) {
+        CAPTURE(turn);
+        std::vector<uint64_t> keys;
+        std::map<uint64_t, SurfaceLook> now;
+        for (uint32_t i = random.below(turn % 10 == 9 ? 150 : 6); i > 0; --i) {
+            auto at = watched.truth.begin();
+            std::advance(at, random.below(uint32_t(watched.truth.size())));
+            keys.push_back(at->first);
+            if (random.below(3) > 0) now[at->first] = random.rod();  // changed, not removed
+        }
+        if (random.below(4) == 0) keys.push_back(surface_key(SurfaceKind::session, 7));  // is not there
+        for (uint32_t i = random.below(4); i > 0; --i) now[surface_key(SurfaceKind::node, next++)] = random.rod();
+        std::vector<KeyedSurface> surfaces;
+        for (const auto& [key, look] : now) surfaces.push_back({key, look});
+        REQUIRE(watched.replace(keys, surfaces));
+        if (turn % 3 == 0) watched.check();  // otherwise several changes are sent at once
+    }
+    watched.check();
+}
+
+TEST_CASE("a leaf may lose all of its surfaces, and they may come again")
+{
+    Random random(72);  // seed 72
+    Watched watched(rods(4200, random));
+    const std::map<uint64_t, SurfaceLook> all = watched.truth;
+    std::vector<uint64_t> keys;
+    for (uint32_t i = 0; i < 2000; ++i)
+        keys.push_back(surface_key(i % 2 ? SurfaceKind::internode : SurfaceKind::node, i));
+    REQUIRE(watched.replace(keys, {}));
+    watched.check();
+    CHECK(watched.truth.size() == 2200);
+    std::vector<KeyedSurface> again;
+    for (const uint64_t key : keys) again.push_back({key, all.at(key)});
+    REQUIRE(watched.replace({}, again));
+    CHECK(watched.truth == all);
+    watched.check();
+}
+
+TEST_CASE("what would cost as much as a new forest is left to one, and what is refused changes nothing")
+{
+    Random random(73);  // seed 73
+    CHECK(!Watched(rods(2 * SurfaceForest::MOST_ADDED, random)).replace({}, rods(1, random)));
+    CHECK(!Watched({}).replace({}, rods(1, random)));
+
+    Watched watched(rods(5000, random));
+    std::vector<KeyedSurface> many;
+    for (uint32_t i = 0; i <= SurfaceForest::MOST_ADDED; ++i)
+        many.push_back({surface_key(SurfaceKind::session, i), random.rod()});
+    CHECK(!watched.replace({}, many));
+    const KeyedSurface last = many.back();
+    many.pop_back();
+    CHECK(watched.replace({}, many));
+    CHECK(!watched.replace({}, {last}));
+    CHECK(watched.replace({many[0].key}, {last}));  // one goes, one comes
+    watched.check();
+
+    KeyedSurface broken{surface_key(SurfaceKind::node, 12), {}};
+    broken.look.radius_from = -1.0;
+    const std::vector<uint64_t> gone{surface_key(SurfaceKind::node, 0), many[1].key};
+    CHECK_THROWS_WITH_AS(watched.replace(gone, {broken}),
+                         doctest::Contains("node 12: a radius is -1; expected above 0"), Error);
+    watched.check();
+}

@@ -1,0 +1,77 @@
+// Presets of transfer functions: all that ship are sound, and fit volumes of any range.
+
+#include "engine/session/transfer_presets.h"
+
+#include <doctest/doctest.h>
+
+#include "engine/base/error.h"
+
+using namespace shvr;
+
+namespace {
+
+/// Air around 1000 and a broad tissue from 1400 to 2600.
+VolumeStatistics statistics()
+{
+    VolumeStatistics statistics{.minimum = 900.0, .maximum = 2900.0};
+    statistics.histogram.assign(256, 0);
+    for (int bin = 4; bin < 25; ++bin) statistics.histogram[size_t(bin)] = 1000;
+    for (int bin = 64; bin < 218; ++bin) statistics.histogram[size_t(bin)] = 60;
+    return statistics;
+}
+
+std::string refusal(const std::string& text)
+{
+    try {
+        parse_transfer_preset(text, "p", "p.json");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("every preset that ships draws something of the tissue and nothing of the air")
+{
+    const std::vector<TransferPreset> presets = transfer_presets();
+    CHECK(presets.size() >= 5);
+    for (const TransferPreset& preset : presets) {
+        CAPTURE(preset.name);
+        CHECK(preset.note.ends_with("."));
+        const TransferFunction function = transfer_function_of(preset, statistics());
+        CHECK(function.at(2900.0).a > 0.0);
+        CHECK(function.at(1000.0).a == 0.0);
+        CHECK(transfer_preset_named(preset.name).points.size() == preset.points.size());
+        CHECK_FALSE(transfer_function_of(preset, {}).draws_nothing());  // a volume of which nothing is known
+    }
+}
+
+TEST_CASE("a preset lies between where the air ends and where nine tenths of the rest do, and goes on to the end")
+{
+    const TissueRange tissue = tissue_range(statistics());
+    CHECK(tissue.lower > 1050.0);
+    CHECK(tissue.lower < 1700.0);
+    CHECK(tissue.upper > 2300.0);
+    CHECK(tissue.upper < 2600.0);
+    const TransferPreset preset{
+        .name = "p", .note = "", .points = {{0.0, glm::dvec3(0.0), 0.0}, {0.5, glm::dvec3(1.0), 0.4}}};
+    const TransferFunction function = transfer_function_of(preset, statistics());
+    REQUIRE(function.points().size() == 3);
+    CHECK(function.points()[0].intensity == tissue.lower);
+    CHECK(function.points()[1].intensity == doctest::Approx(0.5 * (tissue.lower + tissue.upper)));
+    CHECK(function.points()[2].intensity == 2900.0);
+    CHECK(function.points()[2].opacity == 0.4);
+}
+
+TEST_CASE("a broken preset, and a name that there is not, are told in a sentence")
+{
+    CHECK(refusal(R"({"note": "x.", "points": []})") == "p.json: key points is []; expected at least two points");
+    CHECK(refusal(R"({"note": "x.", "points": [{"at": 0.5, "color": "#ffffff", "opacity": 0},
+                                               {"at": 0.4, "color": "#ffffff", "opacity": 0}]})")
+              .starts_with("p.json: key points.1.at is 0.4; expected a number from 0.5 to 10"));
+    CHECK(refusal(R"({"note": "x.", "points": [{"at": 0, "color": "#ffffff", "opacity": 2}]})")
+              .starts_with("p.json: key points.0.opacity is 2; expected"));
+    CHECK_THROWS_WITH(transfer_preset_named("nothing"),
+                      "transfer_function.preset is \"nothing\"; expected one of: bundles, haze, heat, layers, surface");
+}

@@ -1,0 +1,82 @@
+#include "ui/panels/panels.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/widgets.h"
+
+namespace shvr::ui {
+
+namespace {
+
+void text_right(const char* format, double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, format, value);
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text).x;
+    if (room > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    ImGui::TextUnformatted(text);
+}
+
+void row(const View::PassTime& pass)
+{
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(pass.name.c_str());
+    hint(pass.name.c_str());
+    ImGui::TableNextColumn();
+    text_right("%.0f", double(pass.runs));
+    ImGui::TableNextColumn();
+    text_right("%.2f", pass.total_ms);
+    ImGui::TableNextColumn();
+    text_right("%.2f", pass.longest_ms);
+}
+
+View::PassTime sum_of(const std::vector<View::PassTime>& passes)
+{
+    View::PassTime sum{.name = "all"};
+    for (const View::PassTime& pass : passes) {
+        sum.runs += pass.runs;
+        sum.total_ms += pass.total_ms;
+        sum.longest_ms = std::max(sum.longest_ms, pass.longest_ms);
+    }
+    return sum;
+}
+
+void table(const std::vector<View::PassTime>& passes)
+{
+    const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuterH | ImGuiTableFlags_PadOuterX;
+    if (!ImGui::BeginTable("passes", 4, flags)) return;
+    ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("Runs", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("Total ms", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("Longest", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableHeadersRow();
+    for (const View::PassTime& pass : passes) row(pass);
+    row(sum_of(passes));
+    ImGui::EndTable();
+}
+
+double mebibytes(uint64_t bytes)
+{
+    return double(bytes) / (1024.0 * 1024.0);
+}
+
+}  // namespace
+
+void passes_panel(const Model& model, Actions&)
+{
+    ImGui::TextDisabled("Time on the GPU, by step (?)");
+    hint("Of the picture that is being made or was made last: it is made in many small pieces, so a step runs often.");
+    table(model.pass_times);
+    ImGui::TextWrapped("%s", model.gpu_name.c_str());
+    hint("The GPU that draws.");
+    ImGui::Text("Memory: %.0f of %.0f MiB", mebibytes(model.device_bytes), mebibytes(model.device_budget));
+    hint("Memory of the GPU that SHVR uses, and how much the system lets it use.");
+    ImGui::Text("Interface: %.1f ms a frame", model.ui_frame_ms);
+    hint("Time between two frames of this window, the median of the last ones. Below 17 ms it feels smooth.");
+}
+
+}  // namespace shvr::ui

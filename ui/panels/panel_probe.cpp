@@ -1,0 +1,299 @@
+#include "ui/panels/panels.h"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/widgets.h"
+
+namespace shvr::ui {
+
+namespace {
+
+// What a hand can aim with; scripts may use other radii.
+constexpr double SMALLEST_RADIUS = 0.5;
+constexpr double LARGEST_RADIUS = 60.0;
+constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
+
+/// Intensities of whole numbers need no decimals.
+const char* format_of(VoxelType type)
+{
+    return is_float(type) ? "%.4g" : "%.0f";
+}
+
+bool intensity_slider(const char* id, const Model& model, double& intensity)
+{
+    const auto [lower, upper] = model.statistics.range();
+    ImGui::SetNextItemWidth(-1.0f);
+    return ImGui::SliderScalar(id, ImGuiDataType_Double, &intensity, &lower, &upper, format_of(model.volume.type),
+                               ImGuiSliderFlags_AlwaysClamp);
+}
+
+// ---- Painting
+
+struct BrushKind {
+    const char* name;
+    Brush brush;
+    const char* hint;
+};
+constexpr BrushKind BRUSHES[] = {
+    {"Fill", Brush::fill, "Paints every voxel in the probe that is at or above the paint threshold."},
+    {"Flood fill", Brush::flood,
+     "Paints what hangs together with the middle of the probe: voxels at or above the threshold, inside the probe."},
+    {"Speckle fill", Brush::speckle,
+     "Paints pieces that lie wholly inside the probe and leaves larger ones alone: clears dirt and noise out of the "
+     "view."},
+};
+
+bool brush_kind(PaintOp& brush)
+{
+    bool changed = false;
+    for (const BrushKind& kind : BRUSHES) {
+        if (&kind != BRUSHES) ImGui::SameLine();
+        if (ImGui::RadioButton(kind.name, brush.brush == kind.brush)) {
+            brush.brush = kind.brush;
+            changed = true;
+        }
+        hint(kind.hint);
+    }
+    return changed;
+}
+
+bool region_shape(PaintOp& brush)
+{
+    const RegionShape was = brush.region;
+    label("Shape");
+    if (ImGui::RadioButton("Ball", was == RegionShape::ball)) brush.region = RegionShape::ball;
+    hint("The brush reaches equally far in all directions.");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("Box", was == RegionShape::box)) brush.region = RegionShape::box;
+    hint("The brush is a box along the volume's axes.");
+    return brush.region != was;
+}
+
+bool radius(const Model& model, PaintOp& brush)
+{
+    label("Radius");
+    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    const bool changed =
+        ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f, &SMALLEST_RADIUS,
+                          &LARGEST_RADIUS, "%.1f voxels", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    hint("Of the probe and the brush. Drag sideways, or Ctrl + click to type. Keys: ] and [, Page Up and Page Down.");
+    if (model.volume.unit == "voxel") return changed;
+    ImGui::SameLine();
+    ImGui::TextDisabled("= %.4g %s", brush.radius_voxels * model.volume.spacing.x, spelled(model.volume.unit));
+    return changed;
+}
+
+bool threshold(const Model& model, PaintOp& brush)
+{
+    label("Paint from");
+    const bool changed = intensity_slider("##threshold", model, brush.threshold);
+    hint("Paint threshold, in the file's intensities: only voxels at or above it are painted.");
+    return changed;
+}
+
+bool connectivity(PaintOp& brush)
+{
+    const int was = brush.connectivity;
+    label("Neighbours");
+    if (ImGui::RadioButton("6 (faces)", was == 6)) brush.connectivity = 6;
+    hint("Voxels hang together where they share a face.");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("26 (corners too)", was == 26)) brush.connectivity = 26;
+    hint("Voxels hang together where they share a face, an edge or a corner: follows thin slanting roots.");
+    return brush.connectivity != was;
+}
+
+/// Offsets that make faint structures as visible as bright ones.
+bool density(const Model& model, PaintOp& brush)
+{
+    bool is_on = brush.density.has_value();
+    label("Density");
+    bool changed = ImGui::Checkbox("raise", &is_on);
+    hint(
+        "Density painting: raises the intensities of what is painted, so that faint structures are seen like bright "
+        "ones. The volume's file stays as it is; the eraser takes offsets away.");
+    if (changed) {
+        brush.density = is_on ? std::optional(DensityBrush{}) : std::nullopt;
+        brush.paints_group = true;
+    }
+    if (!brush.density) return changed;
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("and paint the group", &brush.paints_group);
+    hint("Off: intensities are raised and colours stay.");
+
+    label("Raise by");
+    const double automatic = automatic_offset(model.session.transfer_function.lower(), brush.threshold);
+    bool is_automatic = !brush.density->offset;
+    if (ImGui::Checkbox("automatic", &is_automatic)) {
+        brush.density->offset = is_automatic ? std::nullopt : std::optional(automatic);
+        changed = true;
+    }
+    hint("As much as makes the paint threshold visible: the lowest point of the transfer function less the threshold.");
+    ImGui::SameLine();
+    double offset = brush.density->offset.value_or(automatic);
+    ImGui::BeginDisabled(is_automatic);
+    ImGui::SetNextItemWidth(-1.0f);
+    const auto [lower, upper] = model.statistics.range();
+    const double most = upper - lower, least = -most;
+    if (ImGui::DragScalar("##offset", ImGuiDataType_Double, &offset, float(most / 400.0), &least, &most,
+                          format_of(model.volume.type), ImGuiSliderFlags_AlwaysClamp)) {
+        brush.density->offset = offset;
+        changed = true;
+    }
+    ImGui::EndDisabled();
+    if (is_automatic && automatic == 0.0) {
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextWrapped("Nothing to raise: the paint threshold is visible. Lower it, or give a number.");
+        ImGui::PopStyleColor();
+    }
+
+    label("Falls off");
+    if (ImGui::RadioButton("nowhere", brush.density->falloff == Falloff::flat)) {
+        brush.density->falloff = Falloff::flat;
+        changed = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::RadioButton("to the brush's edge", brush.density->falloff == Falloff::distance)) {
+        brush.density->falloff = Falloff::distance;
+        changed = true;
+    }
+    return changed;
+}
+
+void preview(const Model& model, Actions& actions)
+{
+    bool is_on = model.session.probe.preview;
+    label("Preview");
+    if (ImGui::Checkbox("(F5)", &is_on)) actions.push_back(ShowPreview{is_on});
+    hint(
+        "Shows the voxels that painting would change now, before the button is pressed; striped where it would erase.");
+    if (!is_on) return;
+    ImGui::SameLine();
+    if (model.tool == Tool::trace)
+        ImGui::TextDisabled("when painting");
+    else if (model.previewed_voxels)
+        ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
+}
+
+void painting(const Model& model, Actions& actions)
+{
+    PaintOp brush = model.brush;
+    brush.path.clear();
+    bool changed = brush_kind(brush);
+    changed |= region_shape(brush);
+    changed |= radius(model, brush);
+    changed |= threshold(model, brush);
+    ImGui::BeginDisabled(brush.brush == Brush::fill);  // which asks no neighbours
+    changed |= connectivity(brush);
+    ImGui::EndDisabled();
+    changed |= density(model, brush);
+    if (changed) actions.push_back(SetBrush{brush});
+    preview(model, actions);
+}
+
+// ---- Feeling
+
+void guidance(const Model& model, Actions& actions)
+{
+    bool assists = model.assistance;
+    if (ImGui::Checkbox("Guide the probe (Space)", &assists)) actions.push_back(Assist{assists});
+    hint("Pulls the probe towards the middle of what it touches, so that it stays on a root while you move along.");
+
+    label("Feel from");
+    double intensity = model.haptic_threshold;
+    if (intensity_slider("##felt", model, intensity)) actions.push_back(SetHapticThreshold{intensity});
+    hint("Voxels at or above this intensity are felt.");
+
+    label("Pull");
+    if (ImGui::RadioButton("smooth", model.law == ProxyLaw::potential) && model.law != ProxyLaw::potential)
+        actions.push_back(SetProxyLaw{ProxyLaw::potential});
+    hint("The pull grows from nothing at the first touch, and never drives the hand by itself.");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("as in the thesis", model.law == ProxyLaw::mean) && model.law != ProxyLaw::mean)
+        actions.push_back(SetProxyLaw{ProxyLaw::mean});
+    hint("Pulls to the mean of what lies in the probe. Key: Home goes through the ways of guiding.");
+
+    text_label("Moved by");
+    ImGui::TextUnformatted(model.device_name.c_str());
+}
+
+struct FlagText {
+    uint32_t flag;
+    const char* text;
+};
+constexpr FlagText FLAGS[] = {
+    {FORCE_NO_DEVICE, "The device is silent, gone or not calibrated."},
+    {FORCE_NO_REGION, "The probe is too large to feel, or the felt region is out of date."},
+    {FORCE_FAULT, "Stopped for safety after an impossible reading. Switch the guidance off and on."},
+    {FORCE_CLAMPED, "At the strongest force the device can give."},
+    {FORCE_ENGAGING, "Fading in."},
+};
+
+void touch(const Model& model, const ServoState& servo)
+{
+    text_label("Touch");
+    ImGui::Text("%s, %.2f N", servo.step.in_contact ? "in contact" : "not in contact", glm::length(servo.step.force_n));
+    hint(
+        "Whether something that can be felt lies in the probe, and the force on the hand: with the mouse, what it "
+        "would "
+        "be.");
+    text_label("Felt region");
+    ImGui::Text("%.0f ms old", model.relevance_age_ms);
+    hint("What can be felt is brought to the hand in small regions around the probe. Above 50 ms the force fades out.");
+    if (!model.assistance) return;
+    for (const FlagText& flag : FLAGS) {
+        if (!(servo.step.flags & flag.flag)) continue;
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextWrapped("%s", flag.text);
+        ImGui::PopStyleColor();
+    }
+}
+
+/// Logarithmic, since one late tick in a million is to be seen.
+void lateness_plot(const TimeHistogram& lateness)
+{
+    std::array<float, TimeHistogram::BINS> heights{};
+    for (size_t bin = 0; bin < heights.size(); ++bin) heights[bin] = std::log1p(float(lateness.counts[bin]));
+    const ImVec2 size{ImGui::GetContentRegionAvail().x, 2.2f * ImGui::GetFontSize()};
+    // Disabled plots have no tooltip of their own, which would tell the logarithms.
+    ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
+    ImGui::BeginDisabled();
+    ImGui::PlotHistogram("##lateness", heights.data(), int(heights.size()), 0, nullptr, 0.0f, FLT_MAX, size);
+    ImGui::EndDisabled();
+    ImGui::PopStyleVar();
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::SetTooltip(
+        "How late ticks began: the first bar below 1 \u00b5s, each further one twice as late;\n"
+        "heights are logarithmic. Half below %.0f \u00b5s, 99.9 %% below %.0f \u00b5s, worst %.3f ms.",
+        lateness.quantile_us(0.5), lateness.quantile_us(0.999), double(lateness.worst_ns) * 1e-6);
+}
+
+void servo_panel(const ServoState& servo)
+{
+    text_label("Servo");
+    ImGui::Text("%llu ticks, %llu late", static_cast<unsigned long long>(servo.ticks),
+                static_cast<unsigned long long>(servo.late_ticks));
+    hint(
+        "The force is renewed a thousand times a second; a tick is late where it began more than a period after its "
+        "time.");
+    lateness_plot(servo.lateness);
+}
+
+}  // namespace
+
+void probe_panel(const Model& model, Actions& actions)
+{
+    painting(model, actions);
+    ImGui::Separator();
+    guidance(model, actions);
+    if (!model.servo) return;
+    touch(model, *model.servo);
+    servo_panel(*model.servo);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,100 @@
+// The panes of the window, and what there is to choose about them.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+
+namespace shvr::ui {
+
+namespace {
+
+bool choice(const char* label, int& chosen, const char* names)
+{
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    return ImGui::Combo(label, &chosen, names);
+}
+
+bool stereo_controls(StereoSettings& stereo)
+{
+    int output = int(stereo.output);
+    bool is_other = choice("Shown", output, "side by side\0one above the other\0red and cyan glasses\0");
+    hint("How the two eyes' pictures reach your screen or glasses.");
+    stereo.output = StereoOutput(output);
+    is_other |= slider("Eyes apart", stereo.eye_distance, 0.0, 0.2, "%.3f");
+    hint(
+        "In distances from the camera to what it turns about, where both eyes see the same. Less is easier on the "
+        "eyes.");
+    is_other |= ImGui::Checkbox("Toe-in", &stereo.toe_in);
+    hint("Turns the eyes towards each other. Otherwise both look straight ahead, which strains less.");
+    return is_other;
+}
+
+bool slice_controls(SliceSettings& slices, const VolumeStatistics& statistics)
+{
+    const auto [lower, upper] = statistics.range();
+    double black = slices.black.value_or(lower), white = slices.white.value_or(upper);
+    const double step = 1e-6 * (upper - lower);
+    bool is_other = false;
+    if (slider("Black", black, lower, upper, "%.5g")) {
+        slices.black = std::min(black, white - step);
+        is_other = true;
+    }
+    hint("Intensities up to here are black.");
+    if (slider("White", white, lower, upper, "%.5g")) {
+        slices.white = std::max(white, black + step);
+        is_other = true;
+    }
+    hint("Intensities from here on are white.");
+    is_other |= slider("Paint", slices.paint_share, 0.0, 1.0, "%.2f");
+    hint("How strongly painted voxels take their group's colour.");
+    is_other |= slider("Enlarged", slices.zoom, 1.0, 50.0, "%.1f times", ImGuiSliderFlags_Logarithmic);
+    hint("Of the slices, about the probe.");
+    return is_other;
+}
+
+void interaction_controls(const Model& model, Actions& actions)
+{
+    InteractionSettings interaction = model.session.interaction;
+    double percent = 100.0 * interaction.resolution;
+    bool is_other = slider("In motion", percent, 10.0, 100.0, "%.0f %%");
+    hint("Pixels along each side that are drawn while something moves. What stands still is always sharp.");
+    interaction.resolution = percent / 100.0;
+    is_other |= slider("Frames", interaction.frames_per_second, 5.0, 120.0, "at most %.0f a second");
+    hint("More is smoother and leaves less time for other work.");
+    int scale = int(interaction.screenshot_scale);
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
+    hint("Of large screenshots (Ctrl + P): pixels for one of the window, along each side.");
+    interaction.screenshot_scale = uint32_t(scale);
+    if (is_other) actions.push_back(SetInteraction{interaction});
+}
+
+}  // namespace
+
+void views_panel(const Model& model, Actions& actions)
+{
+    ViewSettings view = model.session.view;
+    int arrangement = int(view.arrangement);
+    bool is_other = choice("Window", arrangement, "full screen\0two eyes\0overview\0slices\0");
+    hint(
+        "Full screen: F10. Two eyes: F11. Overview, with maps of where the camera is: F9. Slices through the probe: "
+        "F6.");
+    view.arrangement = Arrangement(arrangement);
+    switch (view.arrangement) {
+        case Arrangement::single: break;
+        case Arrangement::stereo: is_other |= stereo_controls(view.stereo); break;
+        case Arrangement::overview:
+            is_other |= slider("Map scale", view.overview_zoom, 0.1, 10.0, "%.2f", ImGuiSliderFlags_Logarithmic);
+            hint("Below 1 the maps show more around the volume.");
+            break;
+        case Arrangement::slices: is_other |= slice_controls(view.slices, model.statistics); break;
+    }
+    if (is_other) actions.push_back(SetView{view});
+    ImGui::Separator();
+    interaction_controls(model, actions);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,41 @@
+#include "ui/panels/widgets.h"
+
+#include <imgui/imgui.h>
+
+namespace shvr::ui {
+
+void text_label(const char* text)
+{
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+}
+
+void label(const char* text)
+{
+    ImGui::AlignTextToFramePadding();
+    text_label(text);
+}
+
+bool slider(const char* label, double& value, double lower, double upper, const char* format, ImGuiSliderFlags flags)
+{
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &lower, &upper, format,
+                               ImGuiSliderFlags_AlwaysClamp | flags);
+}
+
+const char* spelled(const std::string& unit)
+{
+    return unit == "um" ? "\u00b5m" : unit.c_str();
+}
+
+void hint(const char* text)
+{
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(24.0f * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+}  // namespace shvr::ui
