@@ -10,7 +10,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct AnnotateCommandOptions {
     Common common;
     std::string project, script;
     bool fresh = false;
@@ -18,10 +18,10 @@ struct Options {
 
 class Replay {
 public:
-    Replay(Opened& opened_session, const Options& given) : opened(opened_session), options(given) {}
+    Replay(Opened& opened_session, const AnnotateCommandOptions& given) : opened(opened_session), options(given) {}
 
     Opened& opened;
-    const Options& options;
+    const AnnotateCommandOptions& options;
     int64_t voxels_changed = 0;
     std::string at;  ///< "file:line"
 
@@ -105,7 +105,7 @@ public:
     }
 };
 
-void run(const Options& options)
+void run_annotate(const AnnotateCommandOptions& options)
 {
     const std::vector<ScriptLine> script = read_script(options.script);
     Opened opened = open(options.project, options.common, options.fresh ? Work::Start::fresh : Work::Start::as_left);
@@ -135,7 +135,7 @@ void run(const Options& options)
 
 void add_annotate(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<AnnotateCommandOptions>();
     CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
@@ -149,7 +149,7 @@ void add_annotate(CLI::App& program)
         "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"node\",\"at\":[40,52,18],\"radius\":3,\"group\":2}\n"
         "  {\"op\":\"density\",\"brush\":\"flood\",\"threshold\":900,\"offset\":\"automatic\",\"falloff\":"
         "\"distance\",\"radius\":8,\"path\":[[40,52,18]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_annotate(*options); });
 }
 
 }  // namespace shvr::cli

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double DIFFERENCE_GAIN = 16.0;
 
-struct Options {
+struct CompareCommandOptions {
     Common common;
     std::string a, b, difference;
     std::optional<double> max_abs, max_rmse;
@@ -57,7 +57,7 @@ void print_text(const ImageDifference& difference)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-void check_gates(const ImageDifference& difference, const Options& options)
+void check_gates(const ImageDifference& difference, const CompareCommandOptions& options)
 {
     if (options.max_abs && difference.max_abs > *options.max_abs)
         throw GateError(sentence(options.a, " and ", options.b, " differ by up to ", difference.max_abs,
@@ -67,7 +67,7 @@ void check_gates(const ImageDifference& difference, const Options& options)
                                  " levels root mean square; --max-rmse allows ", *options.max_rmse));
 }
 
-void run(const Options& options)
+void run_compare(const CompareCommandOptions& options)
 {
     const Image8 a = read_png(options.a);
     const Image8 b = read_png(options.b);
@@ -87,7 +87,7 @@ void run(const Options& options)
 
 void add_compare(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareCommandOptions>();
     CLI::App* command = program.add_subcommand("compare", "Measures the difference between two pictures");
     command->add_option("A", options->a, "Picture (.png)")->required();
     command->add_option("B", options->b, "Picture (.png) of the same size")->required();
@@ -98,7 +98,7 @@ void add_compare(CLI::App& program)
         ->check(CLI::NonNegativeNumber);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr compare before.png after.png --diff difference.png --max-abs 2");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_compare(*options); });
 }
 
 }  // namespace shvr::cli

@@ -15,7 +15,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct EvaluateCommandOptions {
     Common common;
     std::string truth_mask, mask, truth_trace, trace, volume;
     std::optional<double> slack;
@@ -46,7 +46,7 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
 }
 
 /// Of --volume; else of the first trace or mask that states it.
-std::optional<TraceSpace> find_space(const Options& options)
+std::optional<TraceSpace> find_space(const EvaluateCommandOptions& options)
 {
     if (!options.volume.empty()) return space_of(open_session(options.volume, options.common.settings).source->info());
     for (const std::string& path : {options.truth_trace, options.trace}) {
@@ -94,7 +94,8 @@ void add_dice(const Dice& dice, Json& result)
     for (const auto& [group, value] : dice.by_group) result["dice_by_group"][std::to_string(group)] = value;
 }
 
-void add_mask_scores(const Options& options, const Mask& truth, const std::optional<TraceSpace>& space, Json& result)
+void add_mask_scores(const EvaluateCommandOptions& options, const Mask& truth, const std::optional<TraceSpace>& space,
+                     Json& result)
 {
     if (options.mask.empty()) return;
     const Mask mask = read_mask(options.mask, space);
@@ -103,7 +104,7 @@ void add_mask_scores(const Options& options, const Mask& truth, const std::optio
     add_dice(dice_of(truth, mask), result);
 }
 
-void add_trace_scores(const Options& options, const Mask& truth, const TraceSpace& space, Json& result)
+void add_trace_scores(const EvaluateCommandOptions& options, const Mask& truth, const TraceSpace& space, Json& result)
 {
     const TraceGraph trace = load_trace(options.trace, space).trace;
     const BallScores nodes = score_nodes(trace, truth, space.spacing);
@@ -136,7 +137,7 @@ void print_text(const Json& result)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-void run(const Options& options)
+void run_evaluate(const EvaluateCommandOptions& options)
 {
     if (options.mask.empty() && options.trace.empty())
         throw UsageError("neither --mask nor --trace is given; expected what is to be evaluated");
@@ -170,7 +171,7 @@ void run(const Options& options)
 
 void add_evaluate(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<EvaluateCommandOptions>();
     CLI::App* command = program.add_subcommand("evaluate", "Measures how well an annotation agrees with the truth");
     command->add_option("--truth-mask", options->truth_mask, "The true mask (.mask, or a volume of uint8)")->required();
     command->add_option("--mask", options->mask, "The mask to evaluate");
@@ -187,7 +188,7 @@ void add_evaluate(CLI::App& program)
     command->footer(
         "Example:\n  shvr evaluate --truth-mask true.mask --mask mine.mask --truth-trace true.graphml "
         "--trace mine.graphml --json");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_evaluate(*options); });
 }
 
 }  // namespace shvr::cli

@@ -15,7 +15,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct ExportCommandOptions {
     Common common;
     std::string project, mask, offset, trace, mesh, metrics;
     bool break_loops = false, labels = false;
@@ -40,7 +40,7 @@ void check_mask_name(const std::string& path)
 }
 
 /// PROJECT/labels/mask; nothing where it is not asked for.
-std::string project_labels(const Options& options)
+std::string project_labels(const ExportCommandOptions& options)
 {
     if (!options.labels) return {};
     const std::filesystem::path project = options.project;
@@ -91,7 +91,7 @@ Json to_json(const std::vector<std::string>& written, const Mask& mask, const Tr
             {"left_out", left_out}};
 }
 
-void run(const Options& options)
+void run_export(const ExportCommandOptions& options)
 {
     check_mask_name(options.mask);
     check_extension("--offset", options.offset, {".offset", ".nrrd", ".tif", ".tiff"});
@@ -144,7 +144,7 @@ void run(const Options& options)
 
 void add_export(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExportCommandOptions>();
     CLI::App* command = program.add_subcommand("export", "Writes mask, offsets, trace and measures for other programs");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
@@ -158,7 +158,7 @@ void add_export(CLI::App& program)
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_export(*options); });
 }
 
 }  // namespace shvr::cli

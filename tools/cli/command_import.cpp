@@ -18,7 +18,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct ImportCommandOptions {
     Common common;
     std::string volume, project, crop, blur = "0", raw, spacing, unit;
     OpenOptions choice;
@@ -102,7 +102,7 @@ private:
     std::unique_ptr<VolumeSource> source_;
 };
 
-std::unique_ptr<VolumeSource> open_as_told(const Options& options)
+std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
 {
     const std::optional<glm::dvec3> spacing = parse_spacing(options.spacing);
     if (!options.raw.empty()) {
@@ -195,7 +195,7 @@ double peak_rss_mib()
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void run(const Options& options)
+void run_import(const ImportCommandOptions& options)
 {
     ImportOptions wanted{.preparation = {.crop = parse_crop(options.crop),
                                          .reverse = options.reverse,
@@ -245,7 +245,7 @@ void run(const Options& options)
 
 void add_import(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ImportCommandOptions>();
     CLI::App* command = program.add_subcommand("import", "Makes a project of a volume");
     command->add_option("VOLUME", options->volume, "Volume file or folder")->required();
     command->add_option("PROJECT", options->project, "Folder to make; an OME-Zarr 0.4 image")->required();
@@ -277,7 +277,7 @@ void add_import(CLI::App& program)
     command->footer(
         "The order is: crop, reverse, blur, downscale. An import that was stopped goes on when it is called again.\n"
         "Example:\n  shvr import scan.nhdr scan --blur 1 --downscale 2 --json\n  shvr view scan");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_import(*options); });
 }
 
 }  // namespace shvr::cli

@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct InfoCommandOptions {
     Common common;
     std::string input;
 };
@@ -22,7 +22,7 @@ struct Described {
     int levels = 1;
 };
 
-Described describe(const Options& options)
+Described describe(const InfoCommandOptions& options)
 {
     const std::filesystem::path path = options.input;
     std::error_code ignored;
@@ -125,7 +125,7 @@ void print_text(const Described& described)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-void run(const Options& options)
+void run_info(const InfoCommandOptions& options)
 {
     const Described described = describe(options);
     warn(described.warnings, options.common);
@@ -139,13 +139,13 @@ void run(const Options& options)
 
 void add_info(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InfoCommandOptions>();
     CLI::App* command = program.add_subcommand("info", "Tells what a volume, a session or a project is");
     command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr info scan.nhdr --json");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_info(*options); });
 }
 
 }  // namespace shvr::cli

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct LabelCommandOptions {
     Common common;
     std::string volume, output;
     double threshold = 0.0;
@@ -47,7 +47,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path)
     return folder.filename() == "labels" && !std::filesystem::exists(folder, ignored) ? folder.parent_path() : folder;
 }
 
-void check_usage(const Options& options)
+void check_usage(const LabelCommandOptions& options)
 {
     if (std::isnan(options.threshold)) throw UsageError("--threshold is no number; expected an intensity");
     const std::string form = form_of(options.output);
@@ -77,7 +77,8 @@ void write_mask(const std::string& path, const VolumeSource& labels)
     writer.commit();
 }
 
-void write_labels(const Options& options, const VolumeSource& labels, const std::function<void(double)>& progress)
+void write_labels(const LabelCommandOptions& options, const VolumeSource& labels,
+                  const std::function<void(double)>& progress)
 {
     const std::string form = form_of(options.output);
     if (form == ".mask") return write_mask(options.output, labels);
@@ -98,7 +99,7 @@ std::function<void(double)> progress_of(const Common& common, const char* what)
     };
 }
 
-void run(const Options& options)
+void run_label(const LabelCommandOptions& options)
 {
     check_usage(options);
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
@@ -163,7 +164,7 @@ void run(const Options& options)
 
 void add_label(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<LabelCommandOptions>();
     CLI::App* command = program.add_subcommand("label", "Finds the connected components of a whole volume");
     command->add_option("VOLUME", options->volume, "Volume, project folder or session (.json)")->required();
     command->add_option("--threshold", options->threshold, "Voxels at or above it belong to components")->required();
@@ -184,7 +185,7 @@ void add_label(CLI::App& program)
         "Density offsets of a session or project are added to its voxels. Memory follows the size of a slice and the "
         "number of components.\n"
         "Example:\n  shvr label scan/ --threshold 120 --min-voxels 50 -o scan/labels/parts --json");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_label(*options); });
 }
 
 }  // namespace shvr::cli

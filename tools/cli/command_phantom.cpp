@@ -16,7 +16,7 @@ namespace {
 /// Voxels are made and written in slabs of at most this, or of one row.
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 
-struct Options {
+struct PhantomCommandOptions {
     Common common;
     std::string kind, folder;
     std::string size = "64";
@@ -68,7 +68,7 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& source)
     writer.commit();
 }
 
-void run(const Options& options)
+void run_phantom(const PhantomCommandOptions& options)
 {
     const std::optional<VoxelType> type = voxel_type_of(options.type);
     if (!type) throw UsageError(sentence("--type is '", options.type, "'; expected a voxel type"));
@@ -111,7 +111,7 @@ std::vector<std::string> type_names()
 
 void add_phantom(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PhantomCommandOptions>();
     CLI::App* command = program.add_subcommand("phantom", "Writes a synthetic volume");
     command->add_option("KIND", options->kind, "What it shows")->required()->check(CLI::IsMember(procedural_kinds()));
     command->add_option("--size", options->size, "Voxels, as in 64 or 64x32x16")->capture_default_str();
@@ -123,7 +123,7 @@ void add_phantom(CLI::App& program)
         ->required();
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_phantom(*options); });
 }
 
 }  // namespace shvr::cli

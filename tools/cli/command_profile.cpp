@@ -14,7 +14,7 @@ namespace {
 constexpr int64_t LARGEST_PROFILE = int64_t(64) << 20;
 constexpr int DEEPEST_PROFILE = 16;  // ours have 4; every level costs memory many times its two characters
 
-struct Options {
+struct ProfileCommandOptions {
     Common common;
     std::string input, size, camera, trace, csv, graph;
     int frames = 20;
@@ -29,7 +29,7 @@ void print_text(const std::string& text)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-Profile measure_frames(const Options& options, Opened& opened)
+Profile measure_frames(const ProfileCommandOptions& options, Opened& opened)
 {
     Renderer& renderer = *opened.renderer;
     const std::string& camera_name = options.camera.empty() ? opened.session.camera_name : options.camera;
@@ -72,7 +72,7 @@ Profile measure_frames(const Options& options, Opened& opened)
     return profile;
 }
 
-void run(Options options)
+void run_profile(ProfileCommandOptions options)
 {
     if (options.input.empty())
         throw UsageError("INPUT is missing; expected a session (.json), project folder or volume");
@@ -116,7 +116,7 @@ Json read_profile(const std::string& path)
     return summary;
 }
 
-void run_diff(const Options& options)
+void run_diff(const ProfileCommandOptions& options)
 {
     const Json difference = difference_of(read_profile(options.a), options.a, read_profile(options.b), options.b);
     if (options.common.json)
@@ -125,7 +125,7 @@ void run_diff(const Options& options)
         print_text(difference_text(difference));
 }
 
-void add_diff(CLI::App& profile, const std::shared_ptr<Options>& options)
+void add_diff(CLI::App& profile, const std::shared_ptr<ProfileCommandOptions>& options)
 {
     CLI::App* command = profile.add_subcommand("diff", "What changed from profile A to profile B");
     command->add_option("A", options->a, "What shvr profile --json printed")->required();
@@ -139,7 +139,7 @@ void add_diff(CLI::App& profile, const std::shared_ptr<Options>& options)
 
 void add_profile(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ProfileCommandOptions>();
     CLI::App* command = program.add_subcommand("profile", "Times the passes of a frame");
     command->add_option("INPUT", options->input, "Session (.json), project folder or volume");
     command->add_option("--frames", options->frames, "Frames to measure")
@@ -161,7 +161,7 @@ void add_profile(CLI::App& program)
         "Example:\n  shvr profile scan.nhdr --frames 100 --json > before.json\n"
         "  shvr profile diff before.json after.json");
     command->callback([options, command] {
-        if (!command->got_subcommand("diff")) run(*options);
+        if (!command->got_subcommand("diff")) run_profile(*options);
     });
 }
 

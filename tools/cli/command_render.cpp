@@ -9,12 +9,12 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
 };
 
-void run(Options options)
+void run_render(RenderCommandOptions options)
 {
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
@@ -60,7 +60,7 @@ void run(Options options)
 
 void add_render(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command = program.add_subcommand("render", "Makes a picture");
     command->add_option("INPUT", options->input, "Session (.json), project folder or volume")->required();
     command
@@ -75,7 +75,7 @@ void add_render(CLI::App& program)
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_render(*options); });
 }
 
 }  // namespace shvr::cli

@@ -10,7 +10,7 @@ namespace shvr::cli {
 
 namespace {
 
-struct Options {
+struct ViewCommandOptions {
     Common common;
     std::string input, size;
     bool allow_force = false;
@@ -70,7 +70,7 @@ Json json_of(const ui::AppReport& report)
             {"messages", report.messages}};
 }
 
-void run(const Options& options)
+void run_view(const ViewCommandOptions& options)
 {
     const Common& common = options.common;
     const char* validation = std::getenv("SHVR_VALIDATION");
@@ -95,7 +95,7 @@ void run(const Options& options)
 
 void add_view(CLI::App& program)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ViewCommandOptions>();
     CLI::App* command = program.add_subcommand("view", "Opens the window; so does shvr alone");
     command->add_option("INPUT", options->input, "Session (.json), project folder or volume; none: drop one onto it");
     command->add_option("--size", options->size, "Of the window, as in 1280x800");
@@ -106,7 +106,7 @@ void add_view(CLI::App& program)
     command->footer(
         "With --json the run's timings and counts are printed when the window closes.\n"
         "Example:\n  shvr view project/");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_view(*options); });
 }
 
 }  // namespace shvr::cli

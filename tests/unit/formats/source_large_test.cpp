@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t FAR = (int64_t{5} << 30) + 12;
+constexpr int64_t BEYOND_4_GIB = (int64_t{5} << 30) + 12;
 
 /// `head`, a hole, and `tail` from byte `at` on.
 fs::path with_hole(const TemporaryFolder& folder, const std::string& name, const std::string& head, int64_t at,
@@ -44,17 +44,17 @@ TEST_CASE("64 bits: voxels that begin beyond 4 GiB of a file are read from there
     const TemporaryFolder folder;
     const std::string voxels = "abcdefgh";
     const VoxelBox all{Size3(0), Size3(2)};
-    const fs::path raw = with_hole(folder, "far.bare", "", FAR, voxels);
-    const RawLayout layout{.size = Size3(2), .offset_bytes = FAR};
+    const fs::path raw = with_hole(folder, "far.bare", "", BEYOND_4_GIB, voxels);
+    const RawLayout layout{.size = Size3(2), .offset_bytes = BEYOND_4_GIB};
     CHECK(voxels_of_box(*open_raw(raw, layout), all) == voxels);
 
     folder.write("far.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nbyte skip: " +
-                                 std::to_string(FAR) + "\ndata file: far.bare\n");
+                                 std::to_string(BEYOND_4_GIB) + "\ndata file: far.bare\n");
     CHECK(voxels_of_box(*open_volume(folder.path / "far.nhdr"), all) == voxels);
     folder.write("far.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nHeaderSize = " +
-                                std::to_string(FAR) + "\nElementDataFile = far.bare\n");
+                                std::to_string(BEYOND_4_GIB) + "\nElementDataFile = far.bare\n");
     CHECK(voxels_of_box(*open_volume(folder.path / "far.mhd"), all) == voxels);
-    folder.write("far.json", R"({"size": [2, 2, 2], "type": "uint8", "offset": )" + std::to_string(FAR) + "}");
+    folder.write("far.json", R"({"size": [2, 2, 2], "type": "uint8", "offset": )" + std::to_string(BEYOND_4_GIB) + "}");
     fs::rename(raw, folder.path / "far.raw");
     CHECK(voxels_of_box(*open_volume(folder.path / "far.raw"), all) == voxels);
 }
@@ -64,11 +64,12 @@ TEST_CASE("64 bits: a strip of a BigTIFF beyond 4 GiB is read from there")
     const TemporaryFolder folder;
     const std::string voxels = "abcdef";
     std::string head = "II" + little(43, 2) + little(8, 2) + little(0, 2) + little(16, 8) + little(9, 8);
-    const std::pair<uint64_t, uint64_t> fields[] = {
-        {256, 3}, {257, 2}, {258, 8}, {259, 1}, {262, 1}, {273, FAR}, {277, 1}, {278, 2}, {279, voxels.size()}};
+    const std::pair<uint64_t, uint64_t> fields[] = {{256, 3}, {257, 2}, {258, 8},
+                                                    {259, 1}, {262, 1}, {273, BEYOND_4_GIB},
+                                                    {277, 1}, {278, 2}, {279, voxels.size()}};
     for (const auto& [tag, value] : fields) head += little(tag, 2) + little(16, 2) + little(1, 8) + little(value, 8);
     head += little(0, 8);
-    const auto source = open_volume(with_hole(folder, "far.tif", head, FAR, voxels));
+    const auto source = open_volume(with_hole(folder, "far.tif", head, BEYOND_4_GIB, voxels));
     CHECK(voxels_of_box(*source, {Size3(0), Size3(3, 2, 1)}) == voxels);
 }
 
