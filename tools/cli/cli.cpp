@@ -1,12 +1,34 @@
 #include "tools/cli/cli.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <iostream>
 
+#include "engine/base/text.h"
 #include "engine/live/trace_look.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
+
+namespace {
+
+/// Enough for any machine, and no product with 2^20 leaves 64 bits.
+constexpr int64_t MOST_MIB = int64_t{1} << 24;
+
+CLI::Validator whole_mib()
+{
+    return {[](std::string& text) {
+                const std::optional<int64_t> mib = whole_of(text);
+                return mib && *mib >= 1 && *mib <= MOST_MIB
+                           ? std::string()
+                           : sentence(in_quotes(text), " is given; expected a whole number of MiB from 1 to ",
+                                      MOST_MIB);
+            },
+            ""};
+}
+
+}  // namespace
 
 void add_output_options(CLI::App& command, Common& common)
 {
@@ -28,7 +50,15 @@ void add_input_options(CLI::App& command, Common& common)
                 help)
             ->type_name(form);
     };
-    shorthand("--raw", "volume.raw", "WxHxD:TYPE[:big|little][:OFFSET]", "How a file of bare voxels is laid out");
+    command
+        .add_option_function<std::string>(
+            "--raw",
+            [&common](const std::string& value) {
+                parse_raw_layout(value);  // what is wrong here is wrong usage, not a wrong file
+                common.settings.push_back("volume.raw=" + value);
+            },
+            "How a file of bare voxels is laid out")
+        ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
     // Text, also where it looks like a number.
     const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
         command
@@ -55,9 +85,12 @@ void add_input_options(CLI::App& command, Common& common)
 void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");
-    command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")->type_name("MIB");
+    command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")
+        ->type_name("MIB")
+        ->check(whole_mib());
     command.add_option("--budget-host", common.budget_host_mib, "Host memory SHVR may use for bricks and transfers")
-        ->type_name("MIB");
+        ->type_name("MIB")
+        ->check(whole_mib());
     add_input_options(command, common);
     command.add_option("--threads", common.threads, "Worker threads; 0: one a core")->check(CLI::Range(0, 1024));
 }
@@ -76,6 +109,24 @@ void print(const Json& result)
 {
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");
+}
+
+void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions)
+{
+    if (path.empty()) return;
+    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    if (std::ranges::find(extensions, extension) == extensions.end()) {
+        std::string all;
+        for (const std::string& known : extensions) all += (all.empty() ? "" : ", ") + known;
+        throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
+    }
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+        fail(path, ": cannot be written: there is no folder ", folder.string());
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        fail(path, ": cannot be written: the folder ", folder.string(), " may not be written to");
+    if (std::filesystem::is_directory(path, ignored)) fail(path, ": is a folder; expected the name of a file");
 }
 
 glm::uvec2 parse_size(const std::string& text)
