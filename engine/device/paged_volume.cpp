@@ -45,11 +45,10 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       options_(options),
       levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
       atlas_(executor, memory, slots_for(source_->info(), levels_, options.device_bytes), options.filtered),
-      slots_(atlas_.slot_count()),
+      slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
       store_(*source_, window, options.host_bytes, options.threads)
 {
     cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS));
-    for (uint32_t slot = uint32_t(slots_.size()) - 1; slot > 0; --slot) unused_.push_back(slot);
     pin_coarse_levels();
 }
 
@@ -63,13 +62,13 @@ void PagedVolume::pin_coarse_levels()
             for (int y = 0; y < counts.y; ++y)
                 for (int x = 0; x < counts.x; ++x) {
                     // A quarter of the room at most, and the whole of the coarsest level.
-                    if (level < levels_ - 1 && coarse_.size() >= slots_.size() / 4) return;
+                    if (level < levels_ - 1 && coarse_.size() >= slots_.count() / 4) return;
                     coarse_.push_back({level, {x, y, z}});
                 }
         if (level < levels_ - 1) continue;
-        if (coarse_.size() >= slots_.size() / 2)
+        if (coarse_.size() >= slots_.count() / 2)
             fail(info().name, ": its coarsest level has ", coarse_.size(), " bricks and the device has room for ",
-                 slots_.size(), "; expected a coarser level, as `shvr import` makes");
+                 slots_.count(), "; expected a coarser level, as `shvr import` makes");
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
         atlas_.flush();
@@ -109,7 +108,7 @@ void PagedVolume::look(const PageView& view, const Visibility& visibility)
     if (is_other_look) {
         visibility_ = visibility;
         leap_jobs_.clear();
-        for (const auto& [key, slot] : resident_) leap_jobs_.push_back(key);
+        for (const auto& [key, slot] : slots_.placed()) leap_jobs_.push_back(key);
     }
     view_ = view;
     const TreeRef before = tree_;
@@ -125,15 +124,16 @@ void PagedVolume::look(const PageView& view, const Visibility& visibility)
         const auto found = leaf_index_.find(before->leaves[leaf].key);
         if (found != leaf_index_.end()) is_reached_[found->second] = true;
     }
-    ++stamp_;
+    slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    directory_is_stale_ = wants_are_stale_ = evictable_is_stale_ = true;
+    directory_is_stale_ = true;
+    needs_changed();
 }
 
 PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
 {
-    if (resident_.contains(key)) return LeafState::resident;
+    if (slots_.contains(key)) return LeafState::resident;
     const auto range = known_ranges_.find(key);
     if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
@@ -151,9 +151,9 @@ void PagedVolume::fill_directory()
         entry_of_leaf[leaf] = NOTHING;
         if (state_of(key) == LeafState::empty) continue;
         for (; key.level < levels_; key = parent_of(key)) {
-            const auto there = resident_.find(key);
-            if (there == resident_.end()) continue;
-            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(there->second);
+            const std::optional<uint32_t> slot = slots_.find(key);
+            if (!slot) continue;
+            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(*slot);
             break;
         }
     }
@@ -200,9 +200,9 @@ VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, con
     if (!leap_jobs_.empty()) {
         std::vector<gpu::BrickLeapJob> jobs;
         for (const BrickKey& key : std::exchange(leap_jobs_, {})) {
-            const auto there = resident_.find(key);
-            if (there == resident_.end()) continue;
-            jobs.push_back(job_of(key, there->second));
+            const std::optional<uint32_t> slot = slots_.find(key);
+            if (!slot) continue;
+            jobs.push_back(job_of(key, *slot));
             if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
         }
         brick_leap(graph, volume, visibility_, binding, jobs);
@@ -245,9 +245,9 @@ void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> b
             }
             if (is_reached_[leaf]) continue;
             is_reached_[leaf] = true;
-            touch(tree_->leaves[leaf].key);
+            slots_.use(tree_->leaves[leaf].key);
             ++reached_revision_;
-            wants_are_stale_ = evictable_is_stale_ = true;
+            needs_changed();
         }
     }
 }
@@ -255,10 +255,10 @@ void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> b
 void PagedVolume::forget_reached()
 {
     is_reached_.assign(is_reached_.size(), false);
-    ++stamp_;
+    slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    wants_are_stale_ = evictable_is_stale_ = true;
+    needs_changed();
 }
 
 }  // namespace shvr

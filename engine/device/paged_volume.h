@@ -15,6 +15,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "engine/bricks/brick_slots.h"
 #include "engine/bricks/brick_store.h"
 #include "engine/bricks/page_tree.h"
 #include "engine/device/brick_atlas.h"
@@ -105,25 +106,17 @@ public:
     Counts counts() const;
 
 private:
-    struct Slot {
-        std::optional<BrickKey> key;
-        uint64_t used = 0;  ///< stamp of the last need
-        bool pinned = false;
-    };
     enum class LeafState : uint8_t { missing, resident, empty, failed };
 
     bool is_always_shown(const BrickKey& key) const;
     bool shows(const BrickKey& key) const;
     bool is_painted(const BrickKey& key) const;
     LeafState state_of(const BrickKey& key) const;
-    void touch(const BrickKey& key);
-    bool is_needed(const BrickKey& key) const;
+    BrickNeed need_of(const BrickKey& key) const;
     bool leaf_is_reached(const BrickKey& key) const;
-    void list_evictable(bool for_region);
-    std::optional<uint32_t> free_slot(bool for_region);
+    void needs_changed();
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
     void stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels);
-    void give_up(uint32_t slot);
     void rebuild_tree();
     void update_wants();
     std::vector<BrickKey> set_region(const RegionBricks& region);
@@ -139,14 +132,9 @@ private:
     BrickAtlas atlas_;
     gpu::Storage cell_leap_, directory_;
 
-    std::vector<Slot> slots_;  ///< slot 0 is never used
-    std::unordered_map<BrickKey, uint32_t, BrickKeyHash> resident_;
+    BrickSlots slots_;
     std::unordered_map<BrickKey, BrickTexels::Range, BrickKeyHash> known_ranges_;  ///< of every brick ever read
     std::unordered_map<BrickKey, int64_t, BrickKeyHash> painted_;                  ///< painted bricks of level 0 below
-    uint64_t stamp_ = 1;
-    std::vector<uint32_t> unused_;     ///< slots
-    std::vector<uint32_t> evictable_;  ///< slots of bricks that nobody needs, the one used longest ago last
-    bool evictable_is_stale_ = true;
 
     std::optional<PageView> view_;
     Visibility visibility_;
@@ -163,8 +151,6 @@ private:
     uint64_t places_revision_ = 1, reached_revision_ = 1;
     std::vector<BrickKey> coarse_;  ///< that are to be there always
     std::vector<BrickKey> leap_jobs_;
-
-    uint64_t evictions_ = 0;
 
     BrickStore store_;  ///< last: its loaders end before what they read
 };
