@@ -159,9 +159,11 @@ std::vector<VoxelBox> DeviceMask::bricks(const Size3& size) const
     return boxes;
 }
 
-MaskBinding DeviceMask::import(FrameGraph& graph) const
+std::optional<MaskBinding> DeviceMask::import(FrameGraph& graph) const
 {
-    return {.mask = graph.import("mask", atlas_.import()), .mask_table = graph.import("mask table", table_.import())};
+    if (empty()) return std::nullopt;
+    return MaskBinding{.mask = graph.import("mask", atlas_.import()),
+                       .mask_table = graph.import("mask table", table_.import())};
 }
 
 }  // namespace shvr

@@ -3,6 +3,7 @@
 // the device while nothing is painted, and it is given back when the last painted voxel goes.
 
 #include <map>
+#include <optional>
 #include <span>
 
 #include "engine/annotation/mask.h"
@@ -28,7 +29,8 @@ public:
     bool empty() const { return slots_.empty(); }
     /// Voxels of the painted bricks of a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
-    MaskBinding import(FrameGraph& graph) const;
+    /// Handles for a graph; nothing while nothing is painted.
+    std::optional<MaskBinding> import(FrameGraph& graph) const;
 
 private:
     void grow(uint64_t bricks);

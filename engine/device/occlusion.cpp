@@ -160,6 +160,14 @@ double Occlusion::radius_of(int level) const
     return std::ldexp(look_->radius, -level);
 }
 
+std::vector<int> Occlusion::reach() const
+{
+    std::vector<int> reach;
+    for (int level = 0; look_ && level < volume_->levels(); ++level)
+        reach.push_back(int(occlusion_reach(radius_of(level))));
+    return reach;
+}
+
 /// It, or a brick that far from it; coarse bricks may be where anything is.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
@@ -183,7 +191,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
 /// A brick that shows nothing may hold voxels beside painted ones.
 bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
 {
-    if (!entry.needs_values || (is_drawn_ && !is_drawn_(key))) return false;
+    if (!entry.needs_values || !volume_->is_drawn(key)) return false;
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1);
 }
 

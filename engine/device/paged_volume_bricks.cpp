@@ -21,17 +21,22 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf != leaf_index_.end() && is_reached_[leaf->second];
 }
 
-std::vector<BrickKey> PagedVolume::reached_bricks() const
+void PagedVolume::want_around(const std::vector<int>& reach)
 {
-    std::vector<BrickKey> keys;
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf)
-        if (is_reached_[leaf] && state_of(tree_->leaves[leaf].key) != LeafState::empty)
-            keys.push_back(tree_->leaves[leaf].key);
-    return keys;
-}
-
-void PagedVolume::want_around(std::unordered_set<BrickKey, BrickKeyHash> keys)
-{
+    if (around_reach_ == reach && (reach.empty() || around_revision_ == reached_revision_)) return;
+    around_reach_ = reach;
+    around_revision_ = reached_revision_;
+    std::unordered_set<BrickKey, BrickKeyHash> keys;
+    for (size_t leaf = 0; tree_ && !reach.empty() && leaf < is_reached_.size(); ++leaf) {
+        const BrickKey& key = tree_->leaves[leaf].key;
+        if (!is_reached_[leaf] || state_of(key) == LeafState::empty) continue;
+        const int far = reach.at(size_t(key.level));
+        const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
+        const glm::ivec3 first = glm::max(key.brick - far, 0), last = glm::min(key.brick + far, counts - 1);
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+    }
     if (keys == around_) return;
     around_ = std::move(keys);
     needs_changed();
@@ -256,17 +261,17 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
     if (tree_is_stale) rebuild_tree();  // what is painted is shown, whatever its density
 }
 
-PagedVolume::Counts PagedVolume::counts() const
+std::optional<DeviceVolume::Counts> PagedVolume::counts() const
 {
-    return {.slots = slots_.count() - 1,
-            .resident = slots_.placed().size(),
-            .uploads = atlas_.uploads(),
-            .evictions = slots_.evictions(),
-            .leaves = is_reached_.size(),
-            .reached = uint64_t(std::ranges::count(is_reached_, true)),
-            .host_bytes = store_.bytes(),
-            .peak_host_bytes = store_.peak_bytes(),
-            .store = store_.counts()};
+    return Counts{.slots = slots_.count() - 1,
+                  .resident = slots_.placed().size(),
+                  .uploads = atlas_.uploads(),
+                  .evictions = slots_.evictions(),
+                  .leaves = is_reached_.size(),
+                  .reached = uint64_t(std::ranges::count(is_reached_, true)),
+                  .host_bytes = store_.bytes(),
+                  .peak_host_bytes = store_.peak_bytes(),
+                  .store = store_.counts()};
 }
 
 }  // namespace shvr

@@ -66,7 +66,7 @@ void Screen::update_occlusion()
 
 bool Screen::is_loading() const
 {
-    return renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
 /// The volume loads what one pane needs at a time. One that is interrupted is to be drawn again when its turn comes.
@@ -80,9 +80,8 @@ void Screen::give_turn(size_t part)
 void Screen::advance()
 {
     for (const Part& part : parts_) part.view->collect();
-    if (renderer_.paged())
-        for (const VoxelBox& voxels : renderer_.paged()->advance())
-            if (turn_ < parts_.size()) parts_[turn_].view->came(voxels);
+    for (const VoxelBox& voxels : renderer_.volume().advance())
+        if (turn_ < parts_.size()) parts_[turn_].view->came(voxels);
     const auto first = [&](const auto& wants) {
         size_t part = 0;
         while (part < parts_.size() && !wants(part)) ++part;

@@ -104,8 +104,7 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
 void View::advance()
 {
     reap();
-    if (renderer_.paged())
-        for (const VoxelBox& voxels : renderer_.paged()->advance()) came(voxels);
+    for (const VoxelBox& voxels : renderer_.volume().advance()) came(voxels);
     submit_due();
 }
 
@@ -177,8 +176,7 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running
     const Scene& scene = *running.scene;
     Renderer::Drawn drawn =
         renderer_.draw(graph, scene.session, scene.shot, part, graph.import("light", work_.import()));
-    running.reached = drawn.reached;
-    running.tree = std::move(drawn.tree);
+    running.feedback = std::move(drawn.feedback);
     return drawn.target;
 }
 
@@ -222,7 +220,7 @@ bool View::may_draw(const Tile& tile) const
 {
     constexpr double AGAIN_S = 0.25;
     if (!tile.is_due || !tile.is_shown || tile.is_urgent) return tile.is_due;
-    const bool more_comes = renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    const bool more_comes = renderer_.volume().state() == DeviceVolume::State::loading;
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
@@ -341,8 +339,7 @@ void View::reap()
         in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
         const gpu::FrameResult result = done.submission.finish();
         account(result, done.pixels);
-        if (done.reached && renderer_.paged())
-            renderer_.paged()->note_reached(done.tree, result.read_backs[*done.reached]);
+        renderer_.volume().take_feedback(done.feedback, result);
         switch (done.purpose) {
             case Purpose::preparation: break;
             case Purpose::base: --base_.running; break;
@@ -360,8 +357,7 @@ void View::reap()
 bool View::complete() const
 {
     if (!scene_) return true;
-    if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
-    return is_finished();
+    return renderer_.volume().state() != DeviceVolume::State::loading && is_finished();
 }
 
 bool View::is_finished() const

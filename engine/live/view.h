@@ -133,8 +133,7 @@ private:
         uint64_t pixels = 0;
         std::vector<uint32_t> tiles;  ///< indices
         SceneRef scene;
-        std::optional<uint32_t> reached;  ///< Renderer::Drawn
-        PagedVolume::TreeRef tree;
+        DeviceVolume::Feedback feedback;
     };
 
     bool submit_next(bool sketches_alone);

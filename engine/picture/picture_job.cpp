@@ -91,7 +91,6 @@ PictureJob::PictureJob(Renderer& renderer, Session session, const Camera& camera
 void PictureJob::begin_pane()
 {
     parts_ = parts_of(pane().box.end - pane().box.begin, options_.part_pixels, options_.probe);
-    if (!renderer_.paged_) renew_occlusion();
 }
 
 void PictureJob::end_pane()
@@ -117,12 +116,7 @@ void PictureJob::step()
     renderer_.show_always(always_shown_);
     const PicturePart part = parts_.back();
     parts_.pop_back();
-    if (renderer_.paged_) {
-        draw_paged(part);
-    } else {
-        append(picture_.passes, draw(part));
-        drawn_pixels_ += area_of(part);
-    }
+    draw_completely(part);
     renderer_.always_shown_ = shown_before;
     if (parts_.empty()) end_pane();
 }
@@ -137,7 +131,7 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
     const uint32_t pixels = graph.read_back(drawn.target);
     gpu::FrameResult result =
         renderer_.executor_.run(graph, {.timestamps = options_.timestamps, .serialize = options_.serialize});
-    if (drawn.reached) renderer_.paged_->note_reached(drawn.tree, result.read_backs[*drawn.reached]);
+    renderer_.volume().take_feedback(drawn.feedback, result);
     const std::byte* row = result.read_backs[pixels].data();
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
@@ -146,28 +140,30 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
     return std::move(result.passes);
 }
 
-void PictureJob::draw_paged(const PicturePart& part)
+/// With all bricks that its rays visit, or else in quarters.
+void PictureJob::draw_completely(const PicturePart& part)
 {
-    PagedVolume& volume = *renderer_.paged_;
+    using State = DeviceVolume::State;
+    DeviceVolume& volume = renderer_.volume();
     const Shot& shot = pane().shot;
     const glm::uvec2 pixels = pane().box.end - pane().box.begin;
     renderer_.look(session_, shot, pixels);
-    if (area_of(part) != PixelBox{glm::uvec2(0), pixels}.area()) volume.forget_reached();
+    if (area_of(part) != PixelBox{glm::uvec2(0), pixels}.area()) volume.forget_visits();
     std::vector<gpu::PassReport> passes;
     for (;;) {
         renew_occlusion();
         passes = draw(part);
         static_cast<void>(volume.advance(true));
         if (!shot.is_slice && renderer_.occlusion_.is_due()) continue;  // on what rays came by for the first time
-        if (volume.state() == PagedVolume::State::complete && !volume.is_stale()) break;
-        if (volume.state() == PagedVolume::State::limited) break;
+        if (volume.state() == State::complete && !volume.is_stale()) break;
+        if (volume.state() == State::limited) break;
     }
-    if (volume.state() == PagedVolume::State::limited && area_of(part) > 1) {
+    if (volume.state() == State::limited && area_of(part) > 1) {
         for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
         return;
     }
     drawn_pixels_ += area_of(part);
-    picture_.complete = picture_.complete && volume.state() == PagedVolume::State::complete && volume.missing() == 0;
+    picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
     append(picture_.passes, std::move(passes));
 }
 
@@ -185,10 +181,10 @@ std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, co
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     std::vector<gpu::PassReport> passes;
-    if (paged_ && draws_occlusion(session)) {
+    if (draws_occlusion(session)) {
         occlusion_.look(occlusion_look(session), *volume_, mask_);
-        want_around();
-        static_cast<void>(paged_->advance(true));
+        volume_->want_around(occlusion_.reach());
+        static_cast<void>(volume_->advance(true));
     }
     while (std::optional<OcclusionSlice> slice = next_occlusion(session, camera, MOST))
         append(passes, executor_.run(std::move(slice->graph), {.timestamps = options.timestamps}).passes);

@@ -25,7 +25,7 @@ private:
     void begin_pane();
     void end_pane();
     std::vector<gpu::PassReport> draw(const PicturePart& part);
-    void draw_paged(const PicturePart& part);
+    void draw_completely(const PicturePart& part);
     void renew_occlusion();
     const Pane& pane() const { return panes_[pane_]; }
 

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/device/paged_volume.h"
+#include "engine/device/resident_volume.h"
 #include "engine/passes/anaglyph.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/pyramid_source.h"
@@ -197,23 +199,17 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
 {
     const IntensityWindow window = window_for(source->info().type, statistics);
     occlusion_.clear();
-    occlusion_.set_drawn(nullptr);
     occlusion_has_no_room_ = false;
     surfaces_.set({});
     volume_.reset();
     offsets_.reset();
-    resident_ = nullptr;
-    paged_ = nullptr;
-    empty_space_.forget();
     statistics_ = statistics;
     const bool filtered = filters(settings.sampling);
     const bool comes_and_goes = pages(*source, settings.paging, with_occlusion);
     mask_.clear(comes_and_goes);  // paint belongs to the volume it was painted on
     if (!comes_and_goes) {
         offsets_ = std::make_shared<OffsetSource>(std::move(source));
-        auto volume = std::make_unique<ResidentVolume>(executor_, memory_, *offsets_, window, filtered, threads_);
-        resident_ = volume.get();
-        volume_ = std::move(volume);
+        volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, threads_);
         return;
     }
     const PagedVolume::Options options{
@@ -222,10 +218,7 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
         .host_bytes = host_budget_ / 4,
         .device_bytes = std::min(MOST_ATLAS_BYTES, memory_.device_bytes_left() / 5 * (with_occlusion ? 2 : 3))};
     offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), host_budget_));
-    auto volume = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, options);
-    paged_ = volume.get();
-    volume_ = std::move(volume);
-    occlusion_.set_drawn([this](const BrickKey& key) { return paged_->is_drawn(key); });
+    volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, options);
 }
 
 DeviceVolume& Renderer::volume() const
@@ -234,18 +227,25 @@ DeviceVolume& Renderer::volume() const
     return *volume_;
 }
 
+uint64_t Renderer::host_bytes() const
+{
+    const auto counts = volume_ ? volume_->counts() : std::nullopt;
+    return memory_.host_bytes() + (counts ? counts->host_bytes : 0);
+}
+
+uint64_t Renderer::peak_host_bytes() const
+{
+    const auto counts = volume_ ? volume_->counts() : std::nullopt;
+    return memory_.peak_host_bytes() + (counts ? counts->peak_host_bytes : 0);
+}
+
 void Renderer::update_mask(const Mask& mask, std::span<const int64_t> bricks)
 {
     mask_.update(mask, bricks);
-    if (paged_) paged_->note_painted(mask, bricks);
-    const glm::i64vec3 counts = mask.brick_counts();
-    if (volume_)
-        for (int64_t brick : bricks)
-            occlusion_.changed(voxels_of({0, position_of(brick, counts)}, volume_->info().size));
-    for (int64_t brick : bricks) {
-        const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, counts));
-        empty_space_.changed({first, first + gpu::BRICK_CELLS});
-    }
+    if (!volume_) return;
+    volume_->note_painted(mask, bricks);
+    for (int64_t brick : bricks)
+        occlusion_.changed(voxels_of({0, position_of(brick, mask.brick_counts())}, volume_->info().size));
 }
 
 const LookTable& Renderer::table_of(const Session& session, double step_voxels)
@@ -263,19 +263,6 @@ Resource Renderer::import_group_looks(FrameGraph& graph, const Session& session,
     if (looks != group_looks_) groups_on_device_.outdate();
     group_looks_ = std::move(looks);
     return groups_on_device_.import(graph, group_looks_);
-}
-
-LeapGridInput Renderer::want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session)
-{
-    const LookTable& table = table_of(session, session.render.step_voxels);
-    LeapGridInput input;
-    input.params = {.brick_counts = volume.brick_counts, .skipping = session.render.skip_empty_space};
-    set_table(input.params, session.transfer_function, volume_->window(), table.entries());
-    input.visible_intervals = table.visible_intervals;
-    input.visible_groups = visible_groups(session);
-    if (!mask_.empty()) input.mask = mask_.import(graph);
-    empty_space_.want(input, volume.cell_counts);
-    return input;
 }
 
 /// What may be seen does not depend on the length of a step.
@@ -299,61 +286,31 @@ double Renderer::gradient_fade_codes(const Session& session) const
 /// lie farther apart.
 double Renderer::look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
 {
-    if (!paged_) return session.render.step_voxels;
-    check_camera(shot.camera);
-    paged_->look({.camera = shot.camera,
-                  .other_eye = shot.right_eye,
-                  .pixels = pixels,
-                  .detail = session.render.detail,
-                  .cut = shot.is_slice ? CutBox{} : session.cut,
-                  .shows_all = shot.is_slice,
-                  .shown = always_shown_},
-                 visibility_of(session));
-    return std::ldexp(session.render.step_voxels, paged_->tree()->finest_level);
+    const int finest = volume_->look({.camera = shot.camera,
+                                      .other_eye = shot.right_eye,
+                                      .pixels = pixels,
+                                      .detail = session.render.detail,
+                                      .cut = shot.is_slice ? CutBox{} : session.cut,
+                                      .shows_all = shot.is_slice,
+                                      .shown = always_shown_},
+                                     visibility_of(session));
+    return std::ldexp(session.render.step_voxels, finest);
 }
 
 std::optional<FrameGraph> Renderer::next_preparation(const Session& session)
 {
-    if (!resident_) return std::nullopt;  // what a view needs depends on the view: `draw` brings it
-    FrameGraph graph;
-    VolumeBinding volume = resident_->import(graph);
-    const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    if (!empty_space_.is_due()) return std::nullopt;
-    empty_space_.prepare(graph, volume, leap);
-    return graph;
+    return volume_->next_preparation(visibility_of(session), mask_);
 }
 
 std::optional<FrameGraph> Renderer::next_refinement(const Session& session)
 {
-    if (!refinement_is_due()) return std::nullopt;
-    FrameGraph graph;
-    VolumeBinding volume = resident_->import(graph);
-    const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    if (!empty_space_.is_worth_refining()) return std::nullopt;
-    empty_space_.refine(graph, volume, leap);
-    return graph;
-}
-
-/// Handles of a volume that is ready to be drawn, and of its paint.
-VolumeBinding Renderer::import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
-                                        bool feedback)
-{
-    if (paged_) {
-        if (!mask_.empty()) mask = mask_.import(graph);
-        return paged_->import(graph, mask_, mask, feedback);
-    }
-    VolumeBinding volume = resident_->import(graph);
-    const LeapGridInput leap = want_leap_grid(graph, volume, session);
-    while (empty_space_.is_due()) empty_space_.prepare(graph, volume, leap);
-    mask = leap.mask;
-    return volume;
+    return volume_->next_refinement(visibility_of(session), mask_);
 }
 
 std::vector<std::string> Renderer::take_messages()
 {
     std::vector<std::string> messages = std::exchange(messages_, {});
-    if (paged_)
-        for (std::string& message : paged_->take_messages()) messages.push_back(std::move(message));
+    for (std::string& message : volume().take_messages()) messages.push_back(std::move(message));
     return messages;
 }
 
@@ -406,7 +363,8 @@ Renderer::Prepared Renderer::prepare(FrameGraph& graph, const Session& session, 
     const bool is_shaded = session.light.shaded && !shot.is_slice;
     Prepared prepared;
     RaycastInput& input = prepared.input;
-    prepared.volume = import_prepared(graph, session, input.mask, feedback);
+    input.mask = mask_.import(graph);
+    prepared.volume = volume_->prepare(graph, mask_, input.mask, feedback);
     if (!shot.is_slice && draws_occlusion(session)) {
         const OcclusionSettings& settings = session.light.occlusion;
         input.occlusion =
@@ -451,10 +409,7 @@ Renderer::Drawn Renderer::draw(FrameGraph& graph, const Session& session, const 
             cast_rays(graph, prepared.volume, right, *shot.right_eye, part, graph.create("right eye", desc));
         drawn.target = anaglyph(graph, seen_left, seen_right, target, size, part.target);
     }
-    if (paged_) {
-        drawn.reached = graph.read_back(prepared.volume.pages->reached, "what rays came by");
-        drawn.tree = paged_->tree();
-    }
+    drawn.feedback = volume_->request_feedback(graph, prepared.volume);
     return drawn;
 }
 

@@ -18,11 +18,9 @@
 #include "engine/annotation/work/paint_preview.h"
 #include "engine/base/image.h"
 #include "engine/device/device_mask.h"
-#include "engine/device/empty_space.h"
+#include "engine/device/device_volume.h"
 #include "engine/device/look_table.h"
 #include "engine/device/occlusion.h"
-#include "engine/device/paged_volume.h"
-#include "engine/device/resident_volume.h"
 #include "engine/device/surfaces.h"
 #include "engine/passes/raycast.h"
 #include "engine/session/session.h"
@@ -109,17 +107,10 @@ public:
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false);
     DeviceVolume& volume() const;
-    /// Null where bricks come and go.
-    ResidentVolume* resident() const { return resident_; }
-    /// Null where all bricks are on the device.
-    PagedVolume* paged() const { return paged_; }
     const VolumeStatistics& statistics() const { return statistics_; }
     /// Mapped memory, and bricks kept on the host.
-    uint64_t host_bytes() const { return memory_.host_bytes() + (paged_ ? paged_->counts().host_bytes : 0); }
-    uint64_t peak_host_bytes() const
-    {
-        return memory_.peak_host_bytes() + (paged_ ? paged_->counts().peak_host_bytes : 0);
-    }
+    uint64_t host_bytes() const;
+    uint64_t peak_host_bytes() const;
 
     /// Brings changed bricks of the mask to the device.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks);
@@ -149,7 +140,7 @@ public:
     std::optional<FrameGraph> next_preparation(const Session& session);
     /// What makes pictures of it come sooner without making them different, for when nothing else is to be done; likewise.
     std::optional<FrameGraph> next_refinement(const Session& session);
-    bool refinement_is_due() const { return resident_ && empty_space_.is_worth_refining(); }
+    bool refinement_is_due() const { return volume().refinement_is_due(); }
 
     /// The next slice of the ambient occlusion that `session` wants, as seen from `camera`; nothing where it wants none or
     /// all is made. Must be submitted before the next call. Pictures are drawn with what is made so far.
@@ -163,12 +154,10 @@ public:
     /// What pictures go without (bricks that cannot be read, features without room), one sentence each, since the last call.
     std::vector<std::string> take_messages();
 
-    /// What was added to a graph: the target's new version, and where bricks come and go the read-back that
-    /// `note_reached` wants once the graph is done.
+    /// What was added to a graph: the target's new version, and what the volume takes back once the graph is done.
     struct Drawn {
         Resource target;
-        std::optional<uint32_t> reached;
-        PagedVolume::TreeRef tree;
+        DeviceVolume::Feedback feedback;
     };
     /// Adds the passes that draw a part of what `shot` sees of `session` into `target`, an rgba32_float image. The graph must be
     /// submitted, and before any other that was made later.
@@ -190,12 +179,8 @@ private:
     bool draws_occlusion(const Session& session);
     std::vector<gpu::PassReport> make_occlusion(const Session& session, const Camera& camera,
                                                 const RenderOptions& options);
-    void want_around();
-    VolumeBinding import_prepared(FrameGraph& graph, const Session& session, std::optional<MaskBinding>& mask,
-                                  bool feedback);
     double look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
     Resource import_group_looks(FrameGraph& graph, const Session& session, double step_voxels);
-    LeapGridInput want_leap_grid(FrameGraph& graph, const VolumeBinding& volume, const Session& session);
     struct Prepared {
         VolumeBinding volume;
         RaycastInput input;
@@ -216,20 +201,16 @@ private:
     VolumeStatistics statistics_;
     std::shared_ptr<OffsetSource> offsets_;  ///< what volume_ is made of
     std::unique_ptr<DeviceVolume> volume_;
-    ResidentVolume* resident_ = nullptr;  ///< volume_, if it is one
-    PagedVolume* paged_ = nullptr;        ///< volume_, if it is one
     std::optional<VoxelBox> always_shown_;
     DeviceMask mask_;
     Occlusion occlusion_;
     SurfaceScene surfaces_;
     bool occlusion_has_no_room_ = false;
     std::vector<std::string> messages_;
-    uint64_t reached_revision_ = 0;  ///< of what `want_around` has seen
     std::optional<LookTable> table_;
     DeviceTable table_on_device_{memory_, "transfer function"};
     std::vector<glm::vec4> group_looks_;
     DeviceTable groups_on_device_{memory_, "groups"};
-    EmptySpace empty_space_;
 };
 
 /// Whether the light of a session makes ambient occlusion.

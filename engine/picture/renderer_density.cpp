@@ -27,19 +27,8 @@ void Renderer::update_density(const DensityField& field, std::span<const VoxelBo
     for (const int64_t brick : bricks) offsets.push_back({field.position_of(brick), field.brick(brick)});
     offsets_->set(offsets);
 
-    // Whoever looks at bricks must find those of before gone.
-    if (resident_) resident_->renew(*offsets_, changed);
-    if (paged_) paged_->renew(changed);
-    for (const VoxelBox& box : changed) {
-        occlusion_.changed(box, gpu::BRICK_APRON);
-        // A cell's range is that of its voxels and of one around; cells beyond the volume's end see its last voxels.
-        const Size3 lower = glm::max(box.lower - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::CELL_SIZE};
-        Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
-        for (int axis = 0; axis < 3; ++axis)
-            if (box.upper[axis] >= info.size[axis]) upper[axis] = gpu::BRICK_CELLS * field.brick_counts()[axis];
-        empty_space_.changed(
-            {glm::uvec3(lower), glm::min(glm::uvec3(upper), gpu::BRICK_CELLS * glm::uvec3(field.brick_counts()))});
-    }
+    volume_->renew(changed);
+    for (const VoxelBox& box : changed) occlusion_.changed(box, gpu::BRICK_APRON);
 }
 
 }  // namespace shvr

@@ -1,7 +1,5 @@
 // What the renderer does about ambient occlusion: whether there is any, what it depends on, and the next slice of it.
 
-#include <utility>
-
 #include "engine/picture/renderer.h"
 
 namespace shvr {
@@ -26,22 +24,6 @@ Occlusion::Look Renderer::occlusion_look(const Session& session)
         look.groups[group] = of_group.visible ? of_group.opacity : 0.0;
     }
     return look;
-}
-
-/// Of the bricks that rays came by, those around them, too: light comes from there.
-void Renderer::want_around()
-{
-    if (!paged_ || std::exchange(reached_revision_, paged_->reached_revision()) == paged_->reached_revision()) return;
-    std::unordered_set<BrickKey, BrickKeyHash> keys;
-    for (const BrickKey& key : paged_->reached_bricks()) {
-        const int reach = occlusion_.reach(key.level);
-        const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
-        const glm::ivec3 first = glm::max(key.brick - reach, 0), last = glm::min(key.brick + reach, counts - 1);
-        for (int z = first.z; z <= last.z; ++z)
-            for (int y = first.y; y <= last.y; ++y)
-                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
-    }
-    paged_->want_around(std::move(keys));
 }
 
 /// Whether ambient occlusion is wanted and has room. Where it has none, that is said once, and pictures go without until
@@ -69,17 +51,18 @@ std::optional<Renderer::OcclusionSlice> Renderer::next_occlusion(const Session& 
 {
     if (!draws_occlusion(session)) {
         occlusion_.clear();
-        reached_revision_ = 0;
-        if (paged_) paged_->want_around({});
+        volume_->want_around({});
         return std::nullopt;
     }
-    if (paged_ && !paged_->tree()) return std::nullopt;
-    occlusion_.look(occlusion_look(session), *volume_, mask_);
-    want_around();
+    if (!volume_->has_view()) return std::nullopt;
+    const Occlusion::Look look = occlusion_look(session);
+    occlusion_.look(look, *volume_, mask_);
+    volume_->want_around(occlusion_.reach());
     if (!occlusion_.is_due()) return std::nullopt;
+    volume_->look_by(look.visibility);
     OcclusionSlice slice;
-    std::optional<MaskBinding> mask;
-    const VolumeBinding volume = import_prepared(slice.graph, session, mask, false);
+    const std::optional<MaskBinding> mask = mask_.import(slice.graph);
+    const VolumeBinding volume = volume_->prepare(slice.graph, mask_, mask, false);
     slice.renewed = occlusion_.next(slice.graph, volume, mask, camera.eye / volume_->info().spacing, most);
     return slice;
 }

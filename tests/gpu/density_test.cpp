@@ -138,7 +138,7 @@ TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that 
     Device updated, anew;
     updated.load(source, Paging::always);
     static_cast<void>(updated.renderer.render(session, camera));
-    REQUIRE(updated.renderer.paged()->counts().resident > 200);
+    REQUIRE(updated.renderer.volume().counts()->resident > 200);
     DensityField field(source->info().size, source->info().type);
     std::vector<VoxelBox> boxes;
     for (int64_t brick = 0; brick < 729; ++brick) {

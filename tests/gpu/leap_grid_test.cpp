@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/device/resident_volume.h"
 #include "engine/live/annotator.h"
 #include "tests/support/gpu.h"
 
@@ -32,7 +33,7 @@ Grid grid_of(OnDevice& device, const Session& session)
 {
     device.draw(session, camera_looking("front", device.volume().info()));
     FrameGraph graph;
-    const VolumeBinding volume = device.renderer().resident()->import(graph);
+    const VolumeBinding volume = dynamic_cast<ResidentVolume&>(device.renderer().volume()).import(graph);
     const uint32_t back = graph.read_back(volume.leap);
     const gpu::FrameResult result = device.renderer().executor().run(graph);
     Grid grid{.counts = glm::ivec3(volume.cell_counts)};

@@ -463,7 +463,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     // The volume takes nearly all of it.
     Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{40} << 20}});
     renderer.load(source, measure(*source), session.render);
-    REQUIRE(renderer.paged() == nullptr);
+    REQUIRE(!renderer.volume().counts());
     const Camera camera = camera_looking("front", source->info());
     const Picture plain = renderer.render(session, camera);
     CHECK(plain.complete);
@@ -476,7 +476,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     CHECK(renderer.render(session, camera).warnings.empty());
     // Told in time, the volume leaves room: its bricks come and go.
     renderer.load(source, measure(*source), session.render, true);
-    REQUIRE(renderer.paged() != nullptr);
+    REQUIRE(renderer.volume().counts());
     const Picture with = renderer.render(session, camera);
     CHECK(with.complete);
     CHECK(with.warnings.empty());

@@ -122,17 +122,17 @@ Json bytes_of(Renderer& renderer)
 
 Json bricks_of(const Renderer& renderer)
 {
-    if (!renderer.paged()) return nullptr;
-    const PagedVolume::Counts counts = renderer.paged()->counts();
-    return {{"slots", counts.slots},
-            {"resident", counts.resident},
-            {"wanted", counts.reached},
-            {"missing", renderer.paged()->missing()},
-            {"finest_level", renderer.paged()->tree() ? renderer.paged()->tree()->finest_level : 0},
-            {"uploads", counts.uploads},
-            {"evictions", counts.evictions},
-            {"loads", counts.store.loads},
-            {"load_failures", counts.store.failures}};
+    const std::optional<DeviceVolume::Counts> counts = renderer.volume().counts();
+    if (!counts) return nullptr;
+    return {{"slots", counts->slots},
+            {"resident", counts->resident},
+            {"wanted", counts->reached},
+            {"missing", renderer.volume().missing()},
+            {"finest_level", renderer.volume().finest_level()},
+            {"uploads", counts->uploads},
+            {"evictions", counts->evictions},
+            {"loads", counts->store.loads},
+            {"load_failures", counts->store.failures}};
 }
 
 Json counters_of(const std::vector<gpu::PassReport>& passes)
