@@ -216,7 +216,7 @@ void App::work()
     extend_stroke();
     const bool stroke_was_running = document.annotator.stroke_is_running();
     try {
-        if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+        static_cast<void>(document.annotator.advance());
     } catch (const Error& error) {
         return say(error.what());
     }
@@ -236,10 +236,9 @@ void App::work()
     // A running stroke or touch names what it needs itself.
     if (!document.assistance && !document.annotator.stroke_is_running())
         renderer_->volume().prefer(document.voxels_around_probe());
-    renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
-    for (const std::string& message : renderer_->take_messages()) say(message);
+    for (const std::string& message : renderer_->scene().take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
     if (large_screenshot_) advance_large_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)

@@ -11,8 +11,6 @@ namespace shvr {
 
 class EmptySpace {
 public:
-    /// Another volume: nothing is built.
-    void forget() { look_.reset(); }
     /// These cells may show other things than before.
     void changed(const CellBox& cells);
     /// What cells are to show by; `changed` and `mask` of it do not matter.

@@ -56,7 +56,7 @@ void Occlusion::create(const glm::uvec3& slots)
     images_are_new_ = true;
 }
 
-OcclusionBinding Occlusion::import(FrameGraph& graph)
+OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
 {
     sync();
     OcclusionBinding binding{.values = graph.import("occlusion values", values_.import())};
@@ -254,7 +254,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
     sync();
     const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, gpu::OCCLUSION_SLICE));
     if (keys.empty()) return {};
-    OcclusionBinding images = import(graph);
+    OcclusionBinding images = bring_up_to_date(graph);
     std::vector<BrickKey> needed;
     const int reach = int(occlusion_reach(radius_of(keys.front().level)));
     for (const BrickKey& key : keys)

@@ -59,8 +59,9 @@ public:
     /// Adds the next slice to a graph that must be submitted, and returns the voxels that it renews. `eye` in voxels.
     std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
                                const glm::dvec3& eye, const Most& most);
-    /// Handles for a graph that must be submitted. What has never been made lets all light arrive.
-    OcclusionBinding import(FrameGraph& graph);
+    /// Handles for a graph that must be submitted; adds passes that reset what has never been made, so that all light
+    /// arrives there.
+    OcclusionBinding bring_up_to_date(FrameGraph& graph);
 
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been made

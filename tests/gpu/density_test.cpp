@@ -98,7 +98,7 @@ void check_updates(Paging paging, double detail, double occlusion, int trials)
         const DensityField& field = annotator.document().density;
         anew.load(raised(source, field), paging);
         const std::vector<int64_t> painted = annotator.document().mask.painted_bricks();
-        if (!painted.empty()) anew.renderer.update_mask(annotator.document().mask, painted);
+        if (!painted.empty()) anew.renderer.scene().update_mask(annotator.document().mask, painted);
         const Picture expected = anew.renderer.render(session, camera);
         CHECK(different_bits(seen.image, expected.image) == 0);
         different += different_bits(seen.image, untouched) > 0;
@@ -147,7 +147,7 @@ TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that 
         field.put(brick, offsets);
         boxes.push_back(voxels_of({0, field.position_of(brick)}, field.size()));
     }
-    updated.renderer.update_density(field, boxes);
+    updated.renderer.scene().update_density(field, boxes);
     const Picture seen = updated.renderer.render(session, camera);
     CHECK(seen.complete);
     anew.load(raised(source, field), Paging::always);

@@ -146,7 +146,7 @@ public:
         session.render.detail = 0.0;
         session.probe.voxel = glm::dvec3(24.5, 20.5, 22.5);
         renderer_.load(source_, {.minimum = 0.0, .maximum = 255.0}, session.render);
-        renderer_.set_surfaces(session.surfaces);
+        renderer_.scene().set_surfaces(session.surfaces);
         Annotator annotator(renderer_);
         if (scenery.is_painted) {
             PaintOp paint{.brush = Brush::fill,

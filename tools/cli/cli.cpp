@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "engine/live/trace_look.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
@@ -104,7 +103,8 @@ Opened open(const std::string& path, const Common& common, Work::Start start)
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
-    show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
+    opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
+                                           opened.session.groups);
     return opened;
 }
 
