@@ -234,7 +234,7 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) con
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
-    // Empty bricks have no cells, nor have they an apron that anyone reads.
+    // Empty bricks have no cells, and nobody reads their apron.
     if (glm::any(glm::lessThan(key.brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(key.brick, counts)))
         return 0;
     for (BrickKey at = key; at.level < volume_->levels(); at = parent_of(at)) {

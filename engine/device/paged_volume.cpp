@@ -50,7 +50,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// The coarsest level now, so that there is something to see at once; the next ones as soon as may be.
+/// The coarsest level now, so that there is something to see at once; the next ones as soon as possible.
 void PagedVolume::pin_coarse_levels()
 {
     for (int level = levels_ - 1; level >= 0; --level) {

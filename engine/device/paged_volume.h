@@ -1,13 +1,13 @@
 #pragma once
-// A volume whose bricks come and go: any size, any budget.
+// A volume of paged bricks: any size, any budget.
 //
 //   view -> PageTree (which bricks, page_tree.h)
-//        -> rays note what they come by -> wanted bricks, nearest first
-//        -> BrickStore (host budget, loader threads) -> atlas (device budget, least recently needed goes) -> directory
+//        -> rays mark what they visit -> wanted bricks, nearest first
+//        -> BrickStore (host budget, loader threads) -> atlas (device budget, least recently used is evicted) -> directory
 //
-// Only bricks that rays come by are wanted: what is outside the view, empty, cut away or hidden behind something opaque is not
-// loaded. A missing brick is drawn from the finest coarser one there is; the coarsest levels always are. While the
-// view rests a brick that is needed is never given up, so nothing is loaded twice and the picture only gets better.
+// Only bricks that rays visit are requested: what is outside the view, empty, cut away or hidden behind something opaque
+// is not loaded. A missing brick is drawn from the finest coarser one there is; the coarsest levels are always there. While
+// the view rests a brick that is needed is never evicted, so nothing is loaded twice and the picture only gets better.
 //
 // One thread, the one that owns the executor; nothing here waits for a loader except where it says so.
 

@@ -1,4 +1,4 @@
-// Bricks come and go (paged_volume.h): which are wanted, which make room, what work on level 0 finds.
+// Paged bricks (paged_volume.h): which are requested, which are needed, what work on level 0 finds.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Bricks that a change of the voxels may read anew while somebody waits.
+/// Bricks that a change of voxels may read again while the caller waits.
 constexpr size_t MOST_RENEWED_NOW = 256;
 
 }  // namespace

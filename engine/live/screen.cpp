@@ -107,7 +107,7 @@ void Screen::advance()
         return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
     });
     if (next == parts_.size()) return;
-    // One at a time, so that what is on its way stays short whoever sent it.
+    // One at a time, so that little is on its way, whichever view submitted it.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);

@@ -5,8 +5,8 @@
 //                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
-//   voxels painted    the tiles that show them, again
-//   light kept off    ambient occlusion, nearest bricks first, before the sharp tiles that show it
+//   voxels changed    the tiles that show them, again
+//   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
 // Everything is drawn in small graphs of about `step_ms` each, and no more than about `in_flight_ms` of them are on the
 // way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
@@ -72,7 +72,7 @@ public:
     bool complete() const;
     /// The camera of what layers() show; null before there is anything.
     const Camera* shown_camera() const { return shown_sight_ ? &shown_sight_->shot.camera : nullptr; }
-    /// Counts what changed in layers(): who shows them compares.
+    /// Changes with layers(), for callers that show them.
     uint64_t revision() const { return revision_; }
 
     /// Images to be copied over each other, back to front. Each is an rgba8_unorm image (red and blue swapped where the

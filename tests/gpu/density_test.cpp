@@ -1,5 +1,5 @@
 // Density offsets on the device: a picture after an update is the picture of a volume that has them from the start, bit
-// for bit, wholly on the device or in bricks that come and go; brushes see base plus offset.
+// for bit, wholly on the device or in paged bricks; brushes see base plus offset.
 
 #include <random>
 
@@ -117,7 +117,7 @@ TEST_CASE("a resident volume whose offsets change is drawn as one that has them 
     check_updates(Paging::never, 0.0, 0.0, 8);
 }
 
-TEST_CASE("so is one whose bricks come and go, at the finest level and at coarser ones")
+TEST_CASE("so is a paged one, at the finest level and at coarser ones")
 {
     check_updates(Paging::always, 0.0, 0.0, 8);
     check_updates(Paging::always, 4.0, 0.0, 8);
@@ -129,7 +129,7 @@ TEST_CASE("so is the ambient occlusion of both")
     check_updates(Paging::always, 0.0, 0.7, 4);
 }
 
-TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that come and go")
+TEST_CASE("many offsets at once, as a file brings them, are seen in paged bricks")
 {
     const Source source = open_procedural({.kind = "tubes", .size = Size3(288), .seed = 3});
     const Camera camera = camera_looking("front", source->info());

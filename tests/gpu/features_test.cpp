@@ -290,7 +290,7 @@ TEST_CASE_FIXTURE(Everything, "any two features go together")
             for (const float value : picture.image.rgba)
                 wrong += !std::isfinite(value) || value < 0.0f || value > 1.001f;
             CHECK(wrong == 0);
-            // Bricks that come and go are to change no bit of whatever else there is.
+            // Paged bricks are to change no bit of whatever else there is.
             if (scenery.paging != Paging::always || scenery.sampling != Sampling::exact) continue;
             scenery.paging = Paging::never;
             CHECK(different_bits(draw(scenery).image, picture.image) == 0);

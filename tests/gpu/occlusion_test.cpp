@@ -347,7 +347,7 @@ TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all lig
 }
 
 TEST_CASE_FIXTURE(OnDevice,
-                  "a volume in bricks is lit as one whose bricks come and go is, and as filtered ones nearly are")
+                  "a volume in bricks is lit as a paged one is, and as filtered ones nearly are")
 {
     const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0);
     const TestVolume scene = blobs({100, 70, 66});
@@ -474,7 +474,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
     CHECK(without.image.rgba == plain.image.rgba);
     CHECK(renderer.render(session, camera).warnings.empty());
-    // Told in time, the volume leaves room: its bricks come and go.
+    // Told in time, the volume leaves room: it is paged.
     renderer.load(source, measure(*source), session.render, true);
     REQUIRE(renderer.volume().counts());
     const Picture with = renderer.render(session, camera);

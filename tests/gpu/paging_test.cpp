@@ -1,4 +1,4 @@
-// Bricks that come and go: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
+// Paged bricks: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
 // budget; nothing is loaded twice; what cannot be read is named.
 
 #include <chrono>
@@ -138,7 +138,7 @@ TEST_CASE("pictures are the same at every budget, and the budget holds")
     }
 }
 
-TEST_CASE("only bricks that rays come by are loaded, each once")
+TEST_CASE("only bricks that rays visit are loaded, each once")
 {
     const Source source = tubes({256, 256, 256});
     // Opaque from the first voxel on: only the near faces are seen.
@@ -158,7 +158,7 @@ TEST_CASE("only bricks that rays come by are loaded, each once")
     CHECK(all.counts().store.loads == counts.store.loads);
 }
 
-TEST_CASE("a view of bricks that come and go comes to rest on the direct picture and then does nothing")
+TEST_CASE("a view of paged bricks comes to rest on the direct picture and then does nothing")
 {
     const Source source = tubes({200, 180, 220});
     const Session session = session_of(0.1, true);
@@ -204,7 +204,7 @@ TEST_CASE("what lies around the probe is loaded before what is seen, where it ta
     CHECK(volume.counts()->resident < 100);
 }
 
-TEST_CASE("what is painted is the same on bricks that come and go, and is seen the same")
+TEST_CASE("what is painted is the same on paged bricks, and is seen the same")
 {
     const Source source = tubes({150, 131, 170});
     const Session session = session_of(0.3, true);
