@@ -80,7 +80,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
     volume_ = std::make_unique<PagedVolume>(executor, memory, offsets_, window, paged);
 }
 
-bool Scene::fits_now(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
+bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     static_cast<void>(filters(memory.device().traits(), options.sampling));
     return !pages(memory, source, options) && fits_resident(memory, source, options);

@@ -41,7 +41,7 @@ public:
           const VolumeStatistics& statistics, const Options& options);
     /// Such a scene would be resident, and finds room beside all that is on the device now. Fails where the device cannot
     /// do what `options` ask for.
-    static bool fits_now(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
+    static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
     const VolumeStatistics& statistics() const { return statistics_; }

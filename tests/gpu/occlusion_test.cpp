@@ -346,8 +346,7 @@ TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all lig
     check_below("clear medium", worst_difference(pixels_of(with), pixels_of(draw(clear, camera))), 2e-6);
 }
 
-TEST_CASE_FIXTURE(OnDevice,
-                  "a volume in bricks is lit as a paged one is, and as filtered ones nearly are")
+TEST_CASE_FIXTURE(OnDevice, "a volume in bricks is lit as a paged one is, and as filtered ones nearly are")
 {
     const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0);
     const TestVolume scene = blobs({100, 70, 66});
