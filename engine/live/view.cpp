@@ -159,6 +159,7 @@ bool View::submit_next(bool sketches_alone)
     }
     if (sketches_alone) return false;
     if (submit_occlusion()) return true;
+    if (scene().has_changed()) return false;  // to be taken first, so that no tile is drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
