@@ -41,9 +41,9 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/projects",
     "engine/session": "engine/base engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/zarr engine/projects",
-    "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation shaders",
-    "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation engine/annotation/work "
-    "engine/session engine/device shaders",
+    "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
+    "engine/annotation/trace engine/annotation/work shaders",
+    "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
     "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
     "engine/session engine/picture shaders",
     "haptics": "engine/base",

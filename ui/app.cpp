@@ -216,7 +216,7 @@ void App::work()
     extend_stroke();
     const bool stroke_was_running = document.annotator.stroke_is_running();
     try {
-        if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+        static_cast<void>(document.annotator.advance());
     } catch (const Error& error) {
         return say(error.what());
     }
@@ -234,12 +234,11 @@ void App::work()
             document.screen.look_from(document.camera, document.probe_voxel());
     }
     // A running stroke or touch names what it needs itself.
-    if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
-        renderer_->paged()->prefer(document.voxels_around_probe());
-    renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
+    if (!document.assistance && !document.annotator.stroke_is_running())
+        renderer_->volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
-    for (const std::string& message : renderer_->take_messages()) say(message);
+    for (const std::string& message : renderer_->scene().take_messages()) say(message);
     if (wants_screenshot_) finish_screenshot();
     if (large_screenshot_) advance_large_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
@@ -341,42 +340,41 @@ void App::draw_strokes() const
 Model App::model()
 {
     Document& document = *document_;
-    return {
-        .session = document.session,
-        .volume = document.volume(),
-        .statistics = document.statistics,
-        .cameras = document.cameras(),
-        .panes = document.screen.parts(),
-        .presets = presets_,
-        .brush = document.brush,
-        .haptic_threshold = document.haptic_threshold,
-        .probe_voxel = document.probe_voxel(),
-        .is_painting = document.annotator.stroke_is_running(),
-        .assistance = document.assistance,
-        .law = document.law,
-        .servo = document.touch.servo(),
-        .device_name = document.touch.device_name(),
-        .tool = document.tool,
-        .trace = document.annotator.document().trace,
-        .trace_summary = document.trace_summary,
-        .nearby_node = document.nearby_node(),
-        .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
-                                ? std::optional(document.previewer.shown()->voxels)
-                                : std::nullopt,
-        .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
-        .undoable = document.annotator.history().undoable(),
-        .redoable = document.annotator.history().redoable(),
-        .is_saved = document.is_saved && document.work_is_saved(),
-        .status = status_,
-        .shows_help = shows_help_,
-        .gpu_name = renderer_->device().traits().name,
-        .pass_times = document.screen.pass_times(),
-        .view_is_complete = document.screen.complete(),
-        .view_is_limited = renderer_->paged() != nullptr && renderer_->paged()->state() == PagedVolume::State::limited,
-        .relevance_age_ms = document.touch.relevance_age_ms(),
-        .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
-        .device_bytes = renderer_->memory().device_bytes(),
-        .device_budget = renderer_->memory().device_budget()};
+    return {.session = document.session,
+            .volume = document.volume(),
+            .statistics = document.statistics,
+            .cameras = document.cameras(),
+            .panes = document.screen.parts(),
+            .presets = presets_,
+            .brush = document.brush,
+            .haptic_threshold = document.haptic_threshold,
+            .probe_voxel = document.probe_voxel(),
+            .is_painting = document.annotator.stroke_is_running(),
+            .assistance = document.assistance,
+            .law = document.law,
+            .servo = document.touch.servo(),
+            .device_name = document.touch.device_name(),
+            .tool = document.tool,
+            .trace = document.annotator.document().trace,
+            .trace_summary = document.trace_summary,
+            .nearby_node = document.nearby_node(),
+            .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
+                                    ? std::optional(document.previewer.shown()->voxels)
+                                    : std::nullopt,
+            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+            .undoable = document.annotator.history().undoable(),
+            .redoable = document.annotator.history().redoable(),
+            .is_saved = document.is_saved && document.work_is_saved(),
+            .status = status_,
+            .shows_help = shows_help_,
+            .gpu_name = renderer_->device().traits().name,
+            .pass_times = document.screen.pass_times(),
+            .view_is_complete = document.screen.complete(),
+            .view_is_limited = renderer_->volume().state() == DeviceVolume::State::limited,
+            .relevance_age_ms = document.touch.relevance_age_ms(),
+            .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
+            .device_bytes = renderer_->memory().device_bytes(),
+            .device_budget = renderer_->memory().device_budget()};
 }
 
 AppReport App::report()

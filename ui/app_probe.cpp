@@ -44,7 +44,7 @@ void App::apply(const ProbeOnto& action)
         point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
     } else {
         const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
-        point = renderer_->pick(document_->session, seen.shot.camera, pixels, pixel);
+        point = renderer_->pick(document_->session.look(), seen.shot.camera, pixels, pixel, document_->probe_look());
     }
     if (!point) return say("Nothing is seen there that is half opaque; the probe stays where it is");
     document_->touch.place(*point);

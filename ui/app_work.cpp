@@ -23,19 +23,16 @@ void App::apply(const Redo&)
     say("Redone: " + command->label);
 }
 
-/// Whatever a command changed is drawn again.
+/// What the window says of the trace; the scene itself learns of changes from the annotator.
 void App::show_changes(const Command& command)
 {
     Document& document = *document_;
-    document.screen.changed(document.annotator.reach_of(command));
     const bool is_traced = std::ranges::any_of(
         command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
     if (!is_traced) return;
     const TraceGraph& trace = document.annotator.document().trace;
     document.drags_node = false;
     document.trace_summary = summary_of(trace);
-    show_changed_surfaces(*renderer_, document.surfaces, trace, document.session.groups, command.changes);
-    document.screen.changed(trace_reach(trace, command.changes, document.volume().spacing));
 }
 
 void App::apply(const Save&)

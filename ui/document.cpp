@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/live/trace_look.h"
+#include "engine/live/trace_marks.h"
 #include "engine/session/label_looks.h"
 
 namespace shvr::ui {
@@ -50,7 +50,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     messages = annotator.open(work_files(session, volume()));
     is_saved = annotator.work().unsaved() == 0;
     surfaces = std::exchange(session.surfaces, {});
-    show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     trace_summary = summary_of(annotator.document().trace);
     const ProbeSettings& probe = session.probe;
     brush = dab_of(session, volume(), statistics);

@@ -275,10 +275,10 @@ std::optional<VoxelBox> Annotator::paint_answer()
         work_.extend(std::move(changes));
     else
         work_.perform({label_of(stroke.brush), std::move(changes)});
-    bring_to_device(touched);
     VoxelBox box = stroke.asked.front().region.box;
     for (const Asked& asked : stroke.asked)
         box = {glm::min(box.lower, asked.region.box.lower), glm::max(box.upper, asked.region.box.upper)};
+    bring_to_device(touched, box);
     if (touched.raised.empty()) return box;
     return VoxelBox{glm::max(box.lower - RAISED_REACH, Size3(0)),
                     glm::min(box.upper + RAISED_REACH, document().mask.size())};
@@ -295,51 +295,39 @@ Annotator::Touched Annotator::touched_by(std::span<const Change> changes) const
     return touched;
 }
 
-void Annotator::bring_to_device(const Touched& touched)
+void Annotator::bring_to_device(const Touched& touched, const std::optional<VoxelBox>& within)
 {
     revision_ += !touched.painted_bricks.empty() || !touched.raised.empty();
-    if (!touched.painted_bricks.empty()) renderer_.update_mask(document().mask, touched.painted_bricks);
-    if (!touched.raised.empty()) renderer_.update_density(document().density, touched.raised);
+    if (!touched.painted_bricks.empty()) renderer_.scene().update_mask(document().mask, touched.painted_bricks, within);
+    if (!touched.raised.empty()) renderer_.scene().update_density(document().density, touched.raised);
 }
 
 void Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
 {
     SHVR_CHECK(!stroke_);
-    Command command{std::move(label), {}};
-    for (TraceChange& change : changes) command.changes.emplace_back(std::move(change));
-    work_.perform(std::move(command));
+    const std::vector<Change> made = as_changes(std::move(changes));
+    work_.perform({std::move(label), made});
+    renderer_.scene().show_trace(document().trace, made);
 }
 
 const Command* Annotator::undo()
 {
     const Command* command = stroke_ ? nullptr : work_.undo();
-    if (command) bring_to_device(touched_by(command->changes));
+    if (command) show(*command);
     return command;
 }
 
 const Command* Annotator::redo()
 {
     const Command* command = stroke_ ? nullptr : work_.redo();
-    if (command) bring_to_device(touched_by(command->changes));
+    if (command) show(*command);
     return command;
 }
 
-VoxelBox Annotator::reach_of(const Command& command) const
+void Annotator::show(const Command& command)
 {
-    const Size3 counts = document().mask.brick_counts(), size = document().mask.size();
-    const Touched touched = touched_by(command.changes);
-    if (touched.painted_bricks.empty() && touched.raised.empty()) return {};
-    VoxelBox box{size, Size3(0)};
-    const auto include = [&](const VoxelBox& more) {
-        box = {glm::min(box.lower, more.lower), glm::max(box.upper, more.upper)};
-    };
-    for (const VoxelBox& raised : touched.raised)
-        include({glm::max(raised.lower - RAISED_REACH, Size3(0)), glm::min(raised.upper + RAISED_REACH, size)});
-    for (const int64_t brick : touched.painted_bricks) {
-        const Size3 first = int64_t(gpu::BRICK_SIZE) * position_of(brick, counts);
-        include({first, glm::min(first + int64_t(gpu::BRICK_SIZE), size)});
-    }
-    return box;
+    bring_to_device(touched_by(command.changes));
+    renderer_.scene().show_trace(document().trace, command.changes);
 }
 
 std::vector<std::string> Annotator::open(const WorkFiles& files, Work::Start start)

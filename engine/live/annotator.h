@@ -66,8 +66,6 @@ public:
     /// The command undone or redone; null where there is nothing left, or a stroke is running.
     const Command* undo();
     const Command* redo();
-    /// The bricks that a command changed lie in this box; empty where it changed none.
-    VoxelBox reach_of(const Command& command) const;
 
     /// As Work's; what is there comes to the device.
     std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
@@ -127,7 +125,8 @@ private:
     PaintPreview preview_with(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
     Touched touched_by(std::span<const Change> changes) const;
-    void bring_to_device(const Touched& touched);
+    void bring_to_device(const Touched& touched, const std::optional<VoxelBox>& within = {});
+    void show(const Command& command);
     Renderer& renderer_;
     std::optional<Stroke> stroke_;
     int64_t last_stroke_voxels_ = 0;

@@ -11,6 +11,7 @@
 #include "engine/formats/open_volume.h"
 #include "engine/look/camera.h"
 #include "engine/look/groups.h"
+#include "engine/look/look.h"
 #include "engine/look/panes.h"
 #include "engine/look/settings.h"
 #include "engine/look/surface_tree.h"
@@ -78,6 +79,9 @@ struct Session {
     std::filesystem::path density_path;  ///< the same, of density offsets
     /// Of what was done, beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
     std::filesystem::path journal_path;
+
+    /// What pictures depend on of it.
+    Look look() const { return {transfer_function, groups, light, blend, cut, render, view.slices}; }
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -13,8 +13,8 @@
 
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/base/error.h"
+#include "engine/device/trace_surfaces.h"
 #include "engine/live/annotator.h"
-#include "engine/live/trace_look.h"
 #include "engine/volume/source_procedural.h"
 
 namespace shvr {
@@ -150,13 +150,13 @@ void long_trace()
         at += glm::dvec3(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
         add(number);
     }
-    const double all = milliseconds_of([&] { show_surfaces(renderer, {}, trace, {}); });
+    const double all = milliseconds_of([&] { renderer.scene().show_surfaces({}, trace, {}); });
     std::vector<double> finding, showing, counting;
     for (uint32_t i = 0; i < ADDED; ++i) {
         at = {uniform(0, 1000), uniform(0, 1000), uniform(0, 1000)};
         finding.push_back(milliseconds_of([&] { trace.nearest_node(at); }));
         const std::vector<Change> changes = add(NODES + i);
-        showing.push_back(milliseconds_of([&] { show_changed_surfaces(renderer, {}, trace, {}, changes); }));
+        showing.push_back(milliseconds_of([&] { renderer.scene().show_trace(trace, changes); }));
         counting.push_back(milliseconds_of([&] { summary_of(trace); }));
     }
     std::printf(

@@ -6,7 +6,6 @@
 #include <iostream>
 
 #include "engine/base/text.h"
-#include "engine/live/trace_look.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
@@ -155,7 +154,8 @@ Opened open(const std::string& path, const Common& common, Work::Start start)
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
-    show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
+    opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
+                                           opened.session.groups);
     return opened;
 }
 
@@ -173,17 +173,17 @@ Json bytes_of(Renderer& renderer)
 
 Json bricks_of(const Renderer& renderer)
 {
-    if (!renderer.paged()) return nullptr;
-    const PagedVolume::Counts counts = renderer.paged()->counts();
-    return {{"slots", counts.slots},
-            {"resident", counts.resident},
-            {"wanted", counts.reached},
-            {"missing", renderer.paged()->missing()},
-            {"finest_level", renderer.paged()->tree() ? renderer.paged()->tree()->finest_level : 0},
-            {"uploads", counts.uploads},
-            {"evictions", counts.evictions},
-            {"loads", counts.store.loads},
-            {"load_failures", counts.store.failures}};
+    const std::optional<DeviceVolume::Counts> counts = renderer.volume().counts();
+    if (!counts) return nullptr;
+    return {{"slots", counts->slots},
+            {"resident", counts->resident},
+            {"wanted", counts->reached},
+            {"missing", renderer.volume().missing()},
+            {"finest_level", renderer.volume().finest_level()},
+            {"uploads", counts->uploads},
+            {"evictions", counts->evictions},
+            {"loads", counts->store.loads},
+            {"load_failures", counts->store.failures}};
 }
 
 Json counters_of(const std::vector<gpu::PassReport>& passes)

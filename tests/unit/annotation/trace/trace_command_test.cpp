@@ -10,7 +10,8 @@
 
 #include "engine/annotation/trace/trace_segments.h"
 #include "engine/base/error.h"
-#include "engine/live/trace_look.h"
+#include "engine/device/trace_surfaces.h"
+#include "engine/live/trace_marks.h"
 
 using namespace shvr;
 
