@@ -358,7 +358,6 @@ Model App::model()
         .device_name = document.touch.device_name(),
         .tool = document.tool,
         .trace = document.annotator.document().trace,
-        .trace_summary = document.trace_summary,
         .nearby_node = document.nearby_node(),
         .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
                                 ? std::optional(document.previewer.shown()->voxels)

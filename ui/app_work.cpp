@@ -33,7 +33,6 @@ void App::show_changes(const Command& command)
     if (!is_traced) return;
     const TraceGraph& trace = document.annotator.document().trace;
     document.drags_node = false;
-    document.trace_summary = summary_of(trace);
     show_changed_surfaces(*renderer_, document.surfaces, trace, document.session.groups, command.changes);
     document.screen.changed(trace_reach(trace, command.changes, document.volume().spacing));
 }

@@ -51,7 +51,7 @@ public:
     void add(const BrushRegion& region, std::span<const uint32_t> words);
     bool contains(const Size3& voxel) const;
     int64_t count() const;
-    using Bits = std::array<uint32_t, MASK_BRICK_VOXELS / 32>;
+    using Bits = std::array<uint32_t, VOXELS_PER_BRICK / 32>;
     const std::map<int64_t, Bits>& bricks() const { return bricks_; }
 
 private:

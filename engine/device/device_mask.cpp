@@ -81,12 +81,12 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
     for (size_t first = 0; first < changed.size(); first += MASK_BRICKS_IN_UPLOAD) {
         const size_t count = std::min<size_t>(MASK_BRICKS_IN_UPLOAD, changed.size() - first);
         std::vector<uint8_t> voxels;
-        voxels.reserve(count * MASK_BRICK_VOXELS);
+        voxels.reserve(count * VOXELS_PER_BRICK);
         std::vector<ImageRegion> regions;
         for (size_t i = 0; i < count; ++i) {
             const MaskBrick& brick = *mask.brick(changed[first + i]);
             voxels.insert(voxels.end(), brick.begin(), brick.end());
-            regions.push_back({i * MASK_BRICK_VOXELS, gpu::mask_slot_origin(slots_.at(changed[first + i])),
+            regions.push_back({i * VOXELS_PER_BRICK, gpu::mask_slot_origin(slots_.at(changed[first + i])),
                                glm::uvec3(gpu::BRICK_SIZE)});
         }
         FrameGraph graph;

@@ -34,7 +34,7 @@ void MaskSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
         for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += box.size().x)
             for (int64_t x = box.lower.x; x < box.upper.x;) {
                 const int64_t end = std::min(box.upper.x, (x / BRICK_SIDE + 1) * BRICK_SIDE);
-                const MaskBrick* brick = mask_.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts));
+                const MaskBrick* brick = mask_.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts)).get();
                 auto* const to = reinterpret_cast<uint8_t*>(row + (x - box.lower.x));
                 if (brick)
                     std::copy_n(

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/annotation/mask.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/annotation/trace/trace_segments.h"
 

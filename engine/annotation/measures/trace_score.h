@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/annotation/mask.h"
 #include "engine/annotation/trace/tracing.h"
 
 namespace shvr {

@@ -26,13 +26,4 @@ struct TraceEffect {
 /// What cannot be done fails with a sentence, and so does what is farther away than the operation allows.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
-/// What a panel tells of a trace.
-struct TraceSummary {
-    size_t nodes = 0, internodes = 0, segments = 0;
-    double length = 0.0;                     ///< of all internodes, in the volume's unit
-    std::map<uint8_t, double> group_length;  ///< by the internodes' groups
-};
-/// Goes through all of it: to be asked once after each change.
-TraceSummary summary_of(const TraceGraph& trace);
-
 }  // namespace shvr

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/annotation/trace/tracing.h"
+#include "engine/volume/volume.h"
 
 namespace shvr {
 

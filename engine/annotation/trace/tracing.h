@@ -18,8 +18,9 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/annotation/mask.h"
+#include "engine/annotation/direction.h"
 #include "engine/annotation/trace/trace_index.h"
+#include "engine/annotation/trace/trace_tally.h"
 
 namespace shvr {
 
@@ -96,13 +97,16 @@ public:
     /// The node nearest to a position; the smallest number of several equally near. Nothing where there is none.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
+    /// Numbers, lengths and segments; kept up to date, so it costs little at any size.
+    TraceSummary summary() const { return tally_.summary_of(*this); }
+
     const TraceSelection& selection() const { return selection_; }
     /// What is selected must be there (SHVR_CHECK).
     void select(TraceSelection selection);
 
     /// Why a record cannot be applied: the trace must hold what it says, a removed node has no internodes, an internode
     /// joins two nodes that are there and not joined yet, what is selected is there. Empty where it fits.
-    std::string misfit(const TraceChange& change, Direction direction) const;
+    std::string why_it_does_not_fit(const TraceChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK). What is removed is no longer selected.
     void apply(const TraceChange& change, Direction direction);
 
@@ -110,10 +114,10 @@ public:
     friend bool operator==(const TraceGraph& left, const TraceGraph& right);
 
 private:
-    std::string misfit_of(const TraceNodeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceInternodeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceSizeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceSelectionChange& change, bool forwards) const;
+    std::string why_not(const TraceNodeChange& change, bool forwards) const;
+    std::string why_not(const TraceInternodeChange& change, bool forwards) const;
+    std::string why_not(const TraceSizeChange& change, bool forwards) const;
+    std::string why_not(const TraceSelectionChange& change, bool forwards) const;
     void set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to);
     void set_internode(uint32_t number, const std::optional<TraceInternode>& from,
                        const std::optional<TraceInternode>& to);
@@ -125,6 +129,7 @@ private:
     uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
     TraceSelection selection_;
     TraceIndex index_;
+    TraceTally tally_;
 };
 
 }  // namespace shvr

@@ -3,7 +3,7 @@
 // doubles as their bits. Any thread may call these.
 //
 // Reading trusts nothing: lengths are checked against the bytes that are there before memory is taken, and what comes out
-// may still not fit a document (Mask::misfit and its like say so).
+// may still not fit a document (Mask::why_it_does_not_fit and the same of other kinds).
 
 #include <cstddef>
 #include <optional>

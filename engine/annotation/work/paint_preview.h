@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/annotation/work/history.h"
+#include "engine/annotation/work/change.h"
 
 namespace shvr {
 

@@ -293,10 +293,12 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
 
 void Work::touch(std::span<const Change> changes)
 {
-    for (const Change& change : changes) {
-        touched_.trace = touched_.trace || std::holds_alternative<TraceChange>(change);
-        touched_.density = touched_.density || std::holds_alternative<DensityBrickChange>(change);
-    }
+    const ByKind touch{
+        [](const MaskBrickChange&) {},  // the mask is written at every save
+        [&](const TraceChange&) { touched_.trace = true; },
+        [&](const DensityBrickChange&) { touched_.density = true; },
+    };
+    for (const Change& change : changes) std::visit(touch, change);
 }
 
 void Work::note_step()
@@ -305,15 +307,16 @@ void Work::note_step()
     history_.shrink(limits_.history_bytes, journal_ ? journal_->durable() : 0);
 }
 
-void Work::perform(Command command)
+const Command* Work::perform(Command command)
 {
-    if (command.changes.empty()) return;
+    if (command.changes.empty()) return nullptr;
     begin_journal();
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     touch(command.changes);
-    history_.perform(document_, std::move(command), number);
+    const Command* const performed = history_.perform(document_, std::move(command), number);
     ++unsaved_;
     note_step();
+    return performed;
 }
 
 void Work::extend(std::vector<Change> changes)

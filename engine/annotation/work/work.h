@@ -49,7 +49,7 @@ public:
 
     /// As History's; into the journal first. Fail, with nothing done, where the journal cannot be begun, is another's, or
     /// does not take the command.
-    void perform(Command command);
+    const Command* perform(Command command);
     void extend(std::vector<Change> changes);
     const Command* undo();
     const Command* redo();
