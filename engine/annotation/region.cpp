@@ -18,8 +18,8 @@ struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last for which `holds`, by that test itself: the estimate, `reach` to
-/// both sides of `centre`, only tells where to begin.
+/// The voxels of `within` from the first to the last for which `holds`. The test itself decides; the estimate, `reach`
+/// to both sides of `centre`, is only where the search begins.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
@@ -177,7 +177,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Where spans were honoured already this changes nothing; where not, nothing is selected outside.
+                // Kernels should keep to the spans; whatever they return, nothing outside is selected.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));

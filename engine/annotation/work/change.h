@@ -1,7 +1,7 @@
 #pragma once
-// Everything that is annotated, and the records through which it changes: exact before and after, so that undo is the same
-// record backwards. A new kind of annotation is one more alternative of `Change`; the compiler then names every place that
-// does not handle it yet.
+// Everything that is annotated, and the records through which it changes: exact before and after, so that undo is the
+// same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler then names every
+// place that does not handle it yet.
 //
 // Not thread safe: the main thread owns a document.
 
@@ -27,8 +27,8 @@ struct Document {
 
 using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange>;
 
-/// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). It does not compile where a
-/// kind is left out.
+/// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). It does not compile where
+/// a kind is left out.
 template <class... Cases>
 struct ByKind : Cases... {
     using Cases::operator()...;
@@ -48,10 +48,10 @@ struct Command {
 
 /// A record that does not fit is our mistake (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// All of them in order, or in reverse order backwards. For records from files: fails with the reason where one does not
-/// fit, and then the document is as it was.
+/// All of them in order, or in reverse order backwards. For records from files: fails with the reason where one does
+/// not fit, and then the document is as it was.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
-/// Memory that they take, about.
+/// About how much memory they take.
 uint64_t memory_of(std::span<const Change> changes);
 
 /// Which parts of a document some changes are about.
