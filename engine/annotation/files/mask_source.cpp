@@ -3,28 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/annotation/files/volume_place.h"
 #include "engine/annotation/files/voxel_strips.h"
 #include "engine/base/error.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
 
-namespace {
-
-VolumeInfo info_of(const Mask& mask, const VolumeInfo& volume)
+MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume)
+    : VolumeSource(info_beside(volume, "mask", VoxelType::uint8)), mask_(mask)
 {
     SHVR_CHECK(mask.size() == volume.size);
-    VolumeInfo info = volume;
-    info.name = "mask";
-    info.format = "mask";
-    info.type = VoxelType::uint8;
-    info.warnings.clear();
-    return info;
 }
-
-}  // namespace
-
-MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume) : VolumeSource(info_of(mask, volume)), mask_(mask) {}
 
 void MaskSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
 {

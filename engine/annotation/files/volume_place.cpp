@@ -43,4 +43,13 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
              digits_of(space.spacing), " ", space.unit, ", the spacing of this volume");
 }
 
+VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type)
+{
+    VolumeInfo info = volume;
+    info.name = info.format = name;
+    info.type = type;
+    info.warnings.clear();
+    return info;
+}
+
 }  // namespace shvr

@@ -14,4 +14,7 @@ bool states_its_size(const std::filesystem::path& path);
 /// Fails, naming both, where the size or stated spacing of `found` differs. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
+/// What describes a volume of annotation, "mask" or "offsets", beside the annotated one: the same place, other voxels.
+VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type);
+
 }  // namespace shvr
