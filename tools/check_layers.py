@@ -33,8 +33,8 @@ MAY_INCLUDE = {
     "engine/formats/export": "engine/base engine/volume",
     "engine/bricks": "engine/base engine/volume engine/look shaders",
     "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
-    "engine/annotation/trace": "engine/base engine/volume engine/annotation engine/components",
-    "engine/annotation/measures": "engine/base engine/volume engine/annotation/trace",
+    "engine/annotation/trace": "engine/base engine/volume engine/annotation",
+    "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "

@@ -29,10 +29,7 @@ void App::show_changes(const Command& command)
     Document& document = *document_;
     const bool is_traced = std::ranges::any_of(
         command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
-    if (!is_traced) return;
-    const TraceGraph& trace = document.annotator.document().trace;
-    document.drags_node = false;
-    document.trace_summary = summary_of(trace);
+    if (is_traced) document.drags_node = false;
 }
 
 void App::apply(const Save&)

@@ -51,7 +51,6 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     is_saved = annotator.work().unsaved() == 0;
     surfaces = std::exchange(session.surfaces, {});
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
-    trace_summary = summary_of(annotator.document().trace);
     const ProbeSettings& probe = session.probe;
     brush = dab_of(session, volume(), statistics);
     brush.path.clear();
@@ -112,8 +111,8 @@ void Document::save()
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
-    annotator.name_files(session.mask_path, session.trace_path, session.density_path);
-    annotator.save(label_looks(session.groups, annotator.document().mask));
+    annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+    annotator.work().save(label_looks(session.groups, annotator.document().mask));
     const std::string text = to_text(saved_session(), folder);
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
     is_saved = true;

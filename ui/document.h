@@ -33,7 +33,6 @@ struct Document {
     bool is_saved = true;               ///< the session; work says it of itself
     Tool tool = Tool::paint;
     bool drags_node = false;  ///< the selected one goes with the probe
-    TraceSummary trace_summary;
 
     bool work_is_saved() const { return annotator.work().unsaved() == 0; }
 

@@ -1,6 +1,7 @@
 #pragma once
-// What one stroke of a brush is: the same description for scripts, the window and a stylus.
+// Brushes, and what one stroke of a brush is: the same description for scripts, the window and a stylus.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,35 @@ namespace shvr {
 
 enum class Brush { fill, flood, speckle };
 
+/// Everything that is written about a brush.
+struct BrushRow {
+    Brush brush;
+    const char* key;    ///< in scripts and sessions
+    const char* name;   ///< in sentences
+    const char* title;  ///< in menus
+    const char* hint;
+    bool is_connected;  ///< it selects connected voxels, so connectivity matters
+};
+
+/// In the order of menus, which is that of the enumeration.
+inline constexpr std::array BRUSHES{
+    BrushRow{Brush::fill, "fill", "fill", "Fill",
+             "Paints every voxel in the probe that is at or above the paint threshold.", false},
+    BrushRow{Brush::flood, "flood", "flood fill", "Flood fill",
+             "Paints what is connected to the centre of the probe: voxels at or above the threshold, inside the probe.",
+             true},
+    BrushRow{
+        Brush::speckle, "speckle", "speckle fill", "Speckle fill",
+        "Paints pieces that lie wholly inside the probe and leaves larger ones alone: clears dirt and noise out of "
+        "the view.",
+        true},
+};
+
+constexpr const BrushRow& row_of(Brush brush)
+{
+    return BRUSHES.at(size_t(brush));
+}
+
 struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
@@ -18,10 +48,13 @@ struct PaintOp {
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
-    /// Offsets for the selected voxels; group 0 takes theirs away.
+    /// Offsets for the selected voxels; group 0 removes theirs.
     std::optional<DensityBrush> density{};
     bool paints_group = true;  ///< false: offsets alone
     bool operator==(const PaintOp&) const = default;
+
+    /// It takes voxels out of their group; their offsets too, where it paints offsets.
+    bool erases() const { return paints_group && group == 0; }
 };
 
 }  // namespace shvr

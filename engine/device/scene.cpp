@@ -94,21 +94,15 @@ void Scene::show(const Document& document)
         update_mask(document.mask, painted);
     std::vector<VoxelBox> raised;
     for (const int64_t brick : document.density.painted_bricks())
-        raised.push_back(voxels_of({0, document.density.position_of(brick)}, info().size));
+        raised.push_back(document.density.box_of(brick));
     if (!raised.empty()) update_density(document.density, raised);
 }
 
 void Scene::show(const Document& document, std::span<const Change> changes, const std::optional<VoxelBox>& within)
 {
-    std::vector<int64_t> painted;
-    std::vector<VoxelBox> raised;
-    for (const Change& change : changes) {
-        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) painted.push_back(mask->brick);
-        if (const auto* density = std::get_if<DensityBrickChange>(&change))
-            raised.push_back(document.density.reach_of(*density));
-    }
-    if (!painted.empty()) update_mask(document.mask, painted, within);
-    if (!raised.empty()) update_density(document.density, raised);
+    const Touched touched = touched_by(document, changes);
+    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
+    if (!touched.raised.empty()) update_density(document.density, touched.raised);
     show_trace(document.trace, changes);
 }
 

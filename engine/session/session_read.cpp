@@ -144,8 +144,9 @@ ProbeSettings read_probe(const JsonNode& node)
         probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)));
     probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
     probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
-    probe.brush = node["brush"].choice(probe.brush,
-                                       {{"fill", Brush::fill}, {"flood", Brush::flood}, {"speckle", Brush::speckle}});
+    std::map<std::string, Brush> brushes;
+    for (const BrushRow& row : BRUSHES) brushes[row.key] = row.brush;
+    probe.brush = node["brush"].choice(probe.brush, brushes);
     probe.region = node["region"].choice(probe.region, {{"ball", RegionShape::ball}, {"box", RegionShape::box}});
     const auto connectivity = int(node["connectivity"].whole(probe.connectivity, 6, 26));
     if (connectivity != 6 && connectivity != 26) node["connectivity"].refuse("6 or 26");

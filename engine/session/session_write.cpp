@@ -209,11 +209,9 @@ OrderedJson write_view(const ViewSettings& view)
 
 OrderedJson write_probe(const ProbeSettings& probe)
 {
-    const std::map<Brush, const char*> brushes{
-        {Brush::fill, "fill"}, {Brush::flood, "flood"}, {Brush::speckle, "speckle"}};
     OrderedJson document = {{"radius_voxels", probe.radius_voxels},
                             {"group", probe.group},
-                            {"brush", brushes.at(probe.brush)},
+                            {"brush", row_of(probe.brush).key},
                             {"region", probe.region == RegionShape::ball ? "ball" : "box"},
                             {"connectivity", probe.connectivity}};
     if (probe.voxel) document["voxel"] = array_of(*probe.voxel);

@@ -103,10 +103,10 @@ void one_stroke(const Folder& folder)
         draw();  // what the last undo left to do
         before.push_back(milliseconds_of(draw));
         selecting.push_back(milliseconds_of([&] { annotator.select(op); }));
-        annotator.flush();
+        annotator.work().flush();
         const uint64_t begun = annotator.work().journal().bytes;
         painting.push_back(milliseconds_of([&] { voxels = annotator.paint(op); }));
-        journaling.push_back(milliseconds_of([&] { annotator.flush(); }));
+        journaling.push_back(milliseconds_of([&] { annotator.work().flush(); }));
         bytes = int64_t(annotator.work().journal().bytes - begun);
         after.push_back(milliseconds_of(draw));
         undoing.push_back(milliseconds_of([&] { annotator.undo(); }));
@@ -157,11 +157,11 @@ void long_trace()
         finding.push_back(milliseconds_of([&] { trace.nearest_node(at); }));
         const std::vector<Change> changes = add(NODES + i);
         showing.push_back(milliseconds_of([&] { renderer.scene().show_trace(trace, changes); }));
-        counting.push_back(milliseconds_of([&] { summary_of(trace); }));
+        counting.push_back(milliseconds_of([&] { trace.summary(); }));
     }
     std::printf(
         "a node more in a trace of %u: nearest node %.3f ms, its surfaces %.2f ms (all of them %.0f ms), "
-        "lengths and segments %.0f ms\n",
+        "lengths and segments %.4f ms\n",
         NODES, median(finding), median(showing), all, median(counting));
 }
 

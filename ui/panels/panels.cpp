@@ -114,7 +114,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     section("Probe and painting", true, probe_panel, model, actions);
     // Who paints needs the room for the transfer function; who traces sees it, whatever was folded.
     if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
-    section("Tracing", model.trace_summary.nodes > 0, trace_panel, model, actions);
+    section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);
     section("Light and depth", false, light_panel, model, actions);
     section("Ambient occlusion", false, occlusion_panel, model, actions);

@@ -87,7 +87,7 @@ public:
         return value.get<int64_t>();
     }
     /// The index of the value among `names`.
-    size_t choice(const char* key, const Json& value, std::initializer_list<const char*> names) const
+    size_t choice(const char* key, const Json& value, const std::vector<const char*>& names) const
     {
         std::string known;
         size_t index = 0;
@@ -157,11 +157,18 @@ private:
     std::string where_;
 };
 
+std::vector<const char*> brush_keys()
+{
+    std::vector<const char*> keys;
+    for (const BrushRow& row : BRUSHES) keys.push_back(row.key);
+    return keys;
+}
+
 /// The keys that say which voxels are meant.
 PaintOp read_brush(const Fields& fields)
 {
     PaintOp op;
-    op.brush = Brush(fields.choice("brush", fields.need("brush"), {"fill", "flood", "speckle"}));
+    op.brush = BRUSHES.at(fields.choice("brush", fields.need("brush"), brush_keys())).brush;
     if (const Json* region = fields.find("region"))
         op.region = RegionShape(fields.choice("region", *region, {"ball", "box"}));
     op.threshold = fields.number("threshold", fields.need("threshold"));
