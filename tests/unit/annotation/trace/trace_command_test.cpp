@@ -21,7 +21,7 @@ namespace {
 const TraceDefaults DEFAULTS{.spacing = {2.0, 3.0, 4.0}, .radius_voxels = 5.0, .group = 7};
 
 /// A document that takes operations.
-struct Work {
+struct Tracing {
     Document document{.mask = Mask(Size3(64)), .trace = {}};
     History history;
 
@@ -41,7 +41,7 @@ SelectOp nearest(const glm::dvec3& voxel, std::optional<double> within = {})
     return {.near = voxel, .number = {}, .is_internode = false, .within_voxels = within};
 }
 
-std::string refusal(const Work& work, const TraceOp& op)
+std::string refusal(const Tracing& work, const TraceOp& op)
 {
     try {
         static_cast<void>(work.effect(op));
@@ -55,7 +55,7 @@ std::string refusal(const Work& work, const TraceOp& op)
 
 TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's size and group where none is given")
 {
-    Work work;
+    Tracing work;
     work.perform(work.node_at({10, 10, 10}));
     CHECK(work.trace().node(0) == TraceNode{{20, 30, 40}, 10.0, 7});
     work.perform(NodeOp{.at = {11, 10, 10}, .radius_voxels = 1.5, .group = 3});
@@ -66,7 +66,7 @@ TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's si
 
 TEST_CASE("selecting is no step of the history, and what is too far away is not taken")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
     const size_t steps = work.history.undoable();
     CHECK(work.effect(nearest({19, 10, 10})).changes.empty());
@@ -89,7 +89,7 @@ TEST_CASE("selecting is no step of the history, and what is too far away is not 
 
 TEST_CASE("link, move, size, group and delete are one step each, and undone they leave what was")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const TraceOp edits[] = {LinkOp{.near = glm::dvec3(9, 10, 10), .node = {}, .within_voxels = 5.0},
                              MoveOp{{31, 12, 10}},
@@ -115,7 +115,7 @@ TEST_CASE("link, move, size, group and delete are one step each, and undone they
 
 TEST_CASE("a summary counts segments and adds lengths up by group")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     work.perform(nearest({20, 10, 10}));
     work.perform(NodeOp{.at = {20, 20, 10}, .radius_voxels = 1.0, .group = 2});
@@ -212,8 +212,8 @@ TEST_CASE("a summary kept through random commands, undone and redone, is that of
 
 TEST_CASE("what is added far away and taken back leaves no trace in a length")
 {
-    Work work;
-    for (const double x : {10.0, 10.0625, 30.0}) work.perform(work.node_at({x, 10, 10}));
+    Tracing work;
+    for (const double x : {10.0, 10.1, 30.7}) work.perform(work.node_at({x, 10, 10}));
     const TraceSummary before = work.trace().summary();
     work.perform(work.node_at({1e11, 10, 10}));
     CHECK(work.trace().summary().length > 1e11);
@@ -224,7 +224,7 @@ TEST_CASE("what is added far away and taken back leaves no trace in a length")
 
 TEST_CASE("what is drawn again holds what was there and what is there")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const auto reach_of_last = [&](const TraceOp& op) {
         const TraceEffect made = work.effect(op);
@@ -248,7 +248,7 @@ TEST_CASE("what is drawn again holds what was there and what is there")
 
 TEST_CASE("the selected node is marked yellow where it is or where it is dragged, and the nearby one purple")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const TraceMarks marks = trace_marks(work.trace(), 0, 1.0);
     REQUIRE(marks.balls.size() == 2);
