@@ -9,6 +9,18 @@
 namespace shvr {
 
 enum class Brush { fill, flood, speckle };
+inline constexpr Spelling<Brush> BRUSHES[] = {
+    {Brush::fill, "fill"}, {Brush::flood, "flood"}, {Brush::speckle, "speckle"}};
+constexpr std::span<const Spelling<Brush>> spellings_of(Brush)
+{
+    return BRUSHES;
+}
+
+inline constexpr Spelling<RegionShape> REGION_SHAPES[] = {{RegionShape::ball, "ball"}, {RegionShape::box, "box"}};
+constexpr std::span<const Spelling<RegionShape>> spellings_of(RegionShape)
+{
+    return REGION_SHAPES;
+}
 
 struct PaintOp {
     Brush brush = Brush::flood;

@@ -78,6 +78,7 @@ struct Session {
     std::filesystem::path density_path;  ///< the same, of density offsets
     /// Of what was done, beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
     std::filesystem::path journal_path;
+    bool operator==(const Session&) const = default;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
