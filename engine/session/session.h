@@ -30,21 +30,13 @@ struct InteractionSettings {
 /// Where a person works, and with what. What is not given here is chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
-    double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
-    uint8_t group = 1;                ///< that is painted
-    Brush brush = Brush::flood;
-    RegionShape region = RegionShape::ball;
-    int connectivity = 6;                    ///< 6 or 26
-    std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
-    std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    BrushSettings brush;
+    std::optional<double> haptic_threshold;  ///< intensity; the brush's threshold
     bool shown = false;                      ///< in pictures; the window shows it always
-    /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
+    /// An iso-surface at the brush's threshold in the probe's region: what density painting would lift over it.
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
     bool preview = false;        ///< what the brush would change there is drawn
-    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
-    std::optional<DensityBrush> density;
-    bool paints_group = true;  ///< false, where there is `density`: offsets alone
     bool operator==(const ProbeSettings&) const = default;
 };
 

@@ -245,18 +245,19 @@ void fields(Fields& f, Groups& groups)
 
 void fields(Fields& f, ProbeSettings& probe)
 {
+    BrushSettings& brush = probe.brush;
     constexpr const char* INTENSITIES = "the file's intensities";
-    f.number("radius_voxels", probe.radius_voxels, above_zero(1e-3, 127.0),
+    f.number("radius_voxels", brush.radius_voxels, above_zero(1e-3, 127.0),
              {.meaning = "of the probe and its brush, along x", .allowed = "voxels, above 0 ... 127"});
-    f.whole("group", probe.group, 0, 255, {"the group it paints; 0 erases"});
-    f.choice("brush", probe.brush, {"which voxels of its region it paints"});
-    f.choice("region", probe.region, {"the region's shape"});
-    f.whole("connectivity", probe.connectivity, 6, 26,
+    f.whole("group", brush.group, 0, 255, {"the group it paints; 0 erases"});
+    f.choice("brush", brush.brush, {"which voxels of its region it paints"});
+    f.choice("region", brush.region, {"the region's shape"});
+    f.whole("connectivity", brush.connectivity, 6, 26,
             {.meaning = "neighbours of a voxel, for flood and speckle", .allowed = "6 or 26"});
-    f.check("connectivity", probe.connectivity == 6 || probe.connectivity == 26, "6 or 26");
+    f.check("connectivity", brush.connectivity == 6 || brush.connectivity == 26, "6 or 26");
     f.vector("voxel", probe.voxel, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
              {.meaning = "where the probe is", .unit = "voxels", .standard = "the volume's middle"});
-    f.number("paint_threshold", probe.paint_threshold, INTENSITY,
+    f.number("paint_threshold", brush.threshold, INTENSITY,
              {.meaning = "voxels at or above it are painted",
               .allowed = INTENSITIES,
               .standard = "the middle of what the transfer function shows"});
@@ -272,15 +273,15 @@ void fields(Fields& f, ProbeSettings& probe)
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",
         .standard = "none"};
-    if (f.has("density", probe.density.has_value())) {
-        if (!probe.density) probe.density.emplace();
+    if (f.has("density", brush.density.has_value())) {
+        if (!brush.density) brush.density.emplace();
         f.section(
-            "density", [&](Fields& inner) { density_fields(inner, *probe.density); }, density);
+            "density", [&](Fields& inner) { density_fields(inner, *brush.density); }, density);
     } else {
         f.mention("density", density);
     }
-    f.flag("paints_group", probe.paints_group, {"false, with `probe.density`: offsets alone"});
-    f.check("paints_group", probe.paints_group || probe.density, "true, where there is no probe.density");
+    f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: offsets alone"});
+    f.check("paints_group", brush.paints_group || brush.density, "true, where there is no probe.density");
 }
 
 void fields(Fields& f, SurfaceLook& surface)

@@ -146,8 +146,9 @@ TEST_CASE("every key of a session is read")
           ViewSettings{Arrangement::slices, {StereoOutput::top_bottom, 0.0625, true}, {-20.0, 300.5, 0.25, 3.0}, 1.5});
     CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
-    CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), 2.5, 7, Brush::speckle, RegionShape::box, 26, 120.5,
-                                         -3, true, true, 0.25, true, DensityBrush{12.5, Falloff::distance}, false});
+    const BrushSettings brush{
+        Brush::speckle, RegionShape::box, 7, 120.5, 2.5, 26, DensityBrush{12.5, Falloff::distance}, false};
+    CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), brush, -3, true, true, 0.25, true});
     CHECK((session.surfaces == std::vector<SurfaceLook>{{{1, 2, -3.5}, {1, 2, -3.5}, 0.25, 0.25, color("#d03020")},
                                                         {{0, 0, 0}, {10, 20, 30}, 2.0, 1.5, glm::dvec3(1)},
                                                         {{5, 5, 5}, {6, 5, 5}, 3.0, 3.0, glm::dvec3(1)}}));
