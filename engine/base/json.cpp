@@ -42,11 +42,12 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// What the parser says is wrong, in printable ASCII: it quotes bytes as they are.
+/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as they are.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
     if (const size_t bracket = reason.find("] "); bracket != std::string::npos) reason.erase(0, bracket + 2);
+    reason = reason.substr(0, reason.find("; expected"));
     if (reason.size() > LONGEST_REASON) reason = reason.substr(0, LONGEST_REASON) + "...";
     std::ranges::replace_if(
         reason, [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -125,11 +126,11 @@ JsonDocument::JsonDocument(std::string_view text, std::string origin, const Json
 {
     // The parser would take a zero byte for the end.
     if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
-        fail(origin_, ": is not JSON: byte ", zero + 1, " is zero");
+        fail(origin_, ": is not JSON: byte ", zero + 1, " is zero; expected ", limits.expected);
     try {
         value_ = std::make_unique<json>(json::parse(text, Strictness(origin_, limits)));
     } catch (const json::exception& error) {
-        fail(origin_, ": is not JSON: ", reason_of(error));
+        fail(origin_, ": is not JSON: ", reason_of(error), "; expected ", limits.expected);
     }
 }
 
@@ -201,7 +202,7 @@ std::string JsonNode::refusal(const std::string& expected) const
 
 void JsonNode::refuse_because(const std::string& reason) const
 {
-    fail(subject(), ": ", reason);
+    fail(value_ == &document_->value() ? document_->origin() : subject(), ": ", reason);
 }
 
 void JsonNode::allow(std::span<const std::string_view> known) const

@@ -40,7 +40,7 @@ NumberRange above_zero(double lower, double upper);
 /// What a text must keep to before its values are looked at.
 struct JsonLimits {
     int depth = 16;                      ///< levels of nesting; reading and showing values takes stack for each
-    const char* expected = "an object";  ///< instead of what nests deeper
+    const char* expected = "an object";  ///< instead of what is not JSON, or nests deeper
     bool may_repeat_keys = false;        ///< the last one holds: for the metadata of other programs
 };
 
