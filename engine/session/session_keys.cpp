@@ -338,7 +338,7 @@ void fields(Fields& f, Session& session)
                          .allowed = "array of at most 100000",
                          .standard = "none"};
     if (f.has("surfaces", !session.surfaces.empty()))
-        f.list("surfaces", session.surfaces, MOST_SESSION_SURFACES, surfaces);
+        f.list("surfaces", session.surfaces, MAX_SESSION_SURFACES, surfaces);
     else
         f.mention("surfaces", surfaces);
     const bool has_files = !session.mask_path.empty() || !session.trace_path.empty() || !session.density_path.empty();

@@ -22,6 +22,16 @@ Session parse(const std::string& text, const std::vector<std::string>& settings 
     return parse_session(text, "/data/scans", "s.json", settings);
 }
 
+/// Without the comma at the end, which a line has where another follows.
+std::vector<std::string> lines_of(const std::string& text)
+{
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line); lines.push_back(line))
+        if (line.ends_with(',')) line.pop_back();
+    return lines;
+}
+
 std::string row_of(const SessionKey& key)
 {
     std::string name = key.name;
@@ -32,14 +42,21 @@ std::string row_of(const SessionKey& key)
 
 }  // namespace
 
-TEST_CASE("a session is written as version 1 has always been written")
+TEST_CASE("a session is written as version 1 has always been written, but for keys that are new")
 {
     // Written by the program of commit 1462cd9, before keys were stated once.
     for (const char* file :
          {"tests/unit/session/written_everything.json", "tests/unit/session/written_procedural.json"}) {
         CAPTURE(file);
         const std::string text = read_text(file, 1 << 20);
-        CHECK(to_text(parse(text), "/data/scans") == text);
+        const std::vector<std::string> before = lines_of(text), now = lines_of(to_text(parse(text), "/data/scans"));
+        auto at = now.begin();
+        for (const std::string& line : before) {
+            at = std::find(at, now.end(), line);
+            CAPTURE(line);
+            REQUIRE(at != now.end());
+            ++at;
+        }
     }
 }
 
