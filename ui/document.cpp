@@ -88,20 +88,9 @@ Session Document::saved_session() const
     saved.surfaces = surfaces;
     saved.cameras[WINDOW_CAMERA] = camera;
     saved.camera_name = WINDOW_CAMERA;
-    saved.probe = {.voxel = probe_voxel(),
-                   .radius_voxels = brush.radius_voxels,
-                   .group = brush.group,
-                   .brush = brush.brush,
-                   .region = brush.region,
-                   .connectivity = brush.connectivity,
-                   .paint_threshold = brush.threshold,
-                   .haptic_threshold = haptic_threshold,
-                   .shown = session.probe.shown,
-                   .shell = session.probe.shell,
-                   .shell_opacity = session.probe.shell_opacity,
-                   .preview = session.probe.preview,
-                   .density = brush.density,
-                   .paints_group = brush.paints_group};
+    saved.probe.voxel = probe_voxel();
+    saved.probe.brush = settings_of(brush);
+    saved.probe.haptic_threshold = haptic_threshold;
     return saved;
 }
 

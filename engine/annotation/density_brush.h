@@ -11,10 +11,16 @@
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/region.h"
+#include "engine/base/spelling.h"
 
 namespace shvr {
 
 enum class Falloff { flat, distance };
+inline constexpr Spelling<Falloff> FALLOFFS[] = {{Falloff::flat, "flat"}, {Falloff::distance, "distance"}};
+constexpr std::span<const Spelling<Falloff>> spellings_of(Falloff)
+{
+    return FALLOFFS;
+}
 
 /// The density part of a brush: painted together with a group or instead of one.
 struct DensityBrush {

@@ -6,16 +6,8 @@ namespace shvr {
 
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics)
 {
-    const ProbeSettings& probe = session.probe;
-    return {.brush = probe.brush,
-            .region = probe.region,
-            .group = probe.group,
-            .threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
-            .radius_voxels = probe.radius_voxels,
-            .connectivity = probe.connectivity,
-            .path = {probe.voxel.value_or(0.5 * glm::dvec3(volume.size))},
-            .density = probe.density,
-            .paints_group = probe.paints_group};
+    return stroke_of(session.probe.brush, automatic_threshold(session.transfer_function, statistics),
+                     {session.probe.voxel.value_or(0.5 * glm::dvec3(volume.size))});
 }
 
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator)

@@ -18,16 +18,16 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
     const ProbeSettings& probe = session.probe;
     if (!probe.shown && !probe.shell && !probe.preview) return std::nullopt;
     ProbeLook look{.center = probe.voxel.value_or(0.5 * glm::dvec3(volume.size)) * volume.spacing,
-                   .radius = probe.radius_voxels * volume.spacing.x,
-                   .color = probe_color(session, probe.group),
+                   .radius = probe.brush.radius_voxels * volume.spacing.x,
+                   .color = probe_color(session, probe.brush.group),
                    .ball_share = !probe.shown                   ? 0.0
                                  : probe.shell || probe.preview ? BALL_IN_SHELL
                                                                 : 1.0};
     if (probe.shell)
         look.shell = ShellLook{
-            .threshold = probe.paint_threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
+            .threshold = probe.brush.threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
             .opacity = probe.shell_opacity,
-            .is_box = probe.region == RegionShape::box};
+            .is_box = probe.brush.region == RegionShape::box};
     return look;
 }
 

@@ -27,6 +27,7 @@ struct ProceduralSpec {
     /// Levels, each the same function at the centres of larger voxels. 0: one, or above 2^33 voxels as many as it takes
     /// to end with a single brick.
     int levels = 0;
+    bool operator==(const ProceduralSpec&) const = default;
 };
 
 /// Voxels are the field at their centres, rounded half up; for int8 every intensity is lowered by 128, so that none is

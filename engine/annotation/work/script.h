@@ -1,5 +1,5 @@
 #pragma once
-// Scripts of `shvr annotate`: one JSON object per line; blank lines and lines starting with // are skipped. The window
+// Scripts of `shvr annotate`: one JSON object a line; blank lines and lines that start with // are skipped. The window
 // sends the same structs, so keys, menus, scripts and a stylus share one language.
 
 #include <filesystem>
