@@ -97,7 +97,7 @@ void DeviceMask::send_bricks(const Mask& mask, std::span<const int64_t> bricks)
         submit(std::move(graph));
     };
     for (const int64_t number : bricks) {
-        const MaskBrick* const brick = mask.brick(number);
+        const std::shared_ptr<const MaskBrick> brick = mask.brick(number);
         if (!brick) continue;
         regions.push_back({voxels.size(), gpu::mask_slot_origin(slots_.at(number)), glm::uvec3(gpu::BRICK_SIZE)});
         voxels.insert(voxels.end(), brick->begin(), brick->end());
