@@ -25,7 +25,6 @@ struct InteractionSettings {
     double resolution = 0.7;  ///< of the screen's, along each axis, while something moves; less where that is slow
     double frames_per_second = 30.0;  ///< at most
     uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
-    double zoom_per_notch = 1.1;      ///< of the mouse wheel
     bool operator==(const InteractionSettings&) const = default;
 };
 

@@ -134,8 +134,6 @@ void fields(Fields& f, InteractionSettings& interaction)
     f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"at most"});
     f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
             {"of large screenshots: pixels for one of the window, along each axis"});
-    f.number("zoom_per_notch", interaction.zoom_per_notch, {1.0, 2.0},
-             {"what a notch of the wheel multiplies the zoom by"});
 }
 
 void fields(Fields& f, CutBox& cut)
