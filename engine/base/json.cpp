@@ -54,28 +54,52 @@ std::string reason_of(const json::exception& error)
     return reason;
 }
 
-/// Refuses what the parser itself lets pass: depth, and a key given twice, of which it would silently keep the last.
-class Strictness {
+/// Goes through a text and refuses what is not JSON, and what the parser itself lets pass: depth, and a key given twice, of
+/// which it would silently keep the last. A pass of its own: given to the parser as its callback, it would make that one
+/// search the whole of an array at the end of each element.
+class Strictness : public nlohmann::json_sax<json> {
 public:
     Strictness(const std::string& origin, const JsonLimits& limits) : origin_(&origin), limits_(limits) {}
 
-    bool operator()(int depth, json::parse_event_t event, const json& parsed)
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(size_t) override { return enter(); }
+    bool start_array(size_t) override { return enter(); }
+    bool end_object() override { return leave(); }
+    bool end_array() override { return leave(); }
+    bool key(string_t& name) override
     {
-        if (depth > limits_.depth)
-            fail(*origin_, ": JSON nests deeper than ", limits_.depth, " levels; expected ", limits_.expected);
-        if (limits_.may_repeat_keys) return true;
-        if (event == json::parse_event_t::object_start) keys_.emplace_back();
-        if (event == json::parse_event_t::object_end) keys_.pop_back();
-        if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
-            fail(*origin_, ": key ", shown_key(parsed.get<std::string>()),
-                 " appears twice in one object; expected once");
+        if (!keys_.back().insert(name).second && !limits_.may_repeat_keys)
+            fail(*origin_, ": key ", shown_key(name), " appears twice in one object; expected once");
         return true;
+    }
+    bool parse_error(size_t, const std::string&, const json::exception& error) override
+    {
+        fail(*origin_, ": is not JSON: ", reason_of(error), "; expected ", limits_.expected);
     }
 
 private:
+    bool enter()
+    {
+        keys_.emplace_back();
+        if (keys_.size() > size_t(limits_.depth))
+            fail(*origin_, ": JSON nests deeper than ", limits_.depth, " levels; expected ", limits_.expected);
+        return true;
+    }
+    bool leave()
+    {
+        keys_.pop_back();
+        return true;
+    }
+
     const std::string* origin_;
     JsonLimits limits_;
-    std::vector<std::set<std::string>> keys_;
+    std::vector<std::set<std::string>> keys_;  ///< of each level that is open
 };
 
 std::string joined(const std::string& before, const std::string& name)
@@ -127,11 +151,9 @@ JsonDocument::JsonDocument(std::string_view text, std::string origin, const Json
     // The parser would take a zero byte for the end.
     if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
         fail(origin_, ": is not JSON: byte ", zero + 1, " is zero; expected ", limits.expected);
-    try {
-        value_ = std::make_unique<json>(json::parse(text, Strictness(origin_, limits)));
-    } catch (const json::exception& error) {
-        fail(origin_, ": is not JSON: ", reason_of(error), "; expected ", limits.expected);
-    }
+    Strictness strictness(origin_, limits);
+    json::sax_parse(text, &strictness);
+    value_ = std::make_unique<json>(json::parse(text));
 }
 
 JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;

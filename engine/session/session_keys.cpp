@@ -286,7 +286,7 @@ void fields(Fields& f, ProbeSettings& probe)
 
 void fields(Fields& f, SurfaceLook& surface)
 {
-    const NumberRange size = above_zero(1e-12, 1e15);
+    static const NumberRange SIZE = above_zero(1e-12, 1e15);
     const bool is_ball = surface.to == surface.from, is_even = surface.radius_to == surface.radius_from;
     std::optional<glm::dvec3> to = is_ball ? std::nullopt : std::optional(surface.to);
     std::optional<double> radius = is_even ? std::optional(surface.radius_from) : std::nullopt;
@@ -308,10 +308,10 @@ void fields(Fields& f, SurfaceLook& surface)
                     .standard = "required, or `radius`"};
     if (has_radii) {
         f.mention("radius", one);
-        f.numbers("radii", radii, size, two);
+        f.numbers("radii", radii, SIZE, two);
         if (radii) std::tie(surface.radius_from, surface.radius_to) = std::tie(radii->x, radii->y);
     } else {
-        f.number("radius", radius, size, one);
+        f.number("radius", radius, SIZE, one);
         f.mention("radii", two);
         if (radius) surface.radius_from = surface.radius_to = *radius;
     }
