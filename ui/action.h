@@ -157,4 +157,15 @@ using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFro
                             Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
+/// Looking from elsewhere and moving the probe: no reason to save.
+inline bool moves_view(const Action& action)
+{
+    const auto is = [&]<class... Kinds>(std::variant<Kinds...>*) {
+        return (std::holds_alternative<Kinds>(action) || ...);
+    };
+    return is(static_cast<
+              std::variant<Orbit, Roll, Move, Zoom, DragInMap, LookFrom, MoveClip, ProbeTo, ProbeOnto, PushProbe>*>(
+        nullptr));
+}
+
 }  // namespace shvr::ui

@@ -59,27 +59,46 @@ void App::say(const std::string& status)
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }
 
+/// The device holds one volume at a time. The document before stays until the next one stands, and comes back if it cannot.
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
-    opened_s_ = window_.now_s();
-    report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
+    const double begun_s = window_.now_s();
     OpenedSession opened = open_session(path, settings);
     large_screenshot_.reset();
-    document_.reset();  // its volume gives way before the next takes memory
-    std::string device_said;
-    std::unique_ptr<HapticDevice> device = find_device(device_said);
     View::Options view_options;
     view_options.swap_red_blue = window_.swaps_red_and_blue();
-    auto document = std::make_unique<Document>(*renderer_, std::move(opened), path, std::move(device), "haptic device",
-                                               view_options);
-    document_ = std::move(document);
-    window_.set_title("SHVR");  // until it can be seen
+    if (document_) document_->screen.clear();
     look_again();
+    try {
+        document_ = Document::open(*renderer_, std::move(opened), path, view_options, !settings.empty());
+    } catch (const Error& error) {
+        if (!document_) throw;
+        bring_back(error.what());
+    }
+    opened_s_ = begun_s;
+    report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
+    std::string device_said;
+    if (std::unique_ptr<HapticDevice> device = find_device(device_said))
+        document_->touch.use(std::move(device), "haptic device");
+    window_.set_title("SHVR");  // until it can be seen
     std::string status = "Opened " + path.string();
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const std::string& message : document_->messages) status += "; " + message;
     if (!device_said.empty()) status += "; " + device_said;
     say(status);
+}
+
+/// After the next scan could not be opened. Fails in any case, with a sentence that says why and what is open.
+void App::bring_back(const std::string& why)
+{
+    const std::string before = document_->session_path.string();
+    try {
+        document_->show_again(*renderer_);
+    } catch (const Error& error) {
+        document_.reset();
+        fail(why, "; ", before, " cannot be shown again either: ", error.what(), "; it is saved");
+    }
+    fail(why, "; ", before, " stays open");
 }
 
 /// A device that cannot be used is told of, and the mouse takes its place.
@@ -99,7 +118,7 @@ std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 void App::run()
 {
     while (!closes()) {
-        handle_events(time_to_wait());
+        attempt(events_, [this] { handle_events(time_to_wait()); });
         apply_all();
         work();
         note_presented();
@@ -107,25 +126,69 @@ void App::run()
         const double frames_per_second =
             (document_ ? document_->session.interaction : InteractionSettings{}).frames_per_second;
         if (now < next_frame_s_ || now < next_reason_to_draw_s()) continue;
-        draw_ui();
+        draw();
         next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
     }
     if (screenshot_.valid()) screenshot_.wait();
 }
 
-/// Paint is never lost: it is saved before the window goes, and where that fails the window stays.
+template <class Part>
+void App::attempt(Attempt& state, Part part)
+{
+    if (window_.now_s() < state.again_s) return;
+    try {
+        part();
+    } catch (const std::exception& error) {
+        note_failure(state, error.what());
+    }
+}
+
+void App::note_failure(Attempt& state, const std::string& why)
+{
+    constexpr double AGAIN_S = 0.25, SAY_AGAIN_S = 1.0;
+    const double now = window_.now_s();
+    const bool is_known = state.failed_s > 0.0 && why == state.said && now - state.failed_s < SAY_AGAIN_S;
+    if (!is_known) say(why);
+    state = {.said = why, .failed_s = now, .again_s = now + AGAIN_S};
+}
+
+/// A window that shows nothing any more is of no use: then the program ends with the reason.
+void App::draw()
+{
+    constexpr double PATIENCE_S = 10.0;
+    bool is_drawn = false;
+    attempt(drawing_, [&] {
+        draw_ui();
+        is_drawn = true;
+    });
+    if (is_drawn) return undrawn_since_s_.reset();
+    const double now = window_.now_s();
+    if (!undrawn_since_s_) undrawn_since_s_ = now;
+    if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", drawing_.said);
+}
+
+/// Work is never lost: it is saved before the window goes, and where that fails the window stays.
 bool App::closes()
 {
     if (!window_.should_close()) return false;
-    if (!document_ || document_->work_is_saved()) return true;
+    if (!document_) return true;
     try {
-        save();
+        save_before_leaving();
         return true;
-    } catch (const Error& error) {
-        say(std::string("The window stays open, since the paint could not be saved: ") + error.what());
-        window_.stay_open();
-        return false;
+    } catch (const std::exception& error) {
+        return !refuses_to_close(error.what());
     }
+}
+
+/// Paint is kept at any price. What was set is given up where a person closes the window a second time.
+bool App::refuses_to_close(const std::string& why)
+{
+    if (document_->work_is_saved() && was_asked_to_close_) return false;
+    was_asked_to_close_ = true;
+    say("The window stays open, since not all could be saved: " + why +
+        (document_->work_is_saved() ? "; close it again to leave without saving" : ""));
+    window_.stay_open();
+    return true;
 }
 
 bool App::something_moves() const
@@ -186,7 +249,8 @@ void App::apply_all()
         if (needs_document && !document_) continue;
         try {
             std::visit([&](const auto& what) { apply(what); }, action);
-        } catch (const Error& error) {
+            if (document_ && !moves_view(action)) note_edit();
+        } catch (const std::exception& error) {
             say(error.what());
         }
     }
@@ -207,31 +271,44 @@ TouchSettings App::touch_settings() const
 void App::work()
 {
     if (!document_) return;
+    attempt(touching_, [this] { follow_device(); });
+    attempt(painting_, [this] { follow_stroke(); });
+    attempt(previewing_, [this] { show_preview(); });
+    attempt(looking_, [this] { follow_look(); });
+    for (const std::string& message : renderer_->take_messages()) say(message);
+    attempt(photographing_, [this] { follow_screenshots(); });
+}
+
+void App::follow_device()
+{
+    Touch& touch = document_->touch;
+    touch.advance(touch_settings());
+    if (const bool paints = touch.paint_button(); paints != std::exchange(device_paints_, paints))
+        actions_.emplace_back(Paint{paints});
+}
+
+void App::follow_stroke()
+{
     Document& document = *document_;
-    document.touch.advance(touch_settings());
-    if (const bool paints = document.touch.buttons() & 1; paints != device_paints_) {
-        device_paints_ = paints;
-        apply(Paint{paints});
-    }
-    extend_stroke();
-    const bool stroke_was_running = document.annotator.stroke_is_running();
-    try {
-        if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
-    } catch (const Error& error) {
-        return say(error.what());
-    }
-    if (const std::string failure = document.annotator.work().journal().failure; failure != journal_failure_) {
+    const std::string failure = document.annotator.work().journal().failure;
+    if (failure != journal_failure_)
         say(failure.empty() ? "The journal is written again: all that was done is kept" : failure);
-        journal_failure_ = failure;
-    }
-    if (stroke_was_running && !document.annotator.stroke_is_running()) stroke_ended();
-    show_preview();
+    journal_failure_ = failure;
+    if (!document.annotator.stroke_is_running()) return;
+    extend_stroke();
+    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+    if (!document.annotator.stroke_is_running()) stroke_ended();
+}
+
+void App::follow_look()
+{
+    Document& document = *document_;
     if (viewport_.pixels().x > 0 && viewport_.pixels().y > 0) {
-        const bool moved = std::exchange(camera_moved_, false);
-        if (std::exchange(look_is_stale_, false))
+        if (look_is_stale_)
             document.screen.look(document.session, document.camera, viewport_.pixels(), document.probe_voxel());
-        else if (moved)
+        else if (camera_moved_)
             document.screen.look_from(document.camera, document.probe_voxel());
+        look_is_stale_ = camera_moved_ = false;
     }
     // A running stroke or touch names what it needs itself.
     if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
@@ -239,7 +316,10 @@ void App::work()
     renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
-    for (const std::string& message : renderer_->take_messages()) say(message);
+}
+
+void App::follow_screenshots()
+{
     if (wants_screenshot_) finish_screenshot();
     if (large_screenshot_) advance_large_screenshot();
     if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
@@ -253,9 +333,9 @@ void App::draw_ui()
     // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
     // for below; and the view learns what its work costs without the interface's share.
     if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
-    window_.begin_ui();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
+    window_.begin_ui();
     if (document_) {
         layout = draw_panels(model(), window_.pixels(), actions_);
         draw_strokes();
@@ -366,7 +446,7 @@ Model App::model()
         .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
         .undoable = document.annotator.history().undoable(),
         .redoable = document.annotator.history().redoable(),
-        .is_saved = document.is_saved && document.work_is_saved(),
+        .is_saved = document.is_saved(),
         .status = status_,
         .shows_help = shows_help_,
         .gpu_name = renderer_->device().traits().name,

@@ -61,6 +61,8 @@ public:
 
 private:
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    [[noreturn]] void bring_back(const std::string& why);
+    void note_edit();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void handle_events(double timeout_s);
     void work();
@@ -72,17 +74,35 @@ private:
     double time_to_wait() const;
     void apply_all();
     void say(const std::string& status);
+    /// A part of a turn. Where it fails, that is said once, and the part is tried again a little later: whatever fails, the
+    /// window stays, and so does all that was done in it.
+    struct Attempt {
+        std::string said;       ///< of the last failure
+        double failed_s = 0.0;  ///< when that was; 0: never
+        double again_s = 0.0;
+    };
+    template <class Part>
+    void attempt(Attempt& state, Part part);
+    void note_failure(Attempt& state, const std::string& why);
+    void draw();
     void look_again() { look_is_stale_ = true; }
     void look_from_elsewhere() { camera_moved_ = true; }
     const Pane& pane(size_t index) const;
     void note_presented();
     TouchSettings touch_settings() const;
+    void follow_device();
+    void follow_stroke();
+    void follow_look();
+    void follow_screenshots();
     void extend_stroke();
+    std::string finish_stroke();
     void show_changes(const Command& command);
     void stroke_ended();
     void show_preview();
     void save();
+    void save_before_leaving();
     bool closes();
+    bool refuses_to_close(const std::string& why);
     void finish_screenshot();
     void advance_large_screenshot();
     void write_screenshot(Image8 image);
@@ -144,6 +164,9 @@ private:
     bool shows_help_ = false;
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
+    bool was_asked_to_close_ = false;  ///< and could not save what was set; nothing was done since
+    Attempt events_, touching_, painting_, previewing_, looking_, photographing_, drawing_;
+    std::optional<double> undrawn_since_s_;  ///< every frame since has failed
     bool wants_screenshot_ = false;
     std::unique_ptr<PictureJob> large_screenshot_;  ///< under way
     bool device_paints_ = false;                    ///< its paint button is down

@@ -81,7 +81,6 @@ void App::apply(const SetView& action)
 {
     const bool is_other = action.view.arrangement != document_->session.view.arrangement;
     document_->session.view = action.view;
-    document_->is_saved = false;
     if (is_other) {
         switch (action.view.arrangement) {
             case Arrangement::single: say("Full screen"); break;
@@ -144,14 +143,12 @@ void App::apply(const ResetCuts&)
 void App::apply(const SetTransferFunction& action)
 {
     document_->session.transfer_function = action.function;
-    document_->is_saved = false;
     look_again();
 }
 
 void App::apply(const SetGroup& action)
 {
     document_->session.groups[action.group] = action.settings;
-    document_->is_saved = false;
     show_surfaces(*renderer_, document_->surfaces, document_->annotator.document().trace, document_->session.groups);
     look_again();
 }
@@ -159,7 +156,6 @@ void App::apply(const SetGroup& action)
 void App::apply(const SetBlend& action)
 {
     document_->session.blend = action.blend;
-    document_->is_saved = false;
     say(sentence("Distance blending: size ", action.blend.size, ", rate ", action.blend.rate));
     look_again();
 }
@@ -168,14 +164,12 @@ void App::apply(const SetLight& action)
 {
     if (action.light.shaded != document_->session.light.shaded) say(action.light.shaded ? "Shading on" : "Shading off");
     document_->session.light = action.light;
-    document_->is_saved = false;
     look_again();
 }
 
 void App::apply(const SetPreintegration& action)
 {
     document_->session.render.preintegration = action.on;
-    document_->is_saved = false;
     say(action.on ? "Narrow peaks: every one that a step passes is seen" : "Narrow peaks: steps may miss them");
     look_again();
 }

@@ -86,7 +86,6 @@ void App::apply(const ShowShell& action)
 void App::apply(const ShowPreview& action)
 {
     document_->session.probe.preview = action.on;
-    document_->is_saved = false;
     say(action.on ? "What the brush would change is shown before it does" : "No preview of the brush");
 }
 

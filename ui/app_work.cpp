@@ -1,6 +1,8 @@
 // What actions do to the work: undo and redo, saving, pictures of it, another scan.
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "engine/base/image_file.h"
 #include "ui/app.h"
@@ -70,7 +72,6 @@ void App::apply(const Screenshot& action)
 void App::apply(const SetInteraction& action)
 {
     document_->session.interaction = action.interaction;
-    document_->is_saved = false;
     look_again();
 }
 
@@ -82,17 +83,11 @@ void App::advance_large_screenshot()
         return say("The large screenshot is given up: painting goes first");
     }
     if (something_moves() || !document_->screen.complete() || screenshot_.valid()) return;
-    try {
-        if (!large_screenshot_->is_done()) {
-            large_screenshot_->step();
-            status_ = sentence("Large screenshot: ", int(100.0 * large_screenshot_->progress()), " %");
-            return;
-        }
-        write_screenshot(to_image8(large_screenshot_->take().image));
-    } catch (const Error& error) {
-        say(error.what());
-    }
-    large_screenshot_.reset();
+    std::unique_ptr<PictureJob> job = std::move(large_screenshot_);  // which ends here, should it fail
+    if (job->is_done()) return write_screenshot(to_image8(job->take().image));
+    job->step();
+    status_ = sentence("Large screenshot: ", int(100.0 * job->progress()), " %");
+    large_screenshot_ = std::move(job);
 }
 
 /// Packing the file takes long, and goes to another thread.
@@ -117,20 +112,63 @@ void App::finish_screenshot()
 
 void App::apply(const Open& action)
 {
-    if (document_ && !document_->work_is_saved()) save();
+    if (document_) save_before_leaving();
     open(action.path, {});
+}
+
+/// Whatever was done is saved as by hand; if nothing was done but look, where from is kept without a word.
+void App::save_before_leaving()
+{
+    if (document_->is_saved() && !document_->annotator.stroke_is_running()) return document_->keep_view();
+    save();
+}
+
+void App::note_edit()
+{
+    document_->note_edit();
+    was_asked_to_close_ = false;
+}
+
+/// What a stroke has covered belongs to what is saved, so its bricks get time to arrive. Returns why it was not all
+/// painted; empty where it was.
+std::string App::finish_stroke()
+{
+    constexpr double PATIENCE_S = 20.0;
+    constexpr std::chrono::milliseconds TURN(1);
+    Annotator& annotator = document_->annotator;
+    extend_stroke();
+    if (annotator.stroke_is_open()) annotator.end_stroke();
+    double last_progress_s = window_.now_s();
+    const auto show = [&](const VoxelBox& voxels) {
+        document_->screen.changed(voxels);
+        last_progress_s = window_.now_s();
+    };
+    try {
+        while (annotator.stroke_is_running()) {
+            if (const std::optional<VoxelBox> painted = annotator.advance()) show(*painted);
+            if (renderer_->paged())
+                for (const VoxelBox& arrived : renderer_->paged()->advance()) show(arrived);
+            if (window_.now_s() - last_progress_s > PATIENCE_S) {
+                annotator.drop_stroke();
+                return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
+            }
+            std::this_thread::sleep_for(TURN);
+        }
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
 }
 
 void App::save()
 {
-    Annotator& annotator = document_->annotator;
-    if (annotator.stroke_is_open()) annotator.end_stroke();
-    while (annotator.stroke_is_running()) annotator.advance();  // what is on its way belongs to it
+    const std::string unpainted = finish_stroke();
     document_->save();
     const std::filesystem::path& trace = document_->session.trace_path;
     const bool has_trace = !trace.empty() && std::filesystem::exists(trace);
     say("Saved " + document_->session.mask_path.string() + (has_trace ? ", " + trace.string() : std::string()) +
-        " and " + document_->session_path.string());
+        " and " + document_->session_path.string() +
+        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted));
 }
 
 void App::apply(const ShowHelp& action)

@@ -30,8 +30,12 @@ struct TouchSettings {
 
 class Touch {
 public:
-    /// `device`: null for the mouse.
-    Touch(Renderer& renderer, std::unique_ptr<HapticDevice> device, const std::string& device_name);
+    static constexpr uint32_t PAINT_BUTTON = 1;  ///< of HapticState::buttons
+
+    /// The mouse moves the probe until there is a device.
+    explicit Touch(Renderer& renderer);
+    /// From now on `device` moves the probe, and the servo runs.
+    void use(std::unique_ptr<HapticDevice> device, const std::string& name);
 
     /// Puts the probe somewhere at once (physical units of the volume).
     void place(const glm::dvec3& point);
@@ -47,6 +51,7 @@ public:
     bool is_mouse() const { return is_mouse_; }
     /// Of the device, as the servo read them last; 0 for the mouse.
     uint32_t buttons() const { return is_mouse_ ? 0 : state_.device.buttons; }
+    bool paint_button() const { return (buttons() & PAINT_BUTTON) != 0; }
     /// From asking the device which voxels are relevant to the servo being told, milliseconds; newest last.
     const std::vector<double>& mirror_ms() const { return mirror_ms_; }
     double relevance_age_ms() const;
@@ -65,8 +70,8 @@ private:
 
     Renderer& renderer_;
     Relevance relevance_;
-    const bool is_mouse_;
-    const std::string device_name_;
+    bool is_mouse_ = true;
+    std::string device_name_ = "mouse";
     std::unique_ptr<Servo> servo_;
     SimulatedDevice* mouse_ = nullptr;  ///< the servo's, while it runs
     bool was_assisting_ = false;

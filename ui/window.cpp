@@ -79,6 +79,7 @@ VkOffset3D offset(const glm::ivec2& at)
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
+    bool frame_is_open = false;  ///< of the interface: begun, and not yet rendered
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
     template <class Event>
@@ -619,6 +620,7 @@ bool Window::is_down(int key) const
 
 void Window::begin_ui()
 {
+    if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last one failed before it was shown
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -627,6 +629,7 @@ void Window::begin_ui()
 bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
 {
     ImGui::Render();
+    input_->frame_is_open = false;
     return vulkan_->present(layers, origin);
 }
 

@@ -270,6 +270,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
             SHVR_CHECK(place(key, *texels, true), "room was counted");
         }
         const auto there = resident_.find(key);
+        if (there == resident_.end())
+            if (const std::optional<std::string> failure = store_.failure_of(key)) throw Error(*failure);
         all_there = all_there && there != resident_.end();
         region.slots.push_back(there == resident_.end() ? gpu::NO_SLOT : atlas_.packed(there->second));
     }

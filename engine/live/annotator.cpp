@@ -235,19 +235,30 @@ void Annotator::end_stroke()
     stroke_->has_ended = true;
 }
 
+void Annotator::drop_stroke()
+{
+    if (stroke_) last_stroke_voxels_ = stroke_->voxels;
+    stroke_.reset();
+}
+
 std::optional<VoxelBox> Annotator::advance()
 {
     if (!stroke_) return std::nullopt;
+    try {
+        return advance_stroke();
+    } catch (const Error&) {
+        drop_stroke();  // what cannot be kept is not painted, nor is the rest
+        throw;
+    }
+}
+
+std::optional<VoxelBox> Annotator::advance_stroke()
+{
     Stroke& stroke = *stroke_;
     std::optional<VoxelBox> changed;
     if (stroke.answer) {
         if (!stroke.answer.done()) return std::nullopt;
-        try {
-            changed = paint_answer();
-        } catch (const Error&) {
-            stroke_.reset();  // what cannot be kept is not painted, nor is the rest
-            throw;
-        }
+        changed = paint_answer();
     }
     if (stroke.next < stroke.waiting.size()) {
         std::optional<Batch> batch = make_batch(stroke.brush, stroke.waiting, stroke.next, false);
@@ -345,12 +356,17 @@ VoxelBox Annotator::reach_of(const Command& command) const
 std::vector<std::string> Annotator::open(const WorkFiles& files, Work::Start start)
 {
     std::vector<std::string> messages = work_.open(files, start);
+    bring_all_to_device();
+    return messages;
+}
+
+void Annotator::bring_all_to_device()
+{
     Touched all{.painted_bricks = document().mask.painted_bricks(), .raised = {}};
     const DensityField& density = document().density;
     for (const int64_t brick : density.painted_bricks())
         all.raised.push_back(shvr::voxels_of({0, density.position_of(brick)}, density.size()));
     bring_to_device(all);
-    return messages;
 }
 
 }  // namespace shvr

@@ -54,7 +54,10 @@ public:
     bool stroke_is_running() const { return stroke_.has_value(); }
     /// It has begun and not ended.
     bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
-    /// Takes the device's answer, if it is there, paints it and asks the next. Returns the voxels that may have changed.
+    /// Ends it at once: what is painted stays, what has not been painted yet is dropped.
+    void drop_stroke();
+    /// Takes the device's answer, if it is there, paints it and asks the next. Returns the voxels that may have changed. Fails
+    /// where the stroke cannot go on (too large a brush, bricks or a journal that fail); then the rest of it is dropped.
     std::optional<VoxelBox> advance();
 
     /// Carries out what `trace_edit.h` made of the trace, as one command; nothing where `changes` is empty. No stroke is
@@ -71,6 +74,8 @@ public:
 
     /// As Work's; what is there comes to the device.
     std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
+    /// All paint and offsets come to the device, whose volume was loaded anew.
+    void bring_all_to_device();
     /// As Work's.
     std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {})
     {
@@ -125,6 +130,7 @@ private:
     Answered ask(const PaintOp& op);
     std::vector<Change> changes_of(const PaintOp& op, const Answered& answered) const;
     PaintPreview preview_with(const PaintOp& op, const Answered& answered) const;
+    std::optional<VoxelBox> advance_stroke();
     std::optional<VoxelBox> paint_answer();
     Touched touched_by(std::span<const Change> changes) const;
     void bring_to_device(const Touched& touched);

@@ -29,6 +29,8 @@ public:
 
     void advance();
     void wait();
+    /// Gives up all panes, and with them the device's memory; look() makes new ones.
+    void clear();
     bool complete() const;
 
     struct Part {
@@ -55,6 +57,7 @@ public:
 
 private:
     void arrange(bool session_changed);
+    void retire_beyond(size_t panes);
     void give_turn(size_t part);
     bool is_loading() const;
 
