@@ -17,17 +17,6 @@ namespace {
 constexpr uint32_t FRAMES_IN_FLIGHT = 2;
 constexpr VkClearColorValue BACKDROP{{0.09f, 0.09f, 0.10f, 1.0f}};
 
-template <class T, class Call>
-std::vector<T> enumerate(Call call)
-{
-    uint32_t count = 0;
-    call(&count, nullptr);
-    std::vector<T> items(count);
-    call(&count, items.data());
-    items.resize(count);
-    return items;
-}
-
 std::string glfw_error()
 {
     const char* description = nullptr;
@@ -216,7 +205,7 @@ void Window::Vulkan::create()
 
 void Window::Vulkan::choose_format()
 {
-    const auto formats = enumerate<VkSurfaceFormatKHR>([&](uint32_t* count, VkSurfaceFormatKHR* items) {
+    const auto formats = gpu::enumerate<VkSurfaceFormatKHR>([&](uint32_t* count, VkSurfaceFormatKHR* items) {
         vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical(), surface, count, items);
     });
     // What is shown is encoded already, so the image must not encode again; and it is copied byte by byte.
@@ -346,7 +335,7 @@ void Window::Vulkan::create_swapchain()
     if (old) vkDestroySwapchainKHR(device.handle(), old, nullptr);
     gpu::check(result, "vkCreateSwapchainKHR");
 
-    const auto chain = enumerate<VkImage>(
+    const auto chain = gpu::enumerate<VkImage>(
         [&](uint32_t* count, VkImage* items) { vkGetSwapchainImagesKHR(device.handle(), swapchain, count, items); });
     for (VkImage image : chain) {
         Target& target = targets.emplace_back();

@@ -39,6 +39,18 @@ struct DeviceTraits {
     uint64_t max_allocation_bytes = 0;
 };
 
+/// What the pairs of Vulkan calls list that are asked for the count first and for the items then.
+template <class T, class Call>
+std::vector<T> enumerate(Call call)
+{
+    uint32_t count = 0;
+    call(&count, nullptr);
+    std::vector<T> items(count);
+    call(&count, items.data());
+    items.resize(count);
+    return items;
+}
+
 class Device {
 public:
     explicit Device(const DeviceOptions& options = {});
@@ -63,7 +75,6 @@ public:
 
     /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
     std::vector<std::string> take_validation_messages();
-    bool validates() const { return messenger_ != VK_NULL_HANDLE; }
 
 private:
     void create_instance(const DeviceOptions& options);

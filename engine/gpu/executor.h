@@ -83,7 +83,6 @@ public:
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    Kernels& kernels() { return kernels_; }
     /// Gives back the memory of transient resources that the last `runs` runs did not use.
     void trim(uint64_t runs = 0);
 

@@ -124,17 +124,6 @@ bool Screen::complete() const
     return !is_loading() && std::ranges::all_of(parts_, [](const Part& part) { return part.view->is_finished(); });
 }
 
-std::optional<size_t> Screen::part_at(const glm::dvec2& pixel) const
-{
-    for (size_t i = 0; i < parts_.size(); ++i) {
-        const PixelBox& box = parts_[i].pane.box;
-        if (glm::all(glm::greaterThanEqual(pixel, glm::dvec2(box.begin))) &&
-            glm::all(glm::lessThan(pixel, glm::dvec2(box.end))))
-            return i;
-    }
-    return std::nullopt;
-}
-
 std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks) const
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};

@@ -39,8 +39,6 @@ public:
     };
     /// The panes that are wanted; the first is the camera's.
     const std::vector<Part>& parts() const { return parts_; }
-    /// Which pane a pixel belongs to; nothing beside all of them.
-    std::optional<size_t> part_at(const glm::dvec2& pixel) const;
     /// The lines over what is shown of a pane, in its pixels.
     std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {}) const;
     /// Something of the first pane can be seen.

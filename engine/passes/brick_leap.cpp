@@ -40,7 +40,7 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
 {
     for (size_t first = 0; first < jobs.size(); first += BATCH) {
         const std::span<const gpu::BrickLeapJob> batch = jobs.subspan(first, std::min(BATCH, jobs.size() - first));
-        Pass pass = graph.compute(mask ? "brick_leap_masked" : "brick_leap", "brick_leap");
+        Pass pass = graph.compute("brick_leap", {{"MASKED", mask.has_value()}});
         pass.read("cell_ranges", volume.cell_ranges);
         pass.block("jobs", batch);
         pass.block("visible_intervals", std::span<const uint32_t>(visibility.visible_intervals));

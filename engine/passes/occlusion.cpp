@@ -27,11 +27,6 @@ static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::O
 /// From one direction to the next: the golden angle.
 const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
-std::string variant(const char* kernel, const VolumeBinding& volume)
-{
-    return std::string(kernel) + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "");
-}
-
 }  // namespace
 
 ResourceDesc occlusion_near_desc()
@@ -75,16 +70,6 @@ OcclusionTaps occlusion_taps(double radius)
         SHVR_CHECK(result.aprons[size] <= MOST_APRON);
     }
     return result;
-}
-
-std::vector<glm::dvec3> occlusion_directions(uint32_t count)
-{
-    std::vector<glm::dvec3> directions;
-    for (uint32_t k = 0; k < count; ++k) {
-        const double z = 1.0 - (2.0 * k + 1.0) / count, r = std::sqrt(1.0 - z * z);
-        directions.emplace_back(r * std::cos(TURN * k), r * std::sin(TURN * k), z);
-    }
-    return directions;
 }
 
 uint32_t occlusion_reach(double radius)
@@ -145,8 +130,9 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     std::vector<ImageRegion> regions;
     for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, SIDE * i}, glm::uvec3(SIDE)});
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
-    Pass pass =
-        graph.compute(variant("occlusion_gather", volume) + (input.near.mask ? "_masked" : ""), "occlusion_gather");
+    Pass pass = graph.compute(
+        "occlusion_gather",
+        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.near.mask.has_value()}});
     gpu::OcclusionGatherParams params{.voxels = input.near.params,
                                       .cell_counts = volume.cell_counts,
                                       .reach = occlusion_reach(input.taps.radius),
@@ -172,7 +158,9 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs)
 {
-    Pass pass = graph.compute(variant("occlusion_cells", volume) + (input.mask ? "_masked" : ""), "occlusion_cells");
+    Pass pass = graph.compute(
+        "occlusion_cells",
+        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.mask.has_value()}});
     const gpu::OcclusionCellsParams& params = input.params;
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
@@ -189,7 +177,7 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
 {
     SHVR_CHECK(jobs.size() <= gpu::OCCLUSION_SLICE);
     gather(graph, volume, occlusion, scratch, input, jobs, around);
-    Pass pass = graph.compute(variant("occlusion_bake", volume), "occlusion_bake");
+    Pass pass = graph.compute("occlusion_bake", {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}});
     gpu::OcclusionBakeParams params = input.params;
     params.radius = float(input.taps.radius);
     params.first = float(input.taps.first);

@@ -38,9 +38,6 @@ inline constexpr double OCCLUSION_MOST_RADIUS = gpu::OCCLUSION_REACH * gpu::BRIC
 /// Radii below 1 have no tap: light reaches every voxel.
 OcclusionTaps occlusion_taps(double radius);
 
-/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010); the kernel makes its own.
-std::vector<glm::dvec3> occlusion_directions(uint32_t count);
-
 /// Bricks on each side of a brick that its light comes from.
 uint32_t occlusion_reach(double radius);
 
