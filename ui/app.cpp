@@ -55,7 +55,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
 void App::say(const std::string& status)
 {
     status_ = status;
-    report_.messages.push_back(status);
+    report_.said(status);
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }
 
@@ -64,7 +64,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
 {
     const double begun_s = window_.now_s();
     OpenedSession opened = open_session(path, settings);
-    large_screenshot_.reset();
+    screenshots_.drop_large();
     View::Options view_options;
     view_options.swap_red_blue = window_.swaps_red_and_blue();
     if (document_) document_->screen.clear();
@@ -75,8 +75,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
         if (!document_) throw;
         bring_back(error.what());
     }
-    opened_s_ = begun_s;
-    report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
+    report_.opened(begun_s);
     std::string device_said;
     if (std::unique_ptr<HapticDevice> device = find_device(device_said))
         document_->touch.use(std::move(device), "haptic device");
@@ -121,7 +120,7 @@ void App::run()
         attempt(events_, [this] { handle_events(time_to_wait()); });
         apply_all();
         work();
-        note_presented();
+        report_.done(window_.frames_done(), window_.now_s());
         const double now = window_.now_s();
         const double frames_per_second =
             (document_ ? document_->session.interaction : InteractionSettings{}).frames_per_second;
@@ -129,7 +128,7 @@ void App::run()
         draw();
         next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
     }
-    if (screenshot_.valid()) screenshot_.wait();
+    screenshots_.wait();
 }
 
 template <class Part>
@@ -193,7 +192,7 @@ bool App::refuses_to_close(const std::string& why)
 
 bool App::something_moves() const
 {
-    if (window_.now_s() < ui_until_s_ || !unanswered_s_.empty()) return true;
+    if (window_.now_s() < ui_until_s_ || report_.has_unanswered()) return true;
     if (!document_) return false;
     constexpr double STIR_VOXELS = 0.05;
     return look_is_stale_ || camera_moved_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
@@ -204,18 +203,18 @@ double App::next_reason_to_draw_s() const
 {
     // Until there is something to see, the device is there for the first picture.
     const bool waits_for_picture = document_ && !document_->screen.shows_anything() && viewport_.pixels().x > 0;
-    if (waits_for_picture && unanswered_s_.empty()) return last_begun_s_ + SHARPEN_S;
+    if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
     if (something_moves()) return 0.0;
-    const bool sharpens_or_tells =
-        document_ && (document_->screen.revision() != drawn_revision_ || document_->assistance || large_screenshot_);
-    return sharpens_or_tells ? last_begun_s_ + SHARPEN_S : std::numeric_limits<double>::infinity();
+    const bool sharpens_or_tells = document_ && (document_->screen.revision() != drawn_revision_ ||
+                                                 document_->assistance || screenshots_.has_large());
+    return sharpens_or_tells ? report_.last_begun_s() + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
 
 double App::time_to_wait() const
 {
     const bool has_work = document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
                                         document_->assistance || look_is_stale_ || camera_moved_ ||
-                                        screenshot_.valid() || !document_->previewer.is_current());
+                                        screenshots_.is_writing() || !document_->previewer.is_current());
     const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
     return std::clamp(until_frame, 0.0, has_work ? WORK_S : IDLE_S);
 }
@@ -226,7 +225,7 @@ void App::handle_events(double timeout_s)
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
         const bool is_answered =
             std::holds_alternative<KeyEvent>(event.what) || std::holds_alternative<ButtonEvent>(event.what);
-        if (is_answered) unanswered_s_.push_back(event.time_s);
+        if (is_answered) report_.asked(event.time_s);
         if (document_) {
             const ImGuiIO& io = ImGui::GetIO();
             viewport_.handle(event, model(), io.WantCaptureMouse, io.WantTextInput, actions_);
@@ -320,10 +319,14 @@ void App::follow_look()
 
 void App::follow_screenshots()
 {
-    if (wants_screenshot_) finish_screenshot();
-    if (large_screenshot_) advance_large_screenshot();
-    if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        say(screenshot_.get());
+    if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
+        screenshots_.drop_large();  // paint would be in some parts of it and not in others
+        say("The large screenshot is given up: painting goes first");
+    }
+    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
+    const Screenshots::Turn turn = screenshots_.advance(document_->screen, stem, !something_moves());
+    if (!turn.said.empty()) say(turn.said);
+    if (!turn.progress.empty()) status_ = turn.progress;
 }
 
 void App::draw_ui()
@@ -351,31 +354,11 @@ void App::draw_ui()
     }
     if (!window_.present(layers, viewport_.layout().begin)) return;
     if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
-    if (was_moving_ && moves) report_.interval_ms.push_back((begun - last_begun_s_) * 1e3);
-    was_moving_ = moves;
-    last_begun_s_ = begun;
-    ++report_.frames;
-    presented_.push_back({.frame = window_.frames_presented(),
-                          .begun_s = begun,
-                          .inputs_s = std::exchange(unanswered_s_, {}),
-                          .shows_picture = !layers.empty(),
-                          .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
-}
-
-void App::note_presented()
-{
-    if (presented_.empty()) return;
-    const uint64_t done = window_.frames_done();
-    const double now = window_.now_s();
-    std::erase_if(presented_, [&](const Presented& frame) {
-        if (frame.frame > done) return false;
-        report_.frame_ms.push_back((now - frame.begun_s) * 1e3);
-        const double since_open_ms = (now - opened_s_) * 1e3;
-        if (frame.shows_picture && !report_.first_picture_ms) report_.first_picture_ms = since_open_ms;
-        if (frame.shows_sharp_picture && !report_.sharp_picture_ms) report_.sharp_picture_ms = since_open_ms;
-        for (double input : frame.inputs_s) report_.input_ms.push_back((now - input) * 1e3);
-        return true;
-    });
+    report_.presented({.number = window_.frames_presented(),
+                       .begun_s = begun,
+                       .moves = moves,
+                       .shows_picture = !layers.empty(),
+                       .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
 }
 
 /// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a line
@@ -454,14 +437,14 @@ Model App::model()
         .view_is_complete = document.screen.complete(),
         .view_is_limited = renderer_->paged() != nullptr && renderer_->paged()->state() == PagedVolume::State::limited,
         .relevance_age_ms = document.touch.relevance_age_ms(),
-        .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
+        .ui_frame_ms = report_.recent_frame_ms(),
         .device_bytes = renderer_->memory().device_bytes(),
         .device_budget = renderer_->memory().device_budget()};
 }
 
 AppReport App::report()
 {
-    AppReport report = report_;
+    AppReport report = report_.measured();
     report.gpu_name = renderer_->device().traits().name;
     report.status = status_;
     if (document_) {

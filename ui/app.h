@@ -8,12 +8,13 @@
 // shared by turns of a few milliseconds: brush, relevance, probe, sketch, tiles, user interface. The interface is drawn
 // when something changed, at most so many times a second as the session says; with nothing to do the loop sleeps.
 
-#include <future>
 #include <memory>
 #include <optional>
 
 #include "ui/document.h"
 #include "ui/panels/panels.h"
+#include "ui/run_report.h"
+#include "ui/screenshots.h"
 #include "ui/viewport.h"
 
 namespace shvr::ui {
@@ -27,28 +28,6 @@ struct AppOptions {
     bool validation = false;
     bool allow_force = false;  ///< on the hand, by a haptic device whose profile is verified
     glm::uvec2 window_size{1280, 800};
-};
-
-/// Measured over a run, for people who profile and for tests.
-struct AppReport {
-    std::string gpu_name;
-    uint64_t frames = 0;              ///< of the user interface
-    std::vector<double> frame_ms;     ///< one interface frame: from its first call to the device being done with it
-    std::vector<double> interval_ms;  ///< between two frames while something was moving
-    std::vector<double> input_ms;     ///< from a key or button to the frame that shows it being done
-    /// From opening the last volume to the frame that first showed anything of it, and all of it sharp, being done.
-    std::optional<double> first_picture_ms, sharp_picture_ms;
-    std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it
-    uint64_t view_submissions = 0;
-    bool view_complete = false;
-    ServoState servo;
-    glm::dvec3 probe_voxel{0.0};
-    std::array<int64_t, 256> voxels_by_group{};
-    size_t undoable = 0, redoable = 0;
-    std::optional<int64_t> previewed_voxels;  ///< when the last stroke began, where there was a preview of it
-    std::string status;
-    std::vector<std::string> messages;  ///< every status so far
-    std::vector<std::string> validation_messages;
 };
 
 class App {
@@ -88,7 +67,6 @@ private:
     void look_again() { look_is_stale_ = true; }
     void look_from_elsewhere() { camera_moved_ = true; }
     const Pane& pane(size_t index) const;
-    void note_presented();
     TouchSettings touch_settings() const;
     void follow_device();
     void follow_stroke();
@@ -103,10 +81,6 @@ private:
     void save_before_leaving();
     bool closes();
     bool refuses_to_close(const std::string& why);
-    void finish_screenshot();
-    void advance_large_screenshot();
-    void write_screenshot(Image8 image);
-    std::filesystem::path free_screenshot_path() const;
 
     // One for each action.
     void apply(const Orbit& action);
@@ -167,10 +141,8 @@ private:
     bool was_asked_to_close_ = false;  ///< and could not save what was set; nothing was done since
     Attempt events_, touching_, painting_, previewing_, looking_, photographing_, drawing_;
     std::optional<double> undrawn_since_s_;  ///< every frame since has failed
-    bool wants_screenshot_ = false;
-    std::unique_ptr<PictureJob> large_screenshot_;  ///< under way
-    bool device_paints_ = false;                    ///< its paint button is down
-    std::future<std::string> screenshot_;
+    Screenshots screenshots_;
+    bool device_paints_ = false;  ///< its paint button is down
     std::string status_;
     std::string journal_failure_;  ///< as it was said
 
@@ -178,20 +150,9 @@ private:
     double next_frame_s_ = 0.0;
     double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
     double last_keys_s_ = 0.0;
-    double opened_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     glm::dvec3 drawn_probe_voxel_{0.0};
-    std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
-    struct Presented {
-        uint64_t frame = 0;
-        double begun_s = 0.0;
-        std::vector<double> inputs_s;
-        bool shows_picture = false, shows_sharp_picture = false;
-    };
-    std::vector<Presented> presented_;
-    double last_begun_s_ = 0.0;
-    bool was_moving_ = false;
-    AppReport report_;
+    RunReport report_;
 };
 
 }  // namespace shvr::ui

@@ -134,7 +134,7 @@ void App::apply(const Paint& action)
     }
     if (action.on && !annotator.stroke_is_running()) {
         const Previewer& previewer = document_->previewer;
-        if (previewer.shown() && previewer.is_current()) report_.previewed_voxels = previewer.shown()->voxels;
+        if (previewer.shown() && previewer.is_current()) report_.previewed(previewer.shown()->voxels);
         check_radius(document_->brush.radius_voxels, document_->volume().spacing, document_->volume().size);
         annotator.begin_stroke(with_offset(document_->brush, document_->session.transfer_function));
         annotator.extend_stroke(document_->probe_voxel());

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <thread>
 
-#include "engine/base/image_file.h"
 #include "ui/app.h"
 
 namespace shvr::ui {
@@ -45,26 +44,17 @@ void App::apply(const Save&)
     save();
 }
 
-std::filesystem::path App::free_screenshot_path() const
-{
-    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
-    for (int number = 1;; ++number) {
-        std::filesystem::path path = sentence(stem.string(), "-view-", number, ".png");
-        if (!std::filesystem::exists(path)) return path;
-    }
-}
-
 void App::apply(const Screenshot& action)
 {
     if (!action.is_large) {
-        wants_screenshot_ = true;
+        screenshots_.take();
         return say("The screenshot is taken as soon as the picture is sharp");
     }
     Session session = document_->saved_session();
     session.render.size = viewport_.pixels() * session.interaction.screenshot_scale;
     RenderOptions options;
-    options.part_pixels = 96;  // what a hand that comes back waits for
-    large_screenshot_ = std::make_unique<PictureJob>(*renderer_, session, document_->camera, options);
+    options.part_pixels = 96;  // bounds the delay when the user resumes
+    screenshots_.take_large(std::make_unique<PictureJob>(*renderer_, session, document_->camera, options));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made while nothing else is to be drawn"));
 }
@@ -73,41 +63,6 @@ void App::apply(const SetInteraction& action)
 {
     document_->session.interaction = action.interaction;
     look_again();
-}
-
-/// A part of it, whenever the screen has all it wants. Paint would be in some parts and not in others.
-void App::advance_large_screenshot()
-{
-    if (document_->annotator.stroke_is_running()) {
-        large_screenshot_.reset();
-        return say("The large screenshot is given up: painting goes first");
-    }
-    if (something_moves() || !document_->screen.complete() || screenshot_.valid()) return;
-    std::unique_ptr<PictureJob> job = std::move(large_screenshot_);  // which ends here, should it fail
-    if (job->is_done()) return write_screenshot(to_image8(job->take().image));
-    job->step();
-    status_ = sentence("Large screenshot: ", int(100.0 * job->progress()), " %");
-    large_screenshot_ = std::move(job);
-}
-
-/// Packing the file takes long, and goes to another thread.
-void App::write_screenshot(Image8 image)
-{
-    screenshot_ = std::async(std::launch::async, [image = std::move(image), path = free_screenshot_path()] {
-        try {
-            write_png(path, image);
-            return "Screenshot: " + path.string();
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-    });
-}
-
-void App::finish_screenshot()
-{
-    if (!document_->screen.complete() || screenshot_.valid()) return;
-    wants_screenshot_ = false;
-    write_screenshot(document_->screen.read_back());
 }
 
 void App::apply(const Open& action)
