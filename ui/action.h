@@ -89,6 +89,8 @@ struct PushProbe {  ///< away from the viewer of a pane, in voxels
     size_t pane = 0;
     double voxels = 0.0;
 };
+/// What a hand can aim with, in voxels along x. Sessions and scripts may use other radii.
+inline constexpr double SMALLEST_RADIUS_VOXELS = 0.5, LARGEST_RADIUS_VOXELS = 60.0;
 struct ScaleProbe {
     double factor = 1.0;
 };

@@ -8,7 +8,7 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/assets.h"
-#include "engine/base/image_file.h"
+#include "engine/base/image.h"
 #include "haptics/hid_device.h"
 
 namespace shvr::ui {

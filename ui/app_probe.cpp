@@ -61,7 +61,8 @@ void App::apply(const PushProbe& action)
 
 void App::apply(const ScaleProbe& action)
 {
-    document_->brush.radius_voxels = std::clamp(document_->brush.radius_voxels * action.factor, 0.5, 60.0);
+    document_->brush.radius_voxels =
+        std::clamp(document_->brush.radius_voxels * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
     say(sentence("Probe radius ", std::round(10.0 * document_->brush.radius_voxels) / 10.0, " voxels"));
 }
 

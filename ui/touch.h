@@ -30,8 +30,6 @@ struct TouchSettings {
 
 class Touch {
 public:
-    static constexpr uint32_t PAINT_BUTTON = 1;  ///< of HapticState::buttons
-
     /// The mouse moves the probe until there is a device.
     explicit Touch(Renderer& renderer);
     /// From now on `device` moves the probe, and the servo runs.

@@ -7,14 +7,13 @@
 
 namespace shvr::ui {
 
-namespace {}  // namespace
-
 void occlusion_panel(const Model& model, Actions& actions)
 {
     OcclusionSettings settings = model.session.light.occlusion;
     bool is_other = slider("Strength", settings.strength, 0.0, 1.0, "%.2f");
     hint("How dark it gets where less ambient light arrives: in gaps, and where things touch. 0 switches it off.");
-    is_other |= slider("Radius", settings.radius, 1.0, 60.0, "%.0f voxels", ImGuiSliderFlags_Logarithmic);
+    is_other |=
+        slider("Radius", settings.radius, 1.0, MOST_OCCLUSION_RADIUS, "%.0f voxels", ImGuiSliderFlags_Logarithmic);
     hint("How far away things keep light off.");
     is_other |= slider("Curve", settings.curve, 0.25, 4.0, "%.2f", ImGuiSliderFlags_Logarithmic);
     hint("Exponent of the light that arrives: above 1, what is half dark gets darker.");

@@ -13,9 +13,6 @@ namespace shvr::ui {
 
 namespace {
 
-// What a hand can aim with; scripts may use other radii.
-constexpr double SMALLEST_RADIUS = 0.5;
-constexpr double LARGEST_RADIUS = 60.0;
 constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
 
 /// Intensities of whole numbers need no decimals.
@@ -78,9 +75,9 @@ bool radius(const Model& model, PaintOp& brush)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    const bool changed =
-        ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f, &SMALLEST_RADIUS,
-                          &LARGEST_RADIUS, "%.1f voxels", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f,
+                                           &SMALLEST_RADIUS_VOXELS, &LARGEST_RADIUS_VOXELS, "%.1f voxels",
+                                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     hint("Of the probe and the brush. Drag sideways, or Ctrl + click to type. Keys: ] and [, Page Up and Page Down.");
     if (model.volume.unit == "voxel") return changed;
     ImGui::SameLine();
