@@ -59,7 +59,8 @@ void App::say(const std::string& status)
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }
 
-/// The device holds one volume at a time. The document before stays until the next one stands, and comes back if it cannot.
+/// The device holds one volume at a time. The document before stays until the next one stands, and comes back if it
+/// cannot.
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
     const double begun_s = window_.now_s();
@@ -333,8 +334,8 @@ void App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves();
-    // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
-    // for below; and the view learns what its work costs without the interface's share.
+    // A software device presents after everything that was submitted before, so this waits for nothing it would not
+    // wait for below; and the view learns what its work costs without the interface's share.
     if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
@@ -361,8 +362,8 @@ void App::draw_ui()
                        .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
 }
 
-/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a line
-/// goes to where assistance pulls the probe.
+/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a
+/// line goes to where assistance pulls the probe.
 void App::draw_strokes() const
 {
     const Document& document = *document_;

@@ -1,6 +1,6 @@
 #pragma once
-// The application: owns the window, the device and what is open; takes what the person did, carries out the actions, and
-// keeps everything that runs beside the user interface supplied with work.
+// The application: owns the window, the device and what is open; takes what the person did, carries out the actions,
+// and keeps everything that runs beside the user interface supplied with work.
 //
 //   events -> Viewport, keys, panels -> Actions -> apply -> Session, Annotator, Touch -> View -> Window
 //
@@ -53,8 +53,8 @@ private:
     double time_to_wait() const;
     void apply_all();
     void say(const std::string& status);
-    /// A part of a turn. Where it fails, that is said once, and the part is tried again a little later: whatever fails, the
-    /// window stays, and so does all that was done in it.
+    /// A part of a turn. Where it fails, that is said once, and the part is tried again a little later: whatever fails,
+    /// the window stays, and so does all that was done in it.
     struct Attempt {
         std::string said;       ///< of the last failure
         double failed_s = 0.0;  ///< when that was; 0: never

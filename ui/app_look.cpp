@@ -1,4 +1,5 @@
-// What actions do to the view and to what things look like. Each says in the status bar what a person would want to read.
+// What actions do to the view and to what things look like. Each says in the status bar what a person would want to
+// read.
 
 #include <algorithm>
 #include <cmath>

@@ -183,7 +183,8 @@ void Document::save()
     note_saved();
 }
 
-/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its own.
+/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its
+/// own.
 void Document::name_trace()
 {
     if (annotator.work().trace_is_saved()) return;

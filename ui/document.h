@@ -1,8 +1,9 @@
 #pragma once
-// What is open in the application: session, volume, mask and history, and how they are looked at and touched. Main thread.
+// What is open in the application: session, volume, mask and history, and how they are looked at and touched. Main
+// thread.
 //
-// Whether it is saved is found out, not kept: the session as it would be saved is compared with the one that was read or
-// written last. The camera and the probe's place are left out of that, since they change whenever somebody looks.
+// Whether it is saved is found out, not kept: the session as it would be saved is compared with the one that was read
+// or written last. The camera and the probe's place are left out of that, since they change whenever somebody looks.
 
 #include <filesystem>
 #include <memory>
@@ -20,8 +21,8 @@
 namespace shvr::ui {
 
 struct Document {
-    /// Loads the volume onto the device, then the work that is kept of it. `overridden`: the session is not as its file says.
-    /// Fails where either cannot be had; then the device holds no volume. The mouse moves the probe.
+    /// Loads the volume onto the device, then the work that is kept of it. `overridden`: the session is not as its file
+    /// says. Fails where either cannot be had; then the device holds no volume. The mouse moves the probe.
     static std::unique_ptr<Document> open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
                                           const View::Options& view_options, bool overridden = false);
     Document(const Document&) = delete;
@@ -65,13 +66,13 @@ struct Document {
     /// Closing would lose nothing of work and session, but perhaps where it was looked at from.
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return annotator.work().unsaved() == 0; }
-    /// To be called after whatever may have changed the session, camera and probe's place apart: what is_saved() found out is
-    /// forgotten.
+    /// To be called after whatever may have changed the session, camera and probe's place apart: what is_saved() found
+    /// out is forgotten.
     void note_edit() { edits_are_saved_.reset(); }
     /// Writes the mask, offsets and the trace, then the session; each file appears whole or not at all.
     void save();
-    /// Writes the session where it is saved but for the camera and the probe's place, and has a file; otherwise nothing. So
-    /// people who only look at a volume leave no file. A file that cannot be written stays as it is.
+    /// Writes the session where it is saved but for the camera and the probe's place, and has a file; otherwise
+    /// nothing. So people who only look at a volume leave no file. A file that cannot be written stays as it is.
     void keep_view() const;
     std::vector<std::string> cameras() const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a run measured: how long frames of the interface take, how soon keys are answered and pictures are there, and what the
-// person was told. Times are seconds of the window's clock. The main thread.
+// What a run measured: how long frames of the interface take, how soon keys are answered and pictures are there, and
+// what the person was told. Times are seconds of the window's clock. The main thread.
 
 #include <array>
 #include <optional>

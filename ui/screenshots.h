@@ -1,6 +1,6 @@
 #pragma once
-// Pictures of the view in files: of what is shown, once it is sharp, and larger ones, part by part while nothing else is to be
-// drawn. A thread packs the file, which takes long; all else is the main thread's.
+// Pictures of the view in files: of what is shown, once it is sharp, and larger ones, part by part while nothing else
+// is to be drawn. A thread packs the file, which takes long; all else is the main thread's.
 
 #include <filesystem>
 #include <functional>
@@ -28,8 +28,8 @@ public:
         std::string said;      ///< for the person; empty: nothing
         std::string progress;  ///< likewise, but not worth keeping
     };
-    /// To be called at every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nobody waits for the device.
-    /// Fails where a picture cannot be made; then it is given up.
+    /// To be called at every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nobody waits for the
+    /// device. Fails where a picture cannot be made; then it is given up.
     Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still);
     /// Waits until the last one is written.
     void wait() const;

@@ -1,5 +1,6 @@
 #pragma once
-// What the window shows: the swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that speak Vulkan.
+// What the window shows: the swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that speak
+// Vulkan.
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
 //

@@ -3,10 +3,10 @@
 //
 //   mouse -> wish -> servo's device -> probe -> relevance pass (device) -> bits -> Latest -> servo -> force -> probe
 //
-// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view, right,
-// up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force; then the
-// servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is computed. Main
-// thread; the servo has its own, and shares only latest values with it.
+// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view,
+// right, up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force;
+// then the servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is
+// computed. Main thread; the servo has its own, and shares only latest values with it.
 
 #include <memory>
 #include <string>

@@ -34,8 +34,8 @@ struct Window::Input {
     {
         of(window).events.push_back({std::move(event), glfwGetTime()});
     }
-    /// Where the mouse was when the event happened: GLFW itself tells where it is by now, which is too late where a turn of
-    /// the loop takes in a whole gesture.
+    /// Where the mouse was when the event happened: GLFW itself tells where it is by now, which is too late where a
+    /// turn of the loop takes in a whole gesture.
     std::optional<glm::dvec2> last_cursor;
     static glm::dvec2 cursor(GLFWwindow* window)
     {

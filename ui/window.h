@@ -1,5 +1,6 @@
 #pragma once
-// The window, by GLFW: it shows images of the view under the user interface (swapchain.h), and collects what the person did.
+// The window, by GLFW: it shows images of the view under the user interface (swapchain.h), and collects what the person
+// did.
 //
 //     Window window({...});                                  // before the device, which must know what it needs
 //     Renderer renderer({.device = window.device_needs()});

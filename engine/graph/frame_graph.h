@@ -187,8 +187,8 @@ public:
 
     /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
-    /// The same of a kernel with variants (kernel_variants.h): `choices` says of each macro in its line "// variants: ...",
-    /// in any order, whether the kernel is compiled with it. Fails where one is unknown, missing or named twice.
+    /// The same of a kernel with variants (kernel_variants.h): `choices` says of each macro in its line "// variants:
+    /// ...", in any order, whether the kernel is compiled with it. Fails where one is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
     [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",

@@ -1,6 +1,6 @@
 #pragma once
-// Which macros a kernel may be compiled with: those of its line "// variants: A B" in shaders/NAME.comp. The build writes the
-// table (tools/embed_kernels.cmake) and compiles every subset, so that no order is known twice. Any thread.
+// Which macros a kernel may be compiled with: those of its line "// variants: A B" in shaders/NAME.comp. The build
+// writes the table (tools/embed_kernels.cmake) and compiles every subset, so that no order is known twice. Any thread.
 
 #include <initializer_list>
 #include <span>
@@ -22,8 +22,8 @@ struct KernelVariants {
 /// Of all kernels that have any.
 std::span<const KernelVariants> kernel_variants();
 
-/// The name of the compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` names each macro of
-/// the kernel once, in any order; otherwise it fails and says which the kernel has.
+/// The name of the compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` names each
+/// macro of the kernel once, in any order; otherwise it fails and says which the kernel has.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices);
 /// The same with a table of one's own.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices,

@@ -12,8 +12,8 @@ namespace {
 constexpr double LIFT = 1.5;
 constexpr double LIFT_OF_LARGE_CELLS = 0.5;  ///< per voxel of their side beyond the first
 
-/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four, whose
-/// stretches grow with larger radii. Smaller ones have fewer looks.
+/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four,
+/// whose stretches grow with larger radii. Smaller ones have fewer looks.
 constexpr double NEAR_STRETCH = 0.875;
 constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border, for rays along its edges and those across
 constexpr uint32_t NEAR_TAPS = 2;

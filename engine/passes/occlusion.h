@@ -41,7 +41,8 @@ OcclusionTaps occlusion_taps(double radius);
 /// Bricks on each side of a brick that its light comes from.
 uint32_t occlusion_reach(double radius);
 
-/// Lets all light arrive in `slots`. `with_empty`: and makes slot 0, of bricks that are not there, let all light through.
+/// Lets all light arrive in `slots`. `with_empty`: and makes slot 0, of bricks that are not there, let all light
+/// through.
 void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots, bool with_empty);
 
 struct OcclusionCellsInput {

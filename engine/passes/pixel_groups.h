@@ -1,5 +1,6 @@
 #pragma once
-// One thread a pixel, for kernels of 8 x 8 threads whose groups may cover pixels of another shape (GROUP_WIDTH). Any thread.
+// One thread a pixel, for kernels of 8 x 8 threads whose groups may cover pixels of another shape (GROUP_WIDTH). Any
+// thread.
 
 #include "engine/graph/frame_graph.h"
 
@@ -7,8 +8,8 @@ namespace shvr {
 
 inline constexpr uint32_t PIXEL_GROUP_SIDE = 8;  ///< threads, as the kernels declare
 
-/// Dispatches a thread for each of `pixels`, in groups `group_width` pixels wide. `tile`: pixels of one dispatch, multiples of
-/// the groups; 0: all at once.
+/// Dispatches a thread for each of `pixels`, in groups `group_width` pixels wide. `tile`: pixels of one dispatch,
+/// multiples of the groups; 0: all at once.
 inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, uint32_t group_width,
                          const glm::uvec2& tile = glm::uvec2(0))
 {

@@ -30,8 +30,8 @@ struct Row {
     int depth = 0;  ///< below the groups without a parent
 };
 
-/// Those with a key, those that the session describes, those that were painted, and the one that is chosen; groups below
-/// the one they belong to.
+/// Those with a key, those that the session describes, those that were painted, and the one that is chosen; groups
+/// below the one they belong to.
 std::vector<Row> listed_groups(const Model& model)
 {
     std::set<uint8_t> groups{model.brush.group};
