@@ -1,7 +1,7 @@
 // How much light reaches every voxel of a brick that may be seen (occlusion.h): the mean over rays of the share of the
 // radius that light comes along. Value of a ray = (1 / radius) sum over stretches of length * light that is left in the
 // middle of it. Only voxels in occupied cells are made: the ranges of cells overlap by a voxel, so a sample that shows
-// anything reads no others. PAGED: cells are those of bricks that come and go.
+// anything reads no others. PAGED: cells are those of paged bricks.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// Bricks that come and go: how a ray finds the finest brick that is there.
+// Paged bricks: how a ray finds the finest brick that is there.
 //
 // The directory is a dense grid of cells of 2^cell_shift voxels a side, followed by blocks of eight children. An entry
 // is

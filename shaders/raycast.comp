@@ -1,7 +1,7 @@
 // Emission-absorption ray-casting of a volume of bricks: one pixel per thread. Its variants differ in what they bind:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
-//   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
+//   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over bricks that are all there
 //   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
 //   SURFACED   rays end at opaque surfaces (surfaces.comp)
 //   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they

@@ -18,7 +18,7 @@ namespace {
 /// While work is on its way the loop looks after it this often, so that the device never runs dry.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
-/// While nobody does anything, sharper tiles are shown this often: drawing the interface takes time from them.
+/// Without input, sharper tiles are shown this often: drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
 /// Widgets settle, hover and blink for so long after the last event.
 constexpr double AFTERGLOW_S = 0.3;
@@ -101,7 +101,7 @@ void App::bring_back(const std::string& why)
     fail(why, "; ", before, " stays open");
 }
 
-/// A device that cannot be used is told of, and the mouse takes its place.
+/// Where the device cannot be used, that is said and the mouse takes its place.
 std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 {
     try {
@@ -292,7 +292,7 @@ void App::follow_stroke()
     Document& document = *document_;
     const std::string failure = document.annotator.work().journal().failure;
     if (failure != journal_failure_)
-        say(failure.empty() ? "The journal is written again: all that was done is kept" : failure);
+        say(failure.empty() ? "The journal can be written again: all work is kept" : failure);
     journal_failure_ = failure;
     if (!document.annotator.stroke_is_running()) return;
     extend_stroke();
@@ -322,7 +322,7 @@ void App::follow_screenshots()
 {
     if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
         screenshots_.drop_large();  // paint would be in some parts of it and not in others
-        say("The large screenshot is given up: painting goes first");
+        say("The large screenshot was cancelled by painting");
     }
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
     const Screenshots::Turn turn = screenshots_.advance(document_->screen, stem, !something_moves());

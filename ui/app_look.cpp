@@ -136,7 +136,7 @@ void App::apply(const ResetCuts&)
     document_->session.cut = {};
     document_->camera.near_distance = document_->camera.far_distance = 0.0;
     look_again();
-    say("The whole volume is drawn");
+    say("All cutting planes are removed");
 }
 
 // ---- What things look like ------------------------------------------------------------------------------------------
@@ -171,7 +171,7 @@ void App::apply(const SetLight& action)
 void App::apply(const SetPreintegration& action)
 {
     document_->session.render.preintegration = action.on;
-    say(action.on ? "Narrow peaks: every one that a step passes is seen" : "Narrow peaks: steps may miss them");
+    say(action.on ? "Narrow peaks on: none is missed between samples" : "Narrow peaks off: samples may miss them");
     look_again();
 }
 
@@ -184,7 +184,7 @@ void App::apply(const SetOcclusion& action)
 void App::apply(const UpdateOcclusion&)
 {
     document_->screen.update_occlusion();
-    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is renewed"
+    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is being updated"
                                                           : "Ambient occlusion is off: its strength is 0");
 }
 

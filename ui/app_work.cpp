@@ -11,7 +11,7 @@ namespace shvr::ui {
 void App::apply(const Undo&)
 {
     const Command* command = document_->annotator.undo();
-    if (!command) return say("Nothing is left to undo");
+    if (!command) return say("Nothing to undo");
     show_changes(*command);
     say("Undone: " + command->label);
 }
@@ -19,7 +19,7 @@ void App::apply(const Undo&)
 void App::apply(const Redo&)
 {
     const Command* command = document_->annotator.redo();
-    if (!command) return say("Nothing is left to redo");
+    if (!command) return say("Nothing to redo");
     show_changes(*command);
     say("Redone: " + command->label);
 }
@@ -48,7 +48,7 @@ void App::apply(const Screenshot& action)
 {
     if (!action.is_large) {
         screenshots_.take();
-        return say("The screenshot is taken as soon as the picture is sharp");
+        return say("The screenshot will be taken when the picture is sharp");
     }
     Session session = document_->saved_session();
     session.render.size = viewport_.pixels() * session.interaction.screenshot_scale;
@@ -56,7 +56,7 @@ void App::apply(const Screenshot& action)
     options.part_pixels = 96;  // bounds the delay when the user resumes
     screenshots_.take_large(std::make_unique<PictureJob>(*renderer_, session, document_->camera, options));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
-                 " pixels is made while nothing else is to be drawn"));
+                 " pixels is made in the background"));
 }
 
 void App::apply(const SetInteraction& action)

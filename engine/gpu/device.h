@@ -29,7 +29,7 @@ struct DeviceOptions {
 struct DeviceTraits {
     std::string name;
     std::string driver;              ///< name and version
-    bool is_cpu = false;             ///< lavapipe and its like
+    bool is_cpu = false;             ///< lavapipe and other software devices
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
     bool linear_r16 = false;    ///< R16_UNORM can be filtered by the sampler

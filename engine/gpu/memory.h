@@ -42,7 +42,7 @@ public:
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// The same without waiting, for who knows that the device is done with it.
+    /// As reset(), for callers that know the device is done with it.
     void reset_idle();
 
 private:

@@ -18,7 +18,7 @@ Stages stages_of(const PassData& pass)
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
-/// Why a handle may not be used, said of whoever uses it; nothing where it is the current one.
+/// Why a handle may not be used, worded for the pass that uses it; nothing where it is the current one.
 std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
 {
     if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
@@ -292,7 +292,7 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
             state = {.written_by = stages};
             continue;
         }
-        // Whoever waits for a read that came after all others waits for those as well.
+        // Waiting for a read that came after all others waits for those as well.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;

@@ -1,5 +1,5 @@
 // Where a line meets balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part of
-// each ball. Everything is reckoned from the line's point nearest to the surface, so that a far origin does not cancel
+// each ball. Everything is computed from the line's point nearest to the surface, so that a far origin does not cancel
 // (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
 
 struct Line {

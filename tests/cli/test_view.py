@@ -186,7 +186,7 @@ class View(CliTest):
         self.assertGreater(report["servo"]["ticks"], 300)
         self.assertGreater(report["relevance_ms"]["count"], 5)
         self.assertGreater(report["servo"]["relevance_age"]["count"], 100)
-        self.assertTrue(any("Assistance on" in line for line in report["messages"]), report["messages"])
+        self.assertTrue(any("Guidance on" in line for line in report["messages"]), report["messages"])
 
     def test_a_control_point_is_dragged(self):
         session = self.write_ball()

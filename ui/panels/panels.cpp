@@ -118,7 +118,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
                                    ImGuiWindowFlags_AlwaysVerticalScrollbar;
     ImGui::Begin("Side panel", nullptr, flags);
     section("Probe and painting", true, probe_panel, model, actions);
-    // Who paints needs the room for the transfer function; who traces sees it, whatever was folded.
+    // While painting, the transfer function needs the room; while tracing the section is open, even if it was folded.
     if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
     section("Tracing", model.trace_summary.nodes > 0, trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);
