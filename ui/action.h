@@ -159,15 +159,15 @@ using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFro
                             Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
-/// Looking from elsewhere and moving the probe: no reason to save.
-inline bool moves_view(const Action& action)
+/// It may change what a session holds but for the camera and the probe's place.
+inline bool edits_session(const Action& action)
 {
-    const auto is = [&]<class... Kinds>(std::variant<Kinds...>*) {
+    const auto is_one_of = [&]<class... Kinds>(const std::variant<Kinds...>*) {
         return (std::holds_alternative<Kinds>(action) || ...);
     };
-    return is(static_cast<
-              std::variant<Orbit, Roll, Move, Zoom, DragInMap, LookFrom, MoveClip, ProbeTo, ProbeOnto, PushProbe>*>(
-        nullptr));
+    using Harmless = std::variant<Orbit, Roll, Move, Zoom, DragInMap, LookFrom, MoveClip, ProbeTo, ProbeOnto, PushProbe,
+                                  UpdateOcclusion, Save, Screenshot, ShowHelp, Quit>;
+    return !is_one_of(static_cast<const Harmless*>(nullptr));
 }
 
 }  // namespace shvr::ui

@@ -249,7 +249,7 @@ void App::apply_all()
         if (needs_document && !document_) continue;
         try {
             std::visit([&](const auto& what) { apply(what); }, action);
-            if (document_ && !moves_view(action)) note_edit();
+            if (document_ && edits_session(action)) note_edit();
         } catch (const std::exception& error) {
             say(error.what());
         }

@@ -171,6 +171,7 @@ void App::show_preview()
         document.previewer.advance();
     } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
         document.session.probe.preview = false;
+        note_edit();
         document.previewer.want(std::nullopt);
         say(error.what());
     }
