@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "engine/passes/pixel_groups.h"
+
 namespace shvr {
 
 namespace {
@@ -49,7 +51,7 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
             pass.block("visible_groups", std::span<const uint32_t>(visibility.visible_groups));
         }
         pass.push(visibility.params);
-        pass.dispatch({8 * uint32_t(batch.size()), 8, 1});
+        group_each(pass, batch.size());
         volume.pages->cell_leap = pass.write("cell_leap", volume.pages->cell_leap);
     }
 }

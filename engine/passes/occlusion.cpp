@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/passes/pixel_groups.h"
+
 namespace shvr {
 
 namespace {
@@ -145,7 +147,7 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     bind_opacities(pass, input.near);
     pass.read("atlas", volume.atlas);
     bind_leap(pass, volume);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
+    group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         pass.read(CELL_NAMES[size], occlusion.cells[size]);
         scratch.around[size] = pass.write(AROUND_NAMES[size], scratch.around[size]);
@@ -166,7 +168,7 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
     pass.block("jobs", jobs);
     bind_opacities(pass, input);
     pass.read("atlas", volume.atlas);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, 1});
+    group_each(pass, jobs.size());
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
         occlusion.cells[size] = pass.write(CELL_NAMES[size], occlusion.cells[size]);
 }
@@ -198,7 +200,7 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     pass.read("near", scratch.near);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);
     bind_leap(pass, volume);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
+    group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     occlusion.values = pass.write("values", occlusion.values);
 }
 
