@@ -59,7 +59,7 @@ void add_device_options(CLI::App& command, Common& common)
     command.add_option("--budget-host", common.budget_host_mib, "Host memory SHVR may use for bricks and transfers")
         ->type_name("MIB");
     add_input_options(command, common);
-    command.add_option("--threads", common.threads, "Worker threads; 0: one a core")->check(CLI::Range(0, 1024));
+    command.add_option("--threads", common.threads, "Worker threads; 0: one per core")->check(CLI::Range(0, 1024));
 }
 
 void say(const Common& common, const std::string& line)
