@@ -267,7 +267,7 @@ void App::work()
     attempt(painting_, [this] { follow_stroke(); });
     attempt(previewing_, [this] { show_preview(); });
     attempt(looking_, [this] { follow_look(); });
-    for (const std::string& message : renderer_->take_messages()) say(message);
+    for (const std::string& message : renderer_->scene().take_messages()) say(message);
     attempt(photographing_, [this] { follow_screenshots(); });
 }
 
@@ -288,7 +288,7 @@ void App::follow_stroke()
     journal_failure_ = failure;
     if (!document.annotator.stroke_is_running()) return;
     extend_stroke();
-    if (const std::optional<VoxelBox> painted = document.annotator.advance()) document.screen.changed(*painted);
+    static_cast<void>(document.annotator.advance());
     if (!document.annotator.stroke_is_running()) stroke_ended();
 }
 
@@ -303,9 +303,8 @@ void App::follow_look()
         look_is_stale_ = camera_moved_ = false;
     }
     // A running stroke or touch names what it needs itself.
-    if (renderer_->paged() && !document.assistance && !document.annotator.stroke_is_running())
-        renderer_->paged()->prefer(document.voxels_around_probe());
-    renderer_->show_always(document.session.probe.shell ? std::optional(document.voxels_around_probe()) : std::nullopt);
+    if (!document.assistance && !document.annotator.stroke_is_running())
+        renderer_->volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
 }

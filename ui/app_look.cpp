@@ -150,7 +150,8 @@ void App::apply(const SetTransferFunction& action)
 void App::apply(const SetGroup& action)
 {
     document_->session.groups[action.group] = action.settings;
-    show_surfaces(*renderer_, document_->surfaces, document_->annotator.document().trace, document_->session.groups);
+    renderer_->scene().show_surfaces(document_->surfaces, document_->annotator.document().trace,
+                                     document_->session.groups);
     look_again();
 }
 

@@ -9,15 +9,9 @@ namespace shvr::ui {
 
 namespace {
 
-const char* name_of(Brush brush)
-{
-    return brush == Brush::fill ? "fill" : brush == Brush::flood ? "flood fill" : "speckle fill";
-}
-
 std::string painted_sentence(const PaintOp& brush, int64_t voxels)
 {
-    const bool erases = brush.paints_group && brush.group == 0;
-    if (erases) return sentence("Erased ", voxels, " voxels");
+    if (brush.erases()) return sentence("Erased ", voxels, " voxels");
     if (!brush.density) return sentence("Painted ", voxels, " voxels in group ", int(brush.group));
     const std::string groups = brush.paints_group ? sentence(" and of group ", int(brush.group)) : std::string();
     return sentence("Painted ", voxels, " changes of density", groups);
@@ -44,7 +38,7 @@ void App::apply(const ProbeOnto& action)
         point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
     } else {
         const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
-        point = renderer_->pick(document_->session, seen.shot.camera, pixels, pixel);
+        point = renderer_->pick(document_->session.look(), seen.shot.camera, pixels, pixel, document_->probe_look());
     }
     if (!point) return say("Nothing opaque enough there: the probe stays where it is");
     document_->touch.place(*point);
@@ -72,7 +66,7 @@ void App::apply(const SetBrush& action)
     const bool is_other = action.brush.brush != document_->brush.brush;
     document_->brush = action.brush;
     document_->brush.group = group;
-    if (is_other) say(sentence("Brush: ", name_of(action.brush.brush)));
+    if (is_other) say(sentence("Brush: ", row_of(action.brush.brush).name));
 }
 
 void App::apply(const ShowShell& action)

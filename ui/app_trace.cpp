@@ -7,24 +7,24 @@ namespace shvr::ui {
 namespace {
 
 /// What was done, for the status bar.
-std::string said_of(const TraceOp& op, const TraceEffect& effect, const TraceGraph& trace)
+std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace)
 {
     const TraceSelection& selected = trace.selection();
-    if (effect.selection) {
+    if (selects) {
         if (selected.empty()) return "Nothing is selected";
         if (const auto node = selected.node()) return sentence("Node ", *node, " is selected");
         if (const auto internode = selected.internode()) return sentence("Internode ", *internode, " is selected");
         return sentence("A segment is selected: ", selected.internodes.size(), " internodes, ", selected.nodes.size(),
                         " nodes");
     }
-    if (effect.changes.empty()) return "Nothing to change in the trace";
+    if (!done) return "Nothing to change in the trace";
     if (std::holds_alternative<NodeOp>(op)) {
         const uint32_t node = *selected.node();
         const auto internodes = trace.internodes_of(node);
         if (internodes.empty()) return sentence("Node ", node, " added");
         return sentence("Node ", node, " added, linked with node ", trace.internode(internodes[0]).other(node));
     }
-    return "Trace: " + effect.label;
+    return "Trace: " + done->label;
 }
 
 }  // namespace
@@ -37,15 +37,11 @@ void App::apply(const Trace& action)
     if (std::holds_alternative<NodeOp>(action.op) && document_->brush.group == 0)
         return say("Group 0 is the eraser; choose a group from 1 up for the node");
     TraceEffect effect = effect_of(action.op, trace, document_->trace_defaults());
-    const bool changes_trace = !effect.changes.empty();
-    if (effect.selection) annotator.select_trace(*effect.selection);
     document_->drags_node = false;
-    if (changes_trace) {
-        Command command{effect.label, {effect.changes.begin(), effect.changes.end()}};
-        annotator.edit_trace(effect.label, effect.changes);
-        show_changes(command);
-    }
-    say(said_of(action.op, effect, trace));
+    if (effect.selection) annotator.work().select_trace(*effect.selection);
+    const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
+    if (done) show_changes(*done);
+    say(said_of(action.op, effect.selection.has_value(), done, trace));
 }
 
 void App::apply(const DragNode& action)

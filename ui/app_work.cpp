@@ -24,19 +24,13 @@ void App::apply(const Redo&)
     say("Redone: " + command->label);
 }
 
-/// Whatever a command changed is drawn again.
+/// What the window says of the trace; the scene itself learns of changes from the annotator.
 void App::show_changes(const Command& command)
 {
     Document& document = *document_;
-    document.screen.changed(document.annotator.reach_of(command));
     const bool is_traced = std::ranges::any_of(
         command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
-    if (!is_traced) return;
-    const TraceGraph& trace = document.annotator.document().trace;
-    document.drags_node = false;
-    document.trace_summary = summary_of(trace);
-    show_changed_surfaces(*renderer_, document.surfaces, trace, document.session.groups, command.changes);
-    document.screen.changed(trace_reach(trace, command.changes, document.volume().spacing));
+    if (is_traced) document.drags_node = false;
 }
 
 void App::apply(const Save&)
@@ -94,15 +88,14 @@ std::string App::finish_stroke()
     extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
     double last_progress_s = window_.now_s();
-    const auto show = [&](const VoxelBox& voxels) {
-        document_->screen.changed(voxels);
-        last_progress_s = window_.now_s();
-    };
+    uint64_t uploads = 0;
     try {
         while (annotator.stroke_is_running()) {
-            if (const std::optional<VoxelBox> painted = annotator.advance()) show(*painted);
-            if (renderer_->paged())
-                for (const VoxelBox& arrived : renderer_->paged()->advance()) show(arrived);
+            const bool has_painted = annotator.advance().has_value();
+            renderer_->scene().advance();
+            const uint64_t uploads_before =
+                std::exchange(uploads, renderer_->volume().counts().value_or(DeviceVolume::Counts{}).uploads);
+            if (has_painted || uploads != uploads_before) last_progress_s = window_.now_s();
             if (window_.now_s() - last_progress_s > PATIENCE_S) {
                 annotator.drop_stroke();
                 return sentence("its bricks did not arrive within ", PATIENCE_S, " s");

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/live/trace_look.h"
+#include "engine/live/trace_marks.h"
 #include "engine/session/label_looks.h"
 
 namespace shvr::ui {
@@ -70,15 +70,14 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 void Document::load_work(Renderer& renderer)
 {
     messages = annotator.open(work_files(session, volume()));
-    show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
-    trace_summary = summary_of(annotator.document().trace);
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
 void Document::show_again(Renderer& renderer)
 {
     load(renderer, source, statistics, session);
-    annotator.bring_all_to_device();
-    show_surfaces(renderer, surfaces, annotator.document().trace, session.groups);
+    renderer.scene().show(annotator.document());
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
 ProbeLook Document::probe_look() const
@@ -111,34 +110,23 @@ Session Document::saved_session() const
     saved.surfaces = surfaces;
     saved.cameras[WINDOW_CAMERA] = camera;
     saved.camera_name = WINDOW_CAMERA;
-    saved.probe = {.voxel = probe_voxel(),
-                   .radius_voxels = brush.radius_voxels,
-                   .group = brush.group,
-                   .brush = brush.brush,
-                   .region = brush.region,
-                   .connectivity = brush.connectivity,
-                   .paint_threshold = brush.threshold,
-                   .haptic_threshold = haptic_threshold,
-                   .shown = session.probe.shown,
-                   .shell = session.probe.shell,
-                   .shell_opacity = session.probe.shell_opacity,
-                   .preview = session.probe.preview,
-                   .density = brush.density,
-                   .paints_group = brush.paints_group};
+    saved.probe.voxel = probe_voxel();
+    saved.probe.brush = settings_of(brush);
+    saved.probe.haptic_threshold = haptic_threshold;
     return saved;
 }
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
 /// What a person has set, as it would be written. Surfaces are left out: nothing here changes them, and they are many.
-std::string Document::edits() const
+Session Document::edits() const
 {
     Session edits = saved_session();
     edits.surfaces.clear();
     edits.cameras = session.cameras;
     edits.camera_name = session.camera_name;
     edits.probe.voxel.reset();
-    return to_text(edits, {});
+    return edits;
 }
 
 bool Document::edits_are_saved() const
@@ -177,8 +165,8 @@ void Document::save()
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
-    annotator.name_files(session.mask_path, session.trace_path, session.density_path);
-    annotator.save(label_looks(session.groups, annotator.document().mask));
+    annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+    annotator.work().save(label_looks(session.groups, annotator.document().mask));
     write_session();
     note_saved();
 }

@@ -44,7 +44,6 @@ struct Document {
     std::vector<std::string> messages;  ///< what opening the work found
     Tool tool = Tool::paint;
     bool drags_node = false;  ///< the selected one goes with the probe
-    TraceSummary trace_summary;
 
     /// Brings everything to the device again, which held something else meanwhile. Fails as load and create do.
     void show_again(Renderer& renderer);
@@ -83,11 +82,11 @@ private:
     void name_trace();
     void write_session() const;
     bool edits_are_saved() const;
-    std::string edits() const;
+    Session edits() const;
     void note_saved();
 
-    bool overridden_;          ///< by settings that nobody wrote into the file
-    std::string saved_edits_;  ///< edits() of what was read or written last
+    bool overridden_;      ///< by settings that nobody wrote into the file
+    Session saved_edits_;  ///< edits() of what was read or written last
     Camera saved_camera_;
     glm::dvec3 saved_probe_voxel_{0.0};
     mutable std::optional<bool> edits_are_saved_;  ///< as it was found out last

@@ -47,11 +47,7 @@ Action next_brush(const Model& model, double)
 {
     PaintOp brush = model.brush;
     brush.path.clear();
-    switch (model.brush.brush) {
-        case Brush::fill: brush.brush = Brush::flood; break;
-        case Brush::flood: brush.brush = Brush::speckle; break;
-        case Brush::speckle: brush.brush = Brush::fill; break;
-    }
+    brush.brush = BRUSHES[(size_t(model.brush.brush) + 1) % BRUSHES.size()].brush;
     return SetBrush{brush};
 }
 

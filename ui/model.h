@@ -38,7 +38,6 @@ struct Model {
     // Tracing
     Tool tool = Tool::paint;
     const TraceGraph& trace;
-    const TraceSummary& trace_summary;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     /// Voxels that painting would change now; nothing where no preview is shown or it is on its way.
     std::optional<int64_t> previewed_voxels;

@@ -1,7 +1,9 @@
 #pragma once
-// What one stroke of a brush is: the same description for scripts, the window and a stylus.
+// Brushes, and what one stroke of a brush is: the same description for scripts, the window and a stylus.
 
+#include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/annotation/density_brush.h"
@@ -10,6 +12,67 @@ namespace shvr {
 
 enum class Brush { fill, flood, speckle };
 
+/// Everything that is written about a brush.
+struct BrushRow {
+    Brush brush;
+    const char* key;    ///< in scripts and sessions
+    const char* name;   ///< in sentences
+    const char* title;  ///< in menus
+    const char* hint;
+    bool is_connected;  ///< it selects connected voxels, so connectivity matters
+};
+
+/// In the order of menus, which is that of the enumeration.
+inline constexpr std::array BRUSHES{
+    BrushRow{Brush::fill, "fill", "fill", "Fill",
+             "Paints every voxel in the probe that is at or above the paint threshold.", false},
+    BrushRow{Brush::flood, "flood", "flood fill", "Flood fill",
+             "Paints what is connected to the centre of the probe: voxels at or above the threshold, inside the probe.",
+             true},
+    BrushRow{
+        Brush::speckle, "speckle", "speckle fill", "Speckle fill",
+        "Paints pieces that lie wholly inside the probe and leaves larger ones alone: clears dirt and noise out of "
+        "the view.",
+        true},
+};
+
+constexpr const BrushRow& row_of(Brush brush)
+{
+    return BRUSHES.at(size_t(brush));
+}
+
+/// Their keys, for readers and writers.
+inline constexpr auto BRUSH_SPELLINGS = [] {
+    std::array<Spelling<Brush>, BRUSHES.size()> spellings{};
+    for (size_t i = 0; i < BRUSHES.size(); ++i) spellings[i] = {BRUSHES[i].brush, BRUSHES[i].key};
+    return spellings;
+}();
+constexpr std::span<const Spelling<Brush>> spellings_of(Brush)
+{
+    return BRUSH_SPELLINGS;
+}
+
+inline constexpr Spelling<RegionShape> REGION_SHAPES[] = {{RegionShape::ball, "ball"}, {RegionShape::box, "box"}};
+constexpr std::span<const Spelling<RegionShape>> spellings_of(RegionShape)
+{
+    return REGION_SHAPES;
+}
+
+/// How a person has set the brush.
+struct BrushSettings {
+    Brush brush = Brush::flood;
+    RegionShape region = RegionShape::ball;
+    uint8_t group = 1;                  ///< 0 erases
+    std::optional<double> threshold{};  ///< intensity; the middle of what the transfer function shows
+    double radius_voxels = 6.0;         ///< along x; of the probe, too
+    int connectivity = 6;               ///< 6 or 26
+    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
+    std::optional<DensityBrush> density{};
+    bool paints_group = true;  ///< false, where there is `density`: offsets alone
+    bool operator==(const BrushSettings&) const = default;
+};
+
+/// One stroke: the settings with a definite threshold, and a path.
 struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
@@ -18,10 +81,28 @@ struct PaintOp {
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
-    /// Offsets for the selected voxels; group 0 takes theirs away.
+    /// Offsets for the selected voxels; group 0 removes theirs.
     std::optional<DensityBrush> density{};
     bool paints_group = true;  ///< false: offsets alone
     bool operator==(const PaintOp&) const = default;
+
+    /// It takes voxels out of their group; their offsets too, where it paints offsets.
+    bool erases() const { return paints_group && group == 0; }
 };
+
+/// `threshold` is taken where the settings have none.
+inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
+{
+    // A new member does not compile until it is here.
+    const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group] = settings;
+    return {brush,           region,  group,       own_threshold.value_or(threshold), radius_voxels, connectivity,
+            std::move(path), density, paints_group};
+}
+
+inline BrushSettings settings_of(const PaintOp& op)
+{
+    const auto& [brush, region, group, threshold, radius_voxels, connectivity, path, density, paints_group] = op;
+    return {brush, region, group, threshold, radius_voxels, connectivity, density, paints_group};
+}
 
 }  // namespace shvr

@@ -1,78 +1,47 @@
 #pragma once
-// Density painting: offsets that raise (or lower) what single voxels hold, in sparse bricks of 32^3, beside the volume.
-// Like the mask it changes through records of exact before and after and through nothing else.
+// Density painting: offsets that raise (or lower) single voxels, kept beside the volume in sparse bricks
+// (sparse_bricks.h).
 //
-// With P the offset that is painted and p(v) that of voxel v, which falls off from P to 0 (density_brush.h):
+// With P the painted offset and p(v) that of voxel v, which falls off from P to 0 (density_brush.h):
 //
 //     new = max(p, min(old, P))        P >= 0
 //     new = min(p, max(old, P))        P <  0, the same with signs turned
 //
-// so that painting over higher offsets lowers them to P, painting over lower ones keeps the higher of both, painting the
-// same again changes nothing, and the order of positions within a stroke does not matter. P = 0 resets.
+// So painting over higher offsets lowers them to P, painting over lower ones keeps the higher of both, painting twice
+// changes nothing more, and the order of positions within a stroke does not matter. P = 0 resets.
 //
-// Offsets are kept to 32 bits (engine/volume/offset_brick.h). A brick without offsets does not exist. One thread owns a
-// field; bricks never change once they are there, so other threads may keep those they were given.
+// Offsets have 32 bits (engine/volume/offset_brick.h).
 
-#include <map>
-#include <memory>
-
-#include "engine/annotation/mask.h"
+#include "engine/annotation/sparse_bricks.h"
 #include "engine/volume/offset_brick.h"
 
 namespace shvr {
 
-/// Consecutive voxels of one brick (x fastest) that go from one offset to another; `before != after`.
-struct DensityRun {
-    uint16_t first = 0;
-    uint16_t last = 0;  ///< inclusive
-    uint32_t before = 0;
-    uint32_t after = 0;
-    bool operator==(const DensityRun&) const = default;
-};
+/// Voxels that go from one offset (bits of offset_brick.h) to another, and those of one brick.
+using DensityRun = BrickRun<uint32_t>;
+using DensityBrickChange = BrickChange<uint32_t>;
 
-/// What changed in one brick. Runs ascend and do not overlap.
-struct DensityBrickChange {
-    int64_t brick = 0;  ///< linear index in the grid of bricks, x fastest
-    std::vector<DensityRun> runs;
-    bool operator==(const DensityBrickChange&) const = default;
-    int64_t voxels() const;
-};
-
-class DensityField {
+class DensityField : public SparseBricks<uint32_t> {
 public:
     /// Of a volume without voxels.
     DensityField() = default;
-    DensityField(Size3 size, VoxelType type);
+    DensityField(const Size3& size, VoxelType type) : SparseBricks(size), type_(type) {}
 
-    Size3 size() const { return size_; }
     VoxelType type() const { return type_; }
-    glm::i64vec3 brick_counts() const { return counts_; }
-    glm::ivec3 position_of(int64_t brick) const;
-
     /// In intensity units.
-    double at(const Size3& voxel) const;
-    /// Null where no voxel of the brick has an offset.
-    std::shared_ptr<const OffsetBrick> brick(int64_t index) const;
-    /// Bricks with offsets, ascending.
-    std::vector<int64_t> painted_bricks() const;
-    /// How many voxels have one.
+    double at(const Size3& voxel) const { return offset_of(type_, value_at(voxel)); }
+    /// How many voxels have an offset.
     int64_t voxels() const { return voxels_; }
 
-    /// Why a record cannot be applied, as Mask::misfit says; nor can offsets that are no numbers, or beyond the limit.
-    std::string misfit(const DensityBrickChange& change, Direction direction) const;
-    /// Applies a record that fits (SHVR_CHECK). Frees bricks that return to wholly 0.
+    /// Why a record cannot be applied; empty where it fits. Offsets must be numbers within the limit (offset_limit).
+    std::string why_it_does_not_fit(const DensityBrickChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK).
     void apply(const DensityBrickChange& change, Direction direction);
-    /// Replaces a brick that has no offsets; those beyond the volume's end are dropped. For files.
-    void put(int64_t index, OffsetBrick offsets);
-    /// The voxels that a record is about lie in this box of the volume.
-    VoxelBox reach_of(const DensityBrickChange& change) const;
+    /// Sets the offsets of a brick that has none (SHVR_CHECK); drops those beyond the volume's border. For files.
+    void put(int64_t index, const OffsetBrick& offsets) { voxels_ += SparseBricks::put(index, offsets); }
 
 private:
-    Size3 extent_of(int64_t brick) const;
-    Size3 size_{0};
     VoxelType type_ = VoxelType::uint8;
-    glm::i64vec3 counts_{0};
-    std::map<int64_t, std::shared_ptr<const OffsetBrick>> bricks_;
     int64_t voxels_ = 0;
 };
 

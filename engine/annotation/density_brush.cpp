@@ -9,20 +9,6 @@
 
 namespace shvr {
 
-namespace {
-
-/// Appends voxel `at`, or makes the last run longer.
-void append(std::vector<DensityRun>& runs, uint16_t at, uint32_t before, uint32_t after)
-{
-    if (before == after) return;
-    if (!runs.empty() && runs.back().last + 1 == at && runs.back().before == before && runs.back().after == after)
-        runs.back().last = at;
-    else
-        runs.push_back({at, at, before, after});
-}
-
-}  // namespace
-
 double automatic_offset(double lowest_point, double paint_threshold)
 {
     return std::max(0.0, lowest_point - paint_threshold);
@@ -40,7 +26,7 @@ uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t he
 
 DensityStroke::DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff)
     : size_(size),
-      counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE)),
+      counts_(brick_grid(size)),
       spacing_(spacing),
       type_(type),
       offset_(offset),
@@ -69,10 +55,9 @@ void DensityStroke::add(const BrushRegion& region, std::span<const uint32_t> wor
                     const double distance = glm::length((glm::dvec3(voxel) + 0.5 - centre_voxel) * spacing_);
                     const uint32_t here = offset_bits(type_, offset_ * std::max(0.0, 1.0 - distance / radius));
                     if (here == 0) continue;
-                    const Size3 where = voxel / BRICK_SIDE, in = voxel % BRICK_SIDE;
-                    std::unique_ptr<OffsetBrick>& brick = strongest_[index_of(where, counts_)];
+                    std::unique_ptr<OffsetBrick>& brick = strongest_[index_of(voxel / BRICK_SIDE, counts_)];
                     if (!brick) brick = std::make_unique<OffsetBrick>(OffsetBrick{});
-                    uint32_t& strongest = (*brick)[size_t(in.x + BRICK_SIDE * (in.y + BRICK_SIDE * in.z))];
+                    uint32_t& strongest = (*brick)[index_in_brick(voxel)];
                     if (std::abs(offset_of(type_, here)) > std::abs(offset_of(type_, strongest))) strongest = here;
                 }
         }
@@ -94,7 +79,7 @@ std::vector<DensityBrickChange> DensityStroke::changes(const DensityField& field
                                       : strongest == strongest_.end() ? 0
                                                                       : (*strongest->second)[at];
                 const uint32_t old = before ? (*before)[at] : 0;
-                append(change.runs, uint16_t(at), old, painted_offset(type_, old, most, here));
+                append_run(change.runs, at, at, old, painted_offset(type_, old, most, here));
             }
         if (change.runs.empty()) continue;
         change.runs.shrink_to_fit();  // the history keeps it

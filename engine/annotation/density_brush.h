@@ -11,34 +11,42 @@
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/region.h"
+#include "engine/base/spelling.h"
 
 namespace shvr {
 
 enum class Falloff { flat, distance };
+inline constexpr Spelling<Falloff> FALLOFFS[] = {{Falloff::flat, "flat"}, {Falloff::distance, "distance"}};
+constexpr std::span<const Spelling<Falloff>> spellings_of(Falloff)
+{
+    return FALLOFFS;
+}
 
-/// What is painted beside, or instead of, a group.
+/// The density part of a brush: painted together with a group or instead of one.
 struct DensityBrush {
-    /// P, in intensity units. Nothing: what makes the paint threshold as bright as the lowest point of the transfer
-    /// function (`automatic_offset`), which whoever paints puts in its place.
+    /// P, in intensity units. Nothing: automatic, which makes the paint threshold as bright as the lowest point of the
+    /// transfer function; callers replace it by `automatic_offset` before painting.
     std::optional<double> offset{};
     Falloff falloff = Falloff::flat;
     bool operator==(const DensityBrush&) const = default;
 };
 
-/// The lowest point of the transfer function less the paint threshold; 0 where that is negative: such voxels are seen.
+/// The lowest point of the transfer function minus the paint threshold; 0 where that is negative, since such voxels are
+/// visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
-/// The offset of a voxel that had `old`, after P and p(v) <= P: the rule, on bits of the type.
+/// The rule of density.h on bits of the type: the new offset of a voxel with offset `old`, for P = `most` and p(v) =
+/// `here`.
 uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t here);
 
 class DensityStroke {
 public:
-    /// Fails where the offset is not a finite number. What is beyond `offset_limit` counts as the limit.
+    /// Fails where the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
-    /// The voxels of `region`, which is around `centre_voxel`, whose bit is set (VoxelSelection::add).
+    /// Adds the voxels of `region`, which lies around `centre_voxel`, whose bit is set (VoxelSelection::add).
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
-    /// The records that paint all that was added; voxels that stay as they are are left out.
+    /// The records that paint everything added so far, without voxels that keep their offset.
     std::vector<DensityBrickChange> changes(const DensityField& field) const;
 
 private:

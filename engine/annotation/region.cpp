@@ -18,8 +18,8 @@ struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last for which `holds`, by that test itself: the estimate, `reach` to
-/// both sides of `centre`, only tells where to begin.
+/// The voxels of `within` from the first to the last for which `holds`. The test itself decides; the estimate, `reach`
+/// to both sides of `centre`, is only where the search begins.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
@@ -62,20 +62,13 @@ void refuse_size(double radius_voxels, const Size3& size)
              " (256 x 256 x 256), each row filled up to a multiple of 32");
 }
 
-/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`. Joins the last run where it can.
+/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`.
 void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, uint8_t group)
 {
     while (first < end) {
-        const uint8_t old = before[first];
         size_t next = first + 1;
-        while (next < end && before[next] == old) ++next;
-        if (old != group) {
-            const auto last = uint16_t(next - 1);
-            if (!runs.empty() && runs.back().last + size_t{1} == first && runs.back().before == old)
-                runs.back().last = last;
-            else
-                runs.push_back({uint16_t(first), last, old, group});
-        }
+        while (next < end && before[next] == before[first]) ++next;
+        append_run(runs, first, next - 1, before[first], group);
         first = next;
     }
 }
@@ -159,7 +152,7 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
     return positions;
 }
 
-VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_((size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE)) {}
+VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_(brick_grid(size)) {}
 
 // A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks that
 // a row of the region goes through are looked up once for all rows that go through the same ones.
@@ -184,7 +177,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Where spans were honoured already this changes nothing; where not, nothing is selected outside.
+                // Kernels should keep to the spans; whatever they return, nothing outside is selected.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));
@@ -195,7 +188,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
 bool VoxelSelection::contains(const Size3& voxel) const
 {
     if (!is_inside(voxel, size_)) return false;
-    const Size3 where = voxel / Size3(BRICK_SIDE), in = voxel % Size3(BRICK_SIDE);
+    const Size3 where = voxel / BRICK_SIDE, in = voxel % BRICK_SIDE;
     const auto found = bricks_.find(index_of(where, counts_));
     return found != bricks_.end() && (found->second[size_t(in.y + BRICK_SIDE * in.z)] >> in.x & 1) != 0;
 }
@@ -208,14 +201,12 @@ int64_t VoxelSelection::count() const
     return sum;
 }
 
-namespace {}  // namespace
-
 std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group)
 {
     static constexpr MaskBrick UNPAINTED{};
     std::vector<MaskBrickChange> changes;
     for (const auto& [index, bits] : selection.bricks()) {
-        const MaskBrick* painted = mask.brick(index);
+        const MaskBrick* painted = mask.brick(index).get();
         if (!painted && group == 0) continue;
         MaskBrickChange change{.brick = index, .runs = {}};
         for (size_t row = 0; row < bits.size(); ++row)

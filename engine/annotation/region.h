@@ -32,14 +32,14 @@ struct BrushRegion {
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
-/// Fails where a brush of that radius could come to hold more, somewhere in a volume of that size.
+/// Fails where the region of such a brush would be too large at some position in a volume of that size.
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
 
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
 /// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
 /// Fails where there are more than MOST_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
-/// How many they are, at no cost; infinite where coordinates are too far apart for a double.
+/// How many positions that is, without making them; infinite where coordinates are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);
 inline constexpr int64_t MOST_STROKE_POSITIONS = 1'000'000;
 
@@ -51,7 +51,7 @@ public:
     void add(const BrushRegion& region, std::span<const uint32_t> words);
     bool contains(const Size3& voxel) const;
     int64_t count() const;
-    using Bits = std::array<uint32_t, MASK_BRICK_VOXELS / 32>;
+    using Bits = std::array<uint32_t, VOXELS_PER_BRICK / 32>;
     const std::map<int64_t, Bits>& bricks() const { return bricks_; }
 
 private:
@@ -60,7 +60,7 @@ private:
     std::map<int64_t, Bits> bricks_;
 };
 
-/// The records that give every selected voxel `group`; voxels that have it already are left out.
+/// The records that give every selected voxel `group`, without voxels that have it already.
 std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group);
 
 }  // namespace shvr

@@ -16,7 +16,7 @@ constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
 /// More sentences than a person reads; the count goes on.
 constexpr size_t MOST_MESSAGES = 20;
 
-/// Who decodes gives way to who draws: on two cores, loaders of the same rank keep the first picture waiting. Linux
+/// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first picture. Linux
 /// holds a rank for each thread; where it does not (POSIX has one a process), or refuses, only haste is lost.
 void give_way()
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Some slices of a volume as bits: which voxels are at or above a threshold. For components.cpp.
+// A slab of slices of a volume as bits: which voxels are at or above a threshold. For components.cpp.
 
 #include <vector>
 
@@ -12,8 +12,8 @@ class BitSlab {
 public:
     BitSlab(const VolumeSource& source, const ThresholdBits& bits);
 
-    /// How many slices are read at once: the source's blocks are then decoded once, unless the bits of a block's slices
-    /// take more than 64 MiB.
+    /// How many slices are read at once: enough for the source's blocks to be decoded once, unless the bits of that
+    /// many slices take more than 64 MiB.
     int64_t slices() const { return slices_; }
     /// Slices [lower, upper), at most `slices()`. What the source knows to be below the threshold is not read.
     void read(int64_t lower, int64_t upper);

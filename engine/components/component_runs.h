@@ -33,8 +33,8 @@ struct SliceRuns {
     }
 };
 
-/// A temporary file without a name, so that nothing is left of it whatever happens. Different slices may be written and
-/// read at once, by any thread; every one is written once, before it is read.
+/// An unnamed temporary file, so that nothing is left behind whatever happens. Any thread may write and read different
+/// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
     /// In `folder`, for volumes of `size`. Fails where no file can be made there.

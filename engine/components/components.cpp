@@ -20,7 +20,7 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
-/// Ranges of slices for each thread, since some hold more runs than others; and the thinnest.
+/// Ranges of slices per thread, since some hold more runs than others; and the minimum thickness of a range.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
 
 [[noreturn]] void refuse_labels()
@@ -29,7 +29,7 @@ constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
          "threshold, or a part of the volume");
 }
 
-/// What is held, and the most that was.
+/// Memory in use, and its maximum.
 class HeldBytes {
 public:
     void change(int64_t bytes)
@@ -44,8 +44,8 @@ private:
     std::atomic<int64_t> now_ = 0, peak_ = 0;
 };
 
-/// Joins the runs of two neighbouring rows that touch; `reach` 1: over an edge or a corner, too. Runs of `row` that have no
-/// label yet take one.
+/// Joins the runs of two neighbouring rows that touch; `reach` 1: over an edge or a corner, too. Runs of `row` that
+/// have no label yet take one.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
     auto first = before.begin();
@@ -148,9 +148,9 @@ private:
 
 // ---- All ranges -----------------------------------------------------------------------------------------------------
 
-/// What the volume of labels needs of the labelling.
+/// What the volume of labels keeps of the labelling.
 struct LabelTable {
-    LabelForest forest;             ///< what a provisional label leads to is its final one
+    LabelForest forest;             ///< the parent of a provisional label is its final one
     std::vector<int64_t> lower;     ///< first slice of each range
     std::vector<uint32_t> bases;    ///< of its labels
     std::optional<RunFile> runs{};  ///< with labels of their ranges
@@ -273,7 +273,7 @@ private:
         counts_.forest_bytes = forest.bytes();
     }
 
-    /// Every label leads to its component's smallest one, which alone has voxels then.
+    /// Afterwards the parent of every label is its component's smallest one, which has all voxels.
     void resolve()
     {
         LabelForest& forest = table_->forest;
@@ -293,7 +293,7 @@ private:
             return a.voxels != b.voxels ? a.voxels > b.voxels : a.label < b.label;
         }
     };
-    /// The `most` largest of those that `visit` tells of.
+    /// The `most` largest of those that `visit` reports.
     template <class Visit>
     static std::vector<Component> largest_of(size_t most, const Visit& visit)
     {

@@ -1,11 +1,11 @@
 #pragma once
-// Connected components of the voxels at or above a threshold, over a whole volume that need not fit into memory.
+// Connected components of the voxels at or above a threshold, in a volume that need not fit into memory.
 //
-// Slices are read slab by slab and turned into bits and runs; a run takes the label of a run it touches in the rows before
-// it, or a new one, and labels that meet are joined (label_forest.h). Ranges of slices are labelled at once by several
-// threads, and joined where they meet. What stays in memory is a slab and two slices of runs for each range, and 12 bytes
-// for each provisional label (of which a part or all of a noisy volume's runs gets one); the labelled runs themselves go
-// to a temporary file, and only where the labels are wanted.
+// Slices are read slab by slab and turned into bits and runs; a run takes the label of a run it touches in the rows
+// before it, or a new one, and labels that meet are joined (label_forest.h). Several threads label ranges of slices in
+// parallel; the ranges are joined where they meet. In memory are a slab and two slices of runs per range, and 12 bytes
+// per provisional label (in a noisy volume up to one per run); the labelled runs themselves go to a temporary file, and
+// only if the labels are wanted.
 
 #include <filesystem>
 #include <functional>
@@ -21,12 +21,12 @@ enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are joined
 struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
     Connectivity connectivity = Connectivity::faces;
-    int64_t fewest_voxels = 1;    ///< smaller ones are not kept
-    int64_t most_components = 0;  ///< the largest N are kept, the first of equal ones; 0: all
-    int threads = 0;              ///< 0: one a core
+    int64_t fewest_voxels = 1;    ///< smaller components are dropped
+    int64_t most_components = 0;  ///< only the largest N are kept, the first of equal ones; 0: all
+    int threads = 0;              ///< 0: one per core
     /// Where the temporary file is made; nothing: labels are not wanted, and `labels` may not be called.
     std::optional<std::filesystem::path> run_folder{};
-    std::function<void(double fraction)> progress{};  ///< some times a second, on the calling thread
+    std::function<void(double fraction)> progress{};  ///< called a few times per second, on the calling thread
 };
 
 class Components {
@@ -37,13 +37,13 @@ public:
     };
     struct Counts {
         int64_t found = 0, kept = 0;
-        int64_t foreground_voxels = 0;  ///< of all that were found
+        int64_t foreground_voxels = 0;  ///< of all components
         int64_t kept_voxels = 0;
         int64_t largest_voxels = 0;      ///< 0 where there is none
-        std::vector<Component> largest;  ///< of those kept, the largest first, then the first; at most MOST_LARGEST
+        std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MOST_LARGEST
         int64_t provisional = 0;         ///< labels
-        int64_t peak_bytes = 0;          ///< held at most while labelling
-        int64_t forest_bytes = 0;        ///< of these, for provisional labels
+        int64_t peak_bytes = 0;          ///< of memory while labelling
+        int64_t forest_bytes = 0;        ///< of that, for provisional labels
         int64_t run_file_bytes = 0;
     };
     static constexpr size_t MOST_LARGEST = 100;
@@ -51,16 +51,16 @@ public:
     virtual ~Components() = default;
     const Counts& counts() const { return counts_; }
 
-    /// The volume of labels: 0 where nothing was kept, and 1 ... kept in the order of components' first voxels (z, then y,
-    /// then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this and `source`.
+    /// The volume of labels: 0 where nothing was kept, and 1 ... kept in the order of components' first voxels (z, then
+    /// y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this and `source`.
     virtual std::unique_ptr<VolumeSource> labels() const = 0;
 
 protected:
     Counts counts_;
 };
 
-/// Fails where the source does, where there are more than 2^32 provisional labels, and where the temporary file cannot be
-/// written. One thread may call it.
+/// Fails where the source does, where there are more than 2^32 provisional labels, and where the temporary file cannot
+/// be written. One thread may call it.
 std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options);
 
 }  // namespace shvr

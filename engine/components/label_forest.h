@@ -1,10 +1,10 @@
 #pragma once
-// Sets of provisional labels, joined as a scan finds that they belong together: union-find with path halving (Tarjan and
-// van Leeuwen 1984) in arrays, where the smallest label of a set stands for it, as in Wu, Otoo and Suzuki 2009. So a label
-// is never smaller than the one it leads to, and one ascending pass resolves all.
+// Sets of provisional labels, joined as a scan finds that they belong together: union-find with path halving (Tarjan
+// and van Leeuwen 1984) in arrays, where the smallest label represents its set, as in Wu, Otoo and Suzuki 2009. So a
+// label is never smaller than its parent, and one ascending pass resolves all.
 //
-// Labels lie in blocks that never move: adding them copies nothing, forests are appended to each other at no cost, and the
-// memory is what `bytes` says. One thread at a time.
+// Labels lie in blocks that never move: adding them copies nothing, forests are appended to each other at no cost, and
+// the memory is what `bytes` says. One thread at a time.
 
 #include <array>
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace shvr {
 class LabelForest {
 public:
     static constexpr uint32_t BLOCK = uint32_t{1} << 14;
-    /// Labels that there can be.
+    /// The maximum number of labels.
     static constexpr uint64_t MOST = uint64_t{1} << 32;
 
-    /// A set of its own. The caller sees to it that there are no more than MOST.
+    /// A new set. The caller makes sure that there are no more than MOST.
     uint32_t add()
     {
         if (next_ % BLOCK == 0) add_block();
@@ -36,7 +36,7 @@ public:
         while (parent(label) != label) label = parent(label) = parent(parent(label));
         return label;
     }
-    /// Returns the label that stands for both.
+    /// Returns the representative of the joined set.
     uint32_t join(uint32_t a, uint32_t b)
     {
         a = root_of(a);
@@ -47,13 +47,13 @@ public:
         return a;
     }
 
-    /// While there is work to do: what a label leads to. Afterwards: whatever the caller made of it.
+    /// While labelling: the parent of a label. Afterwards: whatever the caller stores there.
     uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
-    /// Of the label's own runs.
+    /// The number of voxels in the label's own runs.
     int64_t& voxels(uint32_t label) { return counts_[label / BLOCK]->at(label % BLOCK); }
 
-    /// The other's labels become labels of this forest, higher by the result.
+    /// Appends another forest, whose labels are shifted by the result.
     uint64_t append(LabelForest&& other)
     {
         const uint64_t base = blocks_.size() * uint64_t{BLOCK};
@@ -67,7 +67,7 @@ public:
         return base;
     }
 
-    /// Counts are not asked for any more.
+    /// Frees the voxel counts.
     void drop_counts() { counts_ = std::vector<std::unique_ptr<Counts>>(); }
 
     int64_t bytes() const

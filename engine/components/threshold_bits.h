@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Words of 64 bits that a row of so many voxels takes.
+/// The number of 64-bit words for a row of that many voxels.
 inline int64_t words_of_row(int64_t voxels)
 {
     return (voxels + 63) / 64;
@@ -18,15 +18,15 @@ inline int64_t words_of_row(int64_t voxels)
 
 class ThresholdBits {
 public:
-    /// In intensity units, as the voxels are; +-infinity is a threshold like any other, NaN is none (SHVR_CHECK).
+    /// In intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
     ThresholdBits(VoxelType type, double threshold);
 
     VoxelType type() const { return type_; }
-    /// Whether voxels within the range can be at or above the threshold.
+    /// Whether a voxel with a value in the range can be at or above the threshold.
     bool reaches(const ValueRange& range) const { return range.lower <= range.upper && range.upper >= threshold_; }
 
-    /// Bit b of word w is voxel 64 w + b: 1 where it is at or above the threshold, which NaN never is; 0 beyond the row.
-    /// `voxels` has native byte order and is aligned as its type wants it.
+    /// Bit b of word w is voxel 64 w + b: 1 where it is at or above the threshold, which NaN never is; 0 beyond the
+    /// row. `voxels` has native byte order and the alignment of its type.
     void convert(std::span<const std::byte> voxels, std::span<uint64_t> words) const;
 
 private:

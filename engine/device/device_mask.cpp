@@ -31,12 +31,6 @@ void DeviceMask::grow(uint64_t bricks)
                 if (const uint32_t slot = gpu::pack_slot({x, y, z}); slot != gpu::NO_SLOT) free_slots_.push_back(slot);
 }
 
-void DeviceMask::clear(bool hashed)
-{
-    clear();
-    hashed_ = hashed;
-}
-
 uint32_t DeviceMask::slot_of(int64_t brick) const
 {
     const auto found = slots_.find(brick);
@@ -54,48 +48,66 @@ void DeviceMask::clear()
 
 void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
 {
-    std::vector<int64_t> changed(bricks.begin(), bricks.end());
-    uint64_t added = 0;
-    for (int64_t brick : bricks) {
+    const bool all_moved = give_slots(mask, bricks);
+    if (slots_.empty()) return clear();
+    if (all_moved)
+        send_bricks(mask, mask.painted_bricks());
+    else
+        send_bricks(mask, bricks);
+    send_table(mask);
+}
+
+/// Slots to those that are painted and have none; those that are no longer painted lose theirs. True where the atlas had to
+/// grow and all bricks have other slots.
+bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
+{
+    std::vector<int64_t> added;
+    for (const int64_t brick : bricks) {
         const auto known = slots_.find(brick);
         if (mask.brick(brick)) {
-            added += known == slots_.end();
+            if (known == slots_.end()) added.push_back(brick);
         } else if (known != slots_.end()) {
             free_slots_.push_back(known->second);
             slots_.erase(known);
         }
     }
-    const uint64_t needed = slots_.size() + added;
-    if (needed == 0) return clear();
-    if (added > free_slots_.size()) {
+    const bool grows = added.size() > free_slots_.size();
+    if (grows) {
+        const uint64_t needed = slots_.size() + added.size();
         grow(std::max<uint64_t>(needed + needed / 2, 8));
-        changed = mask.painted_bricks();
+        added = mask.painted_bricks();
     }
-    std::erase_if(changed, [&](int64_t brick) { return !mask.brick(brick); });
-    for (int64_t brick : changed) {
-        if (slots_.contains(brick)) continue;
-        slots_[brick] = free_slots_.back();
+    for (const int64_t brick : added) {
+        if (!slots_.try_emplace(brick, free_slots_.back()).second) continue;  // it was listed twice
         free_slots_.pop_back();
     }
+    return grows;
+}
 
-    for (size_t first = 0; first < changed.size(); first += MASK_BRICKS_IN_UPLOAD) {
-        const size_t count = std::min<size_t>(MASK_BRICKS_IN_UPLOAD, changed.size() - first);
-        std::vector<uint8_t> voxels;
-        voxels.reserve(count * MASK_BRICK_VOXELS);
-        std::vector<ImageRegion> regions;
-        for (size_t i = 0; i < count; ++i) {
-            const MaskBrick& brick = *mask.brick(changed[first + i]);
-            voxels.insert(voxels.end(), brick.begin(), brick.end());
-            regions.push_back({i * MASK_BRICK_VOXELS, gpu::mask_slot_origin(slots_.at(changed[first + i])),
-                               glm::uvec3(gpu::BRICK_SIZE)});
-        }
+void DeviceMask::send_bricks(const Mask& mask, std::span<const int64_t> bricks)
+{
+    std::vector<uint8_t> voxels;
+    std::vector<ImageRegion> regions;
+    const auto send = [&] {
         FrameGraph graph;
         static_cast<void>(graph.copy_to_image(graph.upload<uint8_t>("mask bricks", voxels),
-                                              graph.import("mask", atlas_.import()), std::move(regions),
+                                              graph.import("mask", atlas_.import()), std::exchange(regions, {}),
                                               "upload mask bricks"));
+        voxels.clear();
         submit(std::move(graph));
+    };
+    for (const int64_t number : bricks) {
+        const std::shared_ptr<const MaskBrick> brick = mask.brick(number);
+        if (!brick) continue;
+        regions.push_back({voxels.size(), gpu::mask_slot_origin(slots_.at(number)), glm::uvec3(gpu::BRICK_SIZE)});
+        voxels.insert(voxels.end(), brick->begin(), brick->end());
+        if (regions.size() == MASK_BRICKS_IN_UPLOAD) send();
     }
+    if (!regions.empty()) send();
+}
 
+void DeviceMask::send_table(const Mask& mask)
+{
     const std::vector<uint32_t> entries = hashed_ ? hashed_table(mask) : dense_table(mask);
     const glm::uvec3 counts(mask.brick_counts());
     const ResourceDesc desc =
@@ -159,9 +171,11 @@ std::vector<VoxelBox> DeviceMask::bricks(const Size3& size) const
     return boxes;
 }
 
-MaskBinding DeviceMask::import(FrameGraph& graph) const
+std::optional<MaskBinding> DeviceMask::import(FrameGraph& graph) const
 {
-    return {.mask = graph.import("mask", atlas_.import()), .mask_table = graph.import("mask table", table_.import())};
+    if (empty()) return std::nullopt;
+    return MaskBinding{.mask = graph.import("mask", atlas_.import()),
+                       .mask_table = graph.import("mask table", table_.import())};
 }
 
 }  // namespace shvr

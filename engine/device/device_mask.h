@@ -3,6 +3,7 @@
 // the device while nothing is painted, and it is given back when the last painted voxel goes.
 
 #include <map>
+#include <optional>
 #include <span>
 
 #include "engine/annotation/mask.h"
@@ -13,31 +14,35 @@ namespace shvr {
 
 class DeviceMask {
 public:
-    DeviceMask(gpu::Executor& executor, gpu::Memory& memory) : executor_(executor), memory_(memory) {}
+    /// `hashed`: the table on the device is one of painted bricks only (shaders/library/mask.glsl).
+    DeviceMask(gpu::Executor& executor, gpu::Memory& memory, bool hashed)
+        : executor_(executor), memory_(memory), hashed_(hashed)
+    {}
 
     /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not wait:
     /// frames submitted later see them.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
-    /// Unpainted again: nothing is left on the device.
-    void clear();
-    /// The same for another volume. `hashed`: the table on the device is one of painted bricks only (shaders/library/mask.glsl).
-    void clear(bool hashed);
     /// Of a painted brick on the device; gpu::NO_SLOT where it is not there.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
     /// Voxels of the painted bricks of a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
-    MaskBinding import(FrameGraph& graph) const;
+    /// Handles for a graph; nothing while nothing is painted.
+    std::optional<MaskBinding> import(FrameGraph& graph) const;
 
 private:
+    void clear();
+    bool give_slots(const Mask& mask, std::span<const int64_t> bricks);
+    void send_bricks(const Mask& mask, std::span<const int64_t> bricks);
+    void send_table(const Mask& mask);
     void grow(uint64_t bricks);
     void submit(FrameGraph graph);
     std::vector<uint32_t> dense_table(const Mask& mask) const;
     std::vector<uint32_t> hashed_table(const Mask& mask) const;
     gpu::Executor& executor_;
     gpu::Memory& memory_;
-    bool hashed_ = false;
+    bool hashed_;
     std::map<int64_t, uint32_t> slots_;  ///< painted brick -> slot (gpu::pack_slot), never NO_SLOT
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;

@@ -1,7 +1,7 @@
 #pragma once
 // What of the leap grid on the device is out of date, and when it is built again. A new look (transfer function, visible
 // groups) needs all of it before anything is drawn; where a few cells changed, a patch is enough for pictures, and the rest
-// is built when nothing else is to be done. One thread, the renderer's.
+// is built when there is nothing else to do. One thread, the renderer's.
 
 #include <optional>
 
@@ -11,8 +11,6 @@ namespace shvr {
 
 class EmptySpace {
 public:
-    /// Another volume: nothing is built.
-    void forget() { look_.reset(); }
     /// These cells may show other things than before.
     void changed(const CellBox& cells);
     /// What cells are to show by; `changed` and `mask` of it do not matter.

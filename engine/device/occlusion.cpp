@@ -58,7 +58,7 @@ void Occlusion::create(const glm::uvec3& slots)
     images_are_new_ = true;
 }
 
-OcclusionBinding Occlusion::import(FrameGraph& graph)
+OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
 {
     sync();
     OcclusionBinding binding{.values = graph.import("occlusion values", values_.import())};
@@ -162,6 +162,14 @@ double Occlusion::radius_of(int level) const
     return std::ldexp(look_->radius, -level);
 }
 
+std::vector<int> Occlusion::reach() const
+{
+    std::vector<int> reach;
+    for (int level = 0; look_ && level < volume_->levels(); ++level)
+        reach.push_back(int(occlusion_reach(radius_of(level))));
+    return reach;
+}
+
 /// It, or a brick that far from it; coarse bricks may be where anything is.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
@@ -185,7 +193,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
 /// A brick that shows nothing may hold voxels beside painted ones.
 bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
 {
-    if (!entry.needs_values || (is_drawn_ && !is_drawn_(key))) return false;
+    if (!entry.needs_values || !volume_->is_drawn(key)) return false;
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1);
 }
 
@@ -228,7 +236,7 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) con
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
-    // Empty bricks have no cells, nor have they an apron that anyone reads.
+    // Empty bricks have no cells, and nobody reads their apron.
     if (glm::any(glm::lessThan(key.brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(key.brick, counts)))
         return 0;
     for (BrickKey at = key; at.level < volume_->levels(); at = parent_of(at)) {
@@ -248,7 +256,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
     sync();
     const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, gpu::OCCLUSION_SLICE));
     if (keys.empty()) return {};
-    OcclusionBinding images = import(graph);
+    OcclusionBinding images = bring_up_to_date(graph);
     std::vector<BrickKey> needed;
     const int reach = int(occlusion_reach(radius_of(keys.front().level)));
     for (const BrickKey& key : keys)

@@ -10,7 +10,6 @@
 // Values that are out of date stay until they are renewed; where there have never been any, all light arrives. Renewing what
 // is out of date gives the same bits as making all of it. One thread, the one that owns the memory.
 
-#include <functional>
 #include <optional>
 #include <unordered_map>
 
@@ -46,12 +45,10 @@ public:
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
     /// These voxels have been painted; or, with an apron (voxels of each brick's own level), hold other densities.
     void changed(const VoxelBox& voxels, int64_t apron = 0);
-    /// Which bricks are worth the work; empty: all.
-    void set_drawn(std::function<bool(const BrickKey&)> is_drawn) { is_drawn_ = std::move(is_drawn); }
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
-    /// Bricks on each side of one of that level that its light comes from.
-    int reach(int level) const { return look_ ? int(occlusion_reach(radius_of(level))) : 0; }
+    /// By level: bricks on each side of one that its light comes from.
+    std::vector<int> reach() const;
     /// Something is out of date.
     bool is_due();
     /// Bounds of one slice.
@@ -62,8 +59,9 @@ public:
     /// Adds the next slice to a graph that must be submitted, and returns the voxels that it renews. `eye` in voxels.
     std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
                                const glm::dvec3& eye, const Most& most);
-    /// Handles for a graph that must be submitted. What has never been made lets all light arrive.
-    OcclusionBinding import(FrameGraph& graph);
+    /// Handles for a graph that must be submitted; adds passes that reset what has never been made, so that all light
+    /// arrives there.
+    OcclusionBinding bring_up_to_date(FrameGraph& graph);
 
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been made
@@ -100,7 +98,6 @@ private:
     const DeviceVolume* volume_ = nullptr;
     const DeviceMask* mask_ = nullptr;
     std::optional<Look> look_;
-    std::function<bool(const BrickKey&)> is_drawn_;
     gpu::Storage values_;
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> cells_;
     gpu::Storage near_;

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/device/device_volume.h"
-
 namespace shvr {
 
 namespace {
@@ -45,15 +43,14 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       options_(options),
       levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
       atlas_(executor, memory, slots_for(source_->info(), levels_, options.device_bytes), options.filtered),
-      slots_(atlas_.slot_count()),
+      slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
       store_(*source_, window, options.host_bytes, options.threads)
 {
     cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS));
-    for (uint32_t slot = uint32_t(slots_.size()) - 1; slot > 0; --slot) unused_.push_back(slot);
     pin_coarse_levels();
 }
 
-/// The coarsest level now, so that there is something to see at once; the next ones as soon as may be.
+/// The coarsest level now, so that there is something to see at once; the next ones as soon as possible.
 void PagedVolume::pin_coarse_levels()
 {
     for (int level = levels_ - 1; level >= 0; --level) {
@@ -63,13 +60,13 @@ void PagedVolume::pin_coarse_levels()
             for (int y = 0; y < counts.y; ++y)
                 for (int x = 0; x < counts.x; ++x) {
                     // A quarter of the room at most, and the whole of the coarsest level.
-                    if (level < levels_ - 1 && coarse_.size() >= slots_.size() / 4) return;
+                    if (level < levels_ - 1 && coarse_.size() >= slots_.count() / 4) return;
                     coarse_.push_back({level, {x, y, z}});
                 }
         if (level < levels_ - 1) continue;
-        if (coarse_.size() >= slots_.size() / 2)
+        if (coarse_.size() >= slots_.count() / 2)
             fail(info().name, ": its coarsest level has ", coarse_.size(), " bricks and the device has room for ",
-                 slots_.size(), "; expected a coarser level, as `shvr import` makes");
+                 slots_.count(), "; expected a coarser level, as `shvr import` makes");
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
         atlas_.flush();
@@ -102,17 +99,18 @@ bool PagedVolume::shows(const BrickKey& key) const
            visibility_.shows(window().code_of(range->lower), window().code_of(range->upper));
 }
 
-void PagedVolume::look(const PageView& view, const Visibility& visibility)
+int PagedVolume::look(const PageView& view, const Visibility& visibility)
 {
+    check_camera(view.camera);
     const bool is_other_look = !tree_ || !(visibility == visibility_);
-    if (!is_other_look && view_ == view) return;
+    if (!is_other_look && view_ == view) return finest_level();
     if (is_other_look) {
         visibility_ = visibility;
         leap_jobs_.clear();
-        for (const auto& [key, slot] : resident_) leap_jobs_.push_back(key);
+        for (const auto& [key, slot] : slots_.placed()) leap_jobs_.push_back(key);
     }
     view_ = view;
-    const TreeRef before = tree_;
+    const std::shared_ptr<const PageTree> before = tree_;
     const std::vector<bool> reached_before = std::move(is_reached_);
     tree_ = std::make_shared<const PageTree>(
         make_page_tree(info(), levels_, view, [this](const BrickKey& key) { return shows(key); }));
@@ -125,15 +123,22 @@ void PagedVolume::look(const PageView& view, const Visibility& visibility)
         const auto found = leaf_index_.find(before->leaves[leaf].key);
         if (found != leaf_index_.end()) is_reached_[found->second] = true;
     }
-    ++stamp_;
+    slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    directory_is_stale_ = wants_are_stale_ = evictable_is_stale_ = true;
+    directory_is_stale_ = true;
+    needs_changed();
+    return finest_level();
+}
+
+void PagedVolume::look_by(const Visibility& visibility)
+{
+    if (view_) look(PageView(*view_), visibility);
 }
 
 PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
 {
-    if (resident_.contains(key)) return LeafState::resident;
+    if (slots_.contains(key)) return LeafState::resident;
     const auto range = known_ranges_.find(key);
     if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
@@ -151,9 +156,9 @@ void PagedVolume::fill_directory()
         entry_of_leaf[leaf] = NOTHING;
         if (state_of(key) == LeafState::empty) continue;
         for (; key.level < levels_; key = parent_of(key)) {
-            const auto there = resident_.find(key);
-            if (there == resident_.end()) continue;
-            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(there->second);
+            const std::optional<uint32_t> slot = slots_.find(key);
+            if (!slot) continue;
+            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(*slot);
             break;
         }
     }
@@ -181,54 +186,74 @@ VolumeBinding PagedVolume::atlas(FrameGraph& graph) const
     return {.atlas = atlas_.import_codes(graph), .filtered = options_.filtered};
 }
 
-VolumeBinding PagedVolume::import(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& binding,
-                                  bool feedback)
+VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
+                                   bool feedback)
 {
     SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
     VolumeBinding volume{.atlas = atlas_.import_codes(graph),
                          .cell_ranges = atlas_.import_cell_ranges(graph),
                          .brick_counts = glm::uvec3(brick_counts(info().size)),
                          .filtered = options_.filtered};
-    PageBinding pages{.directory = {},
-                      .cell_leap = graph.import("cell leap", cell_leap_.import()),
-                      .reached = {},
-                      .feedback = feedback,
-                      .counts = tree_->counts,
-                      .cell_shift = uint32_t(tree_->cell_shift),
-                      .depth = uint32_t(tree_->depth)};
-    volume.pages = pages;
-    if (!leap_jobs_.empty()) {
-        std::vector<gpu::BrickLeapJob> jobs;
-        for (const BrickKey& key : std::exchange(leap_jobs_, {})) {
-            const auto there = resident_.find(key);
-            if (there == resident_.end()) continue;
-            jobs.push_back(job_of(key, there->second));
-            if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
-        }
-        brick_leap(graph, volume, visibility_, binding, jobs);
-    }
-    if (std::exchange(directory_is_stale_, false)) {
-        fill_directory();
-        // Whole powers of two: views differ, and buffers of a frame are used again where they are of the same size.
-        entries_.resize(std::bit_ceil(entries_.size()));
-        const uint64_t bytes = entries_.size() * sizeof(uint32_t);
-        if (!directory_ || directory_.desc().bytes < bytes) {
-            directory_.reset();
-            directory_ = memory_.create("page directory", buffer_desc(bytes));
-        }
-        volume.pages->directory =
-            graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
-                       graph.import("page directory", directory_.import()), {{0, 0, bytes}}, "upload page directory");
-    } else {
-        volume.pages->directory = graph.import("page directory", directory_.import());
-    }
+    volume.pages = PageBinding{.directory = {},
+                               .cell_leap = graph.import("cell leap", cell_leap_.import()),
+                               .reached = {},
+                               .feedback = feedback,
+                               .counts = tree_->counts,
+                               .cell_shift = uint32_t(tree_->cell_shift),
+                               .depth = uint32_t(tree_->depth)};
+    add_leaps(graph, volume, mask, painted);
+    volume.pages->directory = upload_directory(graph);
     const uint64_t words = feedback ? std::bit_ceil((tree_->entries.size() + 31) / 32) : 1;
     volume.pages->reached =
         graph.fill(graph.create("reached", buffer_desc(words * sizeof(uint32_t))), 0, "clear reached");
     return volume;
 }
 
-void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> bits)
+/// Of bricks that have arrived, or look different.
+void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const DeviceMask& mask,
+                            const std::optional<MaskBinding>& painted)
+{
+    if (leap_jobs_.empty()) return;
+    std::vector<gpu::BrickLeapJob> jobs;
+    for (const BrickKey& key : std::exchange(leap_jobs_, {})) {
+        const std::optional<uint32_t> slot = slots_.find(key);
+        if (!slot) continue;
+        jobs.push_back(job_of(key, *slot));
+        if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
+    }
+    brick_leap(graph, volume, visibility_, painted, jobs);
+}
+
+Resource PagedVolume::upload_directory(FrameGraph& graph)
+{
+    if (!std::exchange(directory_is_stale_, false)) return graph.import("page directory", directory_.import());
+    fill_directory();
+    // Whole powers of two: views differ, and buffers of a frame are used again where they are of the same size.
+    entries_.resize(std::bit_ceil(entries_.size()));
+    const uint64_t bytes = entries_.size() * sizeof(uint32_t);
+    if (!directory_ || directory_.desc().bytes < bytes) {
+        directory_.reset();
+        directory_ = memory_.create("page directory", buffer_desc(bytes));
+    }
+    return graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
+                      graph.import("page directory", directory_.import()), {{0, 0, bytes}}, "upload page directory");
+}
+
+DeviceVolume::Feedback PagedVolume::request_feedback(FrameGraph& graph, const VolumeBinding& volume) const
+{
+    Feedback feedback;
+    feedback.read_back_ = graph.read_back(volume.pages->reached, "what rays came by");
+    feedback.tree_ = tree_;
+    return feedback;
+}
+
+void PagedVolume::take_feedback(const Feedback& feedback, const gpu::FrameResult& result)
+{
+    if (feedback.read_back_) note_reached(feedback.tree_, result.read_backs[*feedback.read_back_]);
+}
+
+/// `bits`: of PageBinding::reached, of a picture drawn with `tree`.
+void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std::span<const std::byte> bits)
 {
     for (size_t word = 0; word < bits.size() / sizeof(uint32_t); ++word) {
         uint32_t set = 0;
@@ -245,20 +270,20 @@ void PagedVolume::note_reached(const TreeRef& tree, std::span<const std::byte> b
             }
             if (is_reached_[leaf]) continue;
             is_reached_[leaf] = true;
-            touch(tree_->leaves[leaf].key);
+            slots_.use(tree_->leaves[leaf].key);
             ++reached_revision_;
-            wants_are_stale_ = evictable_is_stale_ = true;
+            needs_changed();
         }
     }
 }
 
-void PagedVolume::forget_reached()
+void PagedVolume::forget_visits()
 {
     is_reached_.assign(is_reached_.size(), false);
-    ++stamp_;
+    slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    wants_are_stale_ = evictable_is_stale_ = true;
+    needs_changed();
 }
 
 }  // namespace shvr

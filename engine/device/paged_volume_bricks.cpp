@@ -1,4 +1,4 @@
-// Bricks come and go (paged_volume.h): which are wanted, which make room, what work on level 0 finds.
+// Paged bricks (paged_volume.h): which are requested, which are needed, what work on level 0 finds.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Bricks that a change of the voxels may read anew while somebody waits.
+/// Bricks that a change of voxels may read again while the caller waits.
 constexpr size_t MOST_RENEWED_NOW = 256;
 
 }  // namespace
@@ -21,83 +21,60 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf != leaf_index_.end() && is_reached_[leaf->second];
 }
 
-std::vector<BrickKey> PagedVolume::reached_bricks() const
+void PagedVolume::want_around(const std::vector<int>& reach)
 {
-    std::vector<BrickKey> keys;
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf)
-        if (is_reached_[leaf] && state_of(tree_->leaves[leaf].key) != LeafState::empty)
-            keys.push_back(tree_->leaves[leaf].key);
-    return keys;
-}
-
-void PagedVolume::want_around(std::unordered_set<BrickKey, BrickKeyHash> keys)
-{
+    if (around_reach_ == reach && (reach.empty() || around_revision_ == reached_revision_)) return;
+    around_reach_ = reach;
+    around_revision_ = reached_revision_;
+    std::unordered_set<BrickKey, BrickKeyHash> keys;
+    for (size_t leaf = 0; tree_ && !reach.empty() && leaf < is_reached_.size(); ++leaf) {
+        const BrickKey& key = tree_->leaves[leaf].key;
+        if (!is_reached_[leaf] || state_of(key) == LeafState::empty) continue;
+        const int far = reach.at(size_t(key.level));
+        const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
+        const glm::ivec3 first = glm::max(key.brick - far, 0), last = glm::min(key.brick + far, counts - 1);
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+    }
     if (keys == around_) return;
     around_ = std::move(keys);
-    wants_are_stale_ = evictable_is_stale_ = true;
+    needs_changed();
 }
 
 std::vector<DeviceVolume::Place> PagedVolume::places() const
 {
     std::vector<Place> places;
-    for (const auto& [key, slot] : resident_) places.push_back({key, atlas_.packed(slot), known_ranges_.at(key)});
+    for (const auto& [key, slot] : slots_.placed()) places.push_back({key, atlas_.packed(slot), known_ranges_.at(key)});
     return places;
 }
 
-void PagedVolume::touch(const BrickKey& key)
-{
-    const auto there = resident_.find(key);
-    if (there != resident_.end()) slots_[there->second].used = stamp_;
-}
-
 /// The picture that is looked at, or the work around the probe, would miss it.
-bool PagedVolume::is_needed(const BrickKey& key) const
+BrickNeed PagedVolume::need_of(const BrickKey& key) const
 {
-    return region_.contains(key) || around_.contains(key) || leaf_is_reached(key);
+    if (region_.contains(key)) return BrickNeed::region;
+    return around_.contains(key) || leaf_is_reached(key) ? BrickNeed::picture : BrickNeed::none;
 }
 
-/// A region of level 0 goes before the picture.
-void PagedVolume::list_evictable(bool for_region)
+void PagedVolume::needs_changed()
 {
-    evictable_.clear();
-    for (uint32_t slot = 1; slot < slots_.size(); ++slot) {
-        const Slot& candidate = slots_[slot];
-        if (!candidate.key || candidate.pinned) continue;
-        if (for_region ? !region_.contains(*candidate.key) : !is_needed(*candidate.key)) evictable_.push_back(slot);
-    }
-    std::ranges::sort(evictable_, std::greater(), [this](uint32_t slot) { return slots_[slot].used; });
-    evictable_is_stale_ = for_region;
-}
-
-std::optional<uint32_t> PagedVolume::free_slot(bool for_region)
-{
-    if (unused_.empty()) {
-        if (evictable_is_stale_) list_evictable(false);
-        if (evictable_.empty() && for_region) list_evictable(true);
-        if (evictable_.empty()) return std::nullopt;
-        const uint32_t slot = evictable_.back();
-        evictable_.pop_back();
-        give_up(slot);
-        return slot;
-    }
-    const uint32_t slot = unused_.back();
-    unused_.pop_back();
-    return slot;
+    wants_are_stale_ = true;
+    slots_.needs_changed();
 }
 
 bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for_region)
 {
     known_ranges_[key] = texels.range;
-    if (resident_.contains(key)) return true;
+    if (slots_.contains(key)) return true;
     if (!for_region && state_of(key) == LeafState::empty) {
         directory_is_stale_ = true;
         return true;
     }
-    const std::optional<uint32_t> slot = free_slot(for_region);
-    if (!slot) return false;
-    slots_[*slot] = {.key = key, .used = stamp_, .pinned = std::ranges::find(coarse_, key) != coarse_.end()};
-    resident_[key] = *slot;
-    stage(key, *slot, texels);
+    const bool is_pinned = std::ranges::find(coarse_, key) != coarse_.end();
+    const std::optional<BrickSlots::Placed> placed =
+        slots_.place(key, for_region ? BrickNeed::region : BrickNeed::picture, is_pinned);
+    if (!placed) return false;
+    stage(key, placed->slot, texels);
     return true;
 }
 
@@ -109,15 +86,6 @@ void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& t
     directory_is_stale_ = true;
 }
 
-void PagedVolume::give_up(uint32_t slot)
-{
-    resident_.erase(*slots_[slot].key);
-    slots_[slot] = {};
-    ++places_revision_;
-    ++evictions_;
-    directory_is_stale_ = true;
-}
-
 void PagedVolume::renew(std::span<const VoxelBox> changed)
 {
     std::vector<BrickKey> keys;
@@ -125,23 +93,23 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
         for (const BrickKey& key : bricks_that_see(changed, info().size, level)) keys.push_back(key);
     store_.renew(keys);
     const auto there =
-        size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return resident_.contains(key); }));
+        size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return slots_.contains(key); }));
     for (const BrickKey& key : keys) {
         known_ranges_.erase(key);
-        const auto found = resident_.find(key);
-        if (found == resident_.end()) continue;
-        const uint32_t slot = found->second;
-        const bool now = there <= MOST_RENEWED_NOW || slots_[slot].pinned;
+        const std::optional<uint32_t> slot = slots_.find(key);
+        if (!slot) continue;
+        const bool now = there <= MOST_RENEWED_NOW || slots_.is_pinned(*slot);
         if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
             known_ranges_[key] = texels->range;
-            stage(key, slot, *texels);
+            stage(key, *slot, *texels);
         } else {
-            give_up(slot);
-            unused_.push_back(slot);
+            slots_.remove(key);
+            ++places_revision_;
         }
     }
     atlas_.flush();
-    wants_are_stale_ = evictable_is_stale_ = directory_is_stale_ = true;
+    directory_is_stale_ = true;
+    needs_changed();
     rebuild_tree();
 }
 
@@ -158,15 +126,11 @@ void PagedVolume::update_wants()
     if (!std::exchange(wants_are_stale_, false)) return;
     std::vector<BrickKey> keys;
     for (const BrickKey& key : region_)
-        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
+        if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
     for (const BrickKey& key : coarse_)
-        if (!resident_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
+        if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
     // What has a place, or will have one.
-    size_t room = 0;
-    for (uint32_t slot = 1; slot < slots_.size(); ++slot) {
-        const std::optional<BrickKey>& key = slots_[slot].key;
-        room += !key || (!slots_[slot].pinned && !is_needed(*key));
-    }
+    size_t room = slots_.room();
     room -= std::min(room, keys.size());
     pending_ = 0;
     is_limited_ = false;
@@ -241,7 +205,7 @@ std::vector<BrickKey> PagedVolume::set_region(const RegionBricks& region)
     std::unordered_set<BrickKey, BrickKeyHash> wanted(keys.begin(), keys.end());
     if (region_ != wanted) {
         region_ = std::move(wanted);
-        wants_are_stale_ = evictable_is_stale_ = true;
+        needs_changed();
     }
     return keys;
 }
@@ -250,34 +214,34 @@ void PagedVolume::prefer(const VoxelBox& voxels)
 {
     const RegionBricks region = bricks_around(voxels);
     const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
-    if (4 * bricks <= slots_.size()) static_cast<void>(set_region(region));
+    if (4 * bricks <= slots_.count()) static_cast<void>(set_region(region));
 }
 
 std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wait)
 {
     RegionBricks region = bricks_around(voxels);
     const size_t bricks = size_t(region.counts.x) * region.counts.y * region.counts.z;
-    if (bricks + coarse_.size() >= slots_.size())
+    if (bricks + coarse_.size() >= slots_.count())
         fail("the region around the probe needs ", bricks, " bricks on the device and there is room for ",
-             slots_.size() - std::min(slots_.size(), coarse_.size() + 1),
+             slots_.count() - std::min<size_t>(slots_.count(), coarse_.size() + 1),
              "; expected a smaller radius or a larger budget");
     const std::vector<BrickKey> keys = set_region(region);
     bool all_there = true;
     for (const BrickKey& key : keys) {
-        if (!resident_.contains(key) && wait) {
+        if (!slots_.contains(key) && wait) {
             const BrickStore::Texels texels = store_.get(key);
             if (!texels) throw Error(store_.failure_of(key).value_or(info().name + ": a brick cannot be read"));
             SHVR_CHECK(place(key, *texels, true), "room was counted");
         }
-        const auto there = resident_.find(key);
-        if (there == resident_.end())
+        const std::optional<uint32_t> slot = slots_.find(key);
+        if (!slot)
             if (const std::optional<std::string> failure = store_.failure_of(key)) throw Error(*failure);
-        all_there = all_there && there != resident_.end();
-        region.slots.push_back(there == resident_.end() ? gpu::NO_SLOT : atlas_.packed(there->second));
+        all_there = all_there && slot.has_value();
+        region.slots.push_back(slot ? atlas_.packed(*slot) : gpu::NO_SLOT);
     }
     atlas_.flush();
     if (!all_there) return std::nullopt;
-    for (const BrickKey& key : keys) touch(key);
+    for (const BrickKey& key : keys) slots_.use(key);
     return region;
 }
 
@@ -293,23 +257,23 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
                 tree_is_stale = true;
                 if ((painted_[key] += is ? 1 : -1) == 0) painted_.erase(key);
             }
-            if (resident_.contains(key)) leap_jobs_.push_back(key);
+            if (slots_.contains(key)) leap_jobs_.push_back(key);
         }
     }
     if (tree_is_stale) rebuild_tree();  // what is painted is shown, whatever its density
 }
 
-PagedVolume::Counts PagedVolume::counts() const
+std::optional<DeviceVolume::Counts> PagedVolume::counts() const
 {
-    return {.slots = slots_.size() - 1,
-            .resident = resident_.size(),
-            .uploads = atlas_.uploads(),
-            .evictions = evictions_,
-            .leaves = is_reached_.size(),
-            .reached = uint64_t(std::ranges::count(is_reached_, true)),
-            .host_bytes = store_.bytes(),
-            .peak_host_bytes = store_.peak_bytes(),
-            .store = store_.counts()};
+    return Counts{.slots = slots_.count() - 1,
+                  .resident = slots_.placed().size(),
+                  .uploads = atlas_.uploads(),
+                  .evictions = slots_.evictions(),
+                  .leaves = is_reached_.size(),
+                  .reached = uint64_t(std::ranges::count(is_reached_, true)),
+                  .host_bytes = store_.bytes(),
+                  .peak_host_bytes = store_.peak_bytes(),
+                  .store = store_.counts()};
 }
 
 }  // namespace shvr

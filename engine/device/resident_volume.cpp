@@ -67,13 +67,14 @@ private:
 
 }  // namespace
 
-ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
+ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                                const IntensityWindow& window, bool filtered, int threads)
-    : DeviceVolume(source.info(), window),
+    : DeviceVolume(source->info(), window),
       executor_(executor),
       memory_(memory),
+      source_(std::move(source)),
       filtered_(filtered),
-      brick_counts_(brick_counts(source.info().size))
+      brick_counts_(brick_counts(info().size))
 {
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
     const gpu::DeviceTraits& traits = memory.device().traits();
@@ -92,7 +93,7 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, con
 
     Uploader uploader(executor, memory, bricks, codes_per_texel);
     std::vector<uint32_t> slots;  // bricks come in the order of their index
-    build_bricks(source, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
+    build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
         slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
         uploader.add(glm::uvec3(brick), slots.back(), texels);
         ranges_.push_back(texels.range);
@@ -138,10 +139,89 @@ std::vector<DeviceVolume::Place> ResidentVolume::places() const
     return places;
 }
 
-void ResidentVolume::renew(const VolumeSource& source, std::span<const VoxelBox> changed)
+// ---- What rays leap over --------------------------------------------------------------------------------------------
+
+int ResidentVolume::look(const PageView& /*view*/, const Visibility& visibility)
 {
-    const std::vector<BrickKey> keys = bricks_that_see(changed, info().size, 0);
-    BrickMaker maker(source, window());
+    look_by(visibility);
+    return 0;
+}
+
+void ResidentVolume::look_by(const Visibility& visibility)
+{
+    visibility_ = visibility;
+    empty_space_.want(leap_input(std::nullopt), cell_counts_);
+}
+
+LeapGridInput ResidentVolume::leap_input(const std::optional<MaskBinding>& painted) const
+{
+    return {.params = {.brick_counts = brick_counts_,
+                       .table_lower = visibility_.params.table_lower,
+                       .table_upper = visibility_.params.table_upper,
+                       .table_scale = visibility_.params.table_scale,
+                       .table_entries = visibility_.params.table_entries,
+                       .skipping = visibility_.params.skipping},
+            .changed = {},
+            .visible_intervals = visibility_.visible_intervals,
+            .mask = painted,
+            .visible_groups = visibility_.visible_groups};
+}
+
+std::optional<FrameGraph> ResidentVolume::next_preparation(const Visibility& visibility, const DeviceMask& mask)
+{
+    look_by(visibility);
+    if (!empty_space_.is_due()) return std::nullopt;
+    FrameGraph graph;
+    VolumeBinding volume = import(graph);
+    empty_space_.prepare(graph, volume, leap_input(mask.import(graph)));
+    return graph;
+}
+
+std::optional<FrameGraph> ResidentVolume::next_refinement(const Visibility& visibility, const DeviceMask& mask)
+{
+    if (!refinement_is_due()) return std::nullopt;
+    look_by(visibility);
+    if (!refinement_is_due()) return std::nullopt;  // there is more to do than to refine
+    FrameGraph graph;
+    VolumeBinding volume = import(graph);
+    empty_space_.refine(graph, volume, leap_input(mask.import(graph)));
+    return graph;
+}
+
+VolumeBinding ResidentVolume::prepare(FrameGraph& graph, const DeviceMask& /*mask*/,
+                                      const std::optional<MaskBinding>& painted, bool /*feedback*/)
+{
+    VolumeBinding volume = import(graph);
+    while (empty_space_.is_due()) empty_space_.prepare(graph, volume, leap_input(painted));
+    return volume;
+}
+
+void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks)
+{
+    for (const int64_t brick : bricks) {
+        const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, mask.brick_counts()));
+        empty_space_.changed({first, first + gpu::BRICK_CELLS});
+    }
+}
+
+// ---- Other voxels ---------------------------------------------------------------------------------------------------
+
+void ResidentVolume::renew(std::span<const VoxelBox> changed)
+{
+    renew_bricks(bricks_that_see(changed, info().size, 0));
+    for (const VoxelBox& box : changed) {
+        // A cell's range is that of its voxels and of one around; cells beyond the volume's end see its last voxels.
+        const Size3 lower = glm::max(box.lower - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::CELL_SIZE};
+        Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
+        for (int axis = 0; axis < 3; ++axis)
+            if (box.upper[axis] >= info().size[axis]) upper[axis] = cell_counts_[axis];
+        empty_space_.changed({glm::uvec3(lower), glm::min(glm::uvec3(upper), cell_counts_)});
+    }
+}
+
+void ResidentVolume::renew_bricks(std::span<const BrickKey> keys)
+{
+    BrickMaker maker(*source_, window());
     const auto texels = std::make_unique<BrickTexels>();
     for (size_t begin = 0; begin < keys.size(); begin += BRICKS_IN_UPLOAD) {
         std::erase_if(renewals_, [](const Renewal& renewal) { return renewal.copy.done(); });

@@ -1,19 +1,19 @@
 #pragma once
-// A volume that is wholly on the device: its bricks in the atlas, the page table, the value range of every cell and the leap
-// grid. A volume whose bricks do not fit the device budget is refused in words before any is read.
+// A volume with all of its bricks on the device: the atlas, the page table, the value range of every cell and the leap grid,
+// which is kept up to date with what is visible and painted. A volume whose bricks do not fit the device budget is refused
+// in words before any is read.
 //
 // One thread, the one that owns the executor.
 
 #include "engine/device/device_volume.h"
-#include "engine/gpu/executor.h"
-#include "engine/passes/leap_grid.h"
+#include "engine/device/empty_space.h"
 
 namespace shvr {
 
 class ResidentVolume final : public DeviceVolume {
 public:
     /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
-    ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, const VolumeSource& source,
+    ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, bool filtered, int threads);
 
     /// Device memory that the bricks of such a volume take, cells and leap grid included.
@@ -22,29 +22,61 @@ public:
     uint64_t brick_count() const;
     /// Handles for a new frame graph.
     VolumeBinding import(FrameGraph& graph) const;
-    VolumeBinding atlas(FrameGraph& graph) const override { return import(graph); }
-    std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+
+    int look(const PageView& view, const Visibility& visibility) override;
+    void look_by(const Visibility& visibility) override;
+    bool has_view() const override { return true; }
+    int finest_level() const override { return 0; }
+    std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) override;
+    std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) override;
+    bool refinement_is_due() const override { return empty_space_.is_worth_refining(); }
+    VolumeBinding prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
+                          bool feedback) override;
+    bool is_stale() const override { return false; }
+
+    // All bricks are there, whatever rays visit.
+    Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
+    void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
+    void forget_visits() override {}
+    std::vector<VoxelBox> advance(bool) override { return {}; }
+    State state() const override { return State::complete; }
+    size_t missing() const override { return 0; }
+    std::vector<std::string> take_messages() override { return {}; }
+    bool is_drawn(const BrickKey&) const override { return true; }
+    void want_around(const std::vector<int>&) override {}
+    void prefer(const VoxelBox&) override {}
+
+    /// Waits for reads, and for the device where bricks are many.
+    void renew(std::span<const VoxelBox> changed) override;
+    void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
+
     int levels() const override { return 1; }
     glm::uvec3 atlas_slots() const override { return atlas_slots_; }
     std::vector<Place> places() const override;
     uint64_t places_revision() const override { return places_revision_; }
-    /// `source` hands out other voxels in these boxes: bricks that see them are cut anew and sent in place of the old
-    /// ones. Waits for reads, and for the device where there are many; frames submitted later see them.
-    void renew(const VolumeSource& source, std::span<const VoxelBox> changed);
+    VolumeBinding atlas(FrameGraph& graph) const override { return import(graph); }
+    std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
+    std::optional<Counts> counts() const override { return std::nullopt; }
 
 private:
     struct Renewal {
         gpu::Storage staging;
         gpu::Submission copy;
     };
+    void renew_bricks(std::span<const BrickKey> keys);
+    LeapGridInput leap_input(const std::optional<MaskBinding>& painted) const;
+
     gpu::Executor& executor_;
     gpu::Memory& memory_;
+    std::shared_ptr<const VolumeSource> source_;
     bool filtered_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
     gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
     std::array<gpu::Storage, 2> leap_scratch_;
     std::vector<BrickTexels::Range> ranges_;  ///< by brick
     uint64_t places_revision_ = 1;
+    Visibility visibility_;
+    EmptySpace empty_space_;
     std::vector<Renewal> renewals_;  ///< that the device may still copy from
 };
 

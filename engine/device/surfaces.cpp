@@ -67,7 +67,7 @@ bool SurfaceScene::replace(std::span<const uint64_t> keys, std::span<const Keyed
     return forest_.replace(keys, surfaces, volume);
 }
 
-std::optional<SurfaceList> SurfaceScene::import(FrameGraph& graph)
+std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)
 {
     if (empty()) return std::nullopt;
     const Resource nodes = graph.import("surface nodes", nodes_.import());

@@ -22,8 +22,8 @@ public:
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
     bool empty() const { return forest_.nodes().empty(); }
 
-    /// Handles for a graph that must be submitted; nothing where there are none.
-    std::optional<SurfaceList> import(FrameGraph& graph);
+    /// Handles for a graph that must be submitted, and that sends what has changed; nothing where there are none.
+    std::optional<SurfaceList> upload(FrameGraph& graph);
     /// What `camera` sees of `volume`, but for the probe.
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 

@@ -15,6 +15,7 @@ struct RawLayout {
     int64_t offset_bytes = 0;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
+    bool operator==(const RawLayout&) const = default;
 };
 /// Fails with a `UsageError` that shows the expected form.
 RawLayout parse_raw_layout(const std::string& text);

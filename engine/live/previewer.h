@@ -1,8 +1,7 @@
 #pragma once
-// Keeps the exact preview of a brush up to date while a hand moves it: the annotator's own question to the device and its
-// own records, which are not carried out. One question is on its way at a time and nothing waits, so while the hand moves
-// the preview lags by what an answer takes; at rest it is exact. Where none is wanted nothing is asked. One thread, the
-// annotator's.
+// Keeps the exact preview of a brush up to date while a hand moves it: the records that painting would make, not carried
+// out. One query is in flight at a time and nothing waits, so while the hand moves the preview lags by the time of an
+// answer; at rest it is exact. Where no preview is wanted nothing is asked. One thread, the annotator's.
 
 #include <memory>
 
@@ -19,17 +18,17 @@ std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer,
 
 class Previewer {
 public:
-    explicit Previewer(Annotator& annotator) : annotator_(annotator) {}
+    explicit Previewer(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
-    /// From now on, the preview of a dab of `brush` at its path's one position, with an offset that is chosen (with_offset);
-    /// nothing: none. To be called at every turn: it costs a comparison where all is as before.
+    /// From now on, the preview of a dab of `brush` at its path's one position, with its offset chosen (with_offset);
+    /// nothing: none. Call it in every frame: it costs a comparison where nothing has changed.
     void want(const std::optional<PaintOp>& brush);
-    /// Takes the device's answer, if it is there, and asks what is asked next.
+    /// Collects a finished answer and submits the next query.
     void advance();
 
-    /// The newest answer; null where none is wanted or the first is on its way.
+    /// The newest answer; null where none is wanted or the first is not there yet.
     const std::shared_ptr<const PaintPreview>& shown() const { return shown_; }
-    /// It is of what is wanted, and of what is painted now.
+    /// It is of the wanted brush and of what is painted now.
     bool is_current() const;
 
 private:
@@ -43,8 +42,7 @@ private:
     Annotator& annotator_;
     std::optional<PaintOp> wanted_;
     std::optional<Asked> asked_, answered_;
-    std::vector<Annotator::Asked> regions_;
-    gpu::Submission answer_;
+    RegionQuery query_;
     std::shared_ptr<const PaintPreview> shown_;
 };
 

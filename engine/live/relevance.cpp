@@ -1,16 +1,13 @@
 #include "engine/live/relevance.h"
 
 #include <cmath>
-#include <cstring>
 #include <utility>
-
-#include "engine/passes/paint.h"
 
 namespace shvr {
 
 namespace {
 
-/// The cube around a voxel; a cube that would reach over the border is moved inside, so that it is as large as can be.
+/// The cube around a voxel; a cube that would reach over the border is moved inside, so that it is as large as possible.
 BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 {
     for (int axis = 0; axis < 3; ++axis)
@@ -28,33 +25,21 @@ BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 
 void Relevance::ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns)
 {
-    BrushRegion region = cube_around(voxel, renderer_.volume().info().size);
-    const std::optional<RegionBricks> bricks = renderer_.volume().region(region.box, false);
-    if (!bricks) return;  // on their way; whoever feels fades out with the old answer's age
-    region_ = std::move(region);
-    asked_ns_ = now_ns;
-    FrameGraph graph;
-    const VolumeBinding volume = renderer_.volume().atlas(graph);
-    const gpu::RegionParams params{.origin = glm::uvec3(region_.box.lower),
-                                   .size = glm::uvec3(region_.box.size()),
-                                   .words_per_row = uint32_t(region_.words_per_row()),
-                                   .threshold_code = renderer_.volume().window().threshold_code(threshold),
-                                   .connectivity = 6,
-                                   .seed = gpu::NO_SEED};
-    graph.read_back(select_fill(graph, volume, {params, *bricks, region_.rows}), "mirror relevance");
-    answer_ = renderer_.executor().submit(std::move(graph));
+    const PaintOp fill{.brush = Brush::fill, .threshold = threshold};
+    // While bricks are being loaded, the servo fades the force as the last answer ages.
+    if (query_.ask(fill, {{cube_around(voxel, renderer_.volume().info().size), voxel}}, RegionQuery::Wait::no))
+        asked_ns_ = now_ns;
 }
 
 std::optional<RelevanceBits> Relevance::take()
 {
-    if (!answer_ || !answer_.done()) return std::nullopt;
-    const gpu::FrameResult result = answer_.finish();
-    RelevanceBits bits{
-        .box = region_.box, .words_per_row = region_.words_per_row(), .words = {}, .asked_ns = asked_ns_};
-    bits.words.resize(result.read_backs[0].size() / sizeof(uint32_t));
-    std::memcpy(bits.words.data(), result.read_backs[0].data(), result.read_backs[0].size());
-    for (const gpu::PassReport& pass : result.passes) bits.gpu_ms += pass.gpu_ms;
-    return bits;
+    if (!query_.is_answered()) return std::nullopt;
+    RegionAnswer answer = std::move(query_.answer().front());
+    return RelevanceBits{.box = answer.region.box,
+                         .words_per_row = answer.region.words_per_row(),
+                         .words = std::move(answer.words),
+                         .asked_ns = asked_ns_,
+                         .gpu_ms = query_.gpu_ms()};
 }
 
 }  // namespace shvr

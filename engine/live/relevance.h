@@ -1,14 +1,13 @@
 #pragma once
-// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. A compute pass answers, and
-// the answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
+// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device answers and the
+// answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
 //
 // One thread, the renderer's.
 
 #include <optional>
 #include <vector>
 
-#include "engine/annotation/region.h"
-#include "engine/picture/renderer.h"
+#include "engine/live/region_query.h"
 
 namespace shvr {
 
@@ -17,7 +16,7 @@ struct RelevanceBits {
     VoxelBox box;
     int64_t words_per_row = 0;
     std::vector<uint32_t> words;  ///< word + words_per_row * (y + size.y * z)
-    uint64_t asked_ns = 0;        ///< as `ask` was told: the answer is at least as old
+    uint64_t asked_ns = 0;        ///< the time given to `ask`: the answer is at least as old
     double gpu_ms = 0.0;          ///< 0 where the device has no timestamps
 };
 
@@ -25,20 +24,21 @@ class Relevance {
 public:
     static constexpr int64_t SIDE = 64;  ///< voxels
 
-    explicit Relevance(Renderer& renderer) : renderer_(renderer) {}
+    explicit Relevance(Renderer& renderer)
+        : renderer_(renderer), query_(renderer, {.name = "mirror relevance", .timestamps = true})
+    {}
 
     /// Asks for the cube around a point (voxels), cut at the volume's border. Drops an answer not yet taken. Asks
-    /// nothing while bricks of the cube are on their way to the device. Fails where the point is not a number.
+    /// nothing while bricks of the cube are being loaded. Fails where the point is not a number.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
-    bool is_asking() const { return bool(answer_); }
-    /// Nothing while the device is at it.
+    bool is_asking() const { return query_.is_asking(); }
+    /// Nothing until the device has answered.
     std::optional<RelevanceBits> take();
 
 private:
     Renderer& renderer_;
-    BrushRegion region_;
+    RegionQuery query_;
     uint64_t asked_ns_ = 0;
-    gpu::Submission answer_;
 };
 
 }  // namespace shvr

@@ -6,7 +6,9 @@ namespace shvr {
 
 void Screen::look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel)
 {
-    session_ = session;
+    look_ = session.look();
+    view_ = session.view;
+    interaction_ = session.interaction;
     camera_ = camera;
     pixels_ = pixels;
     probe_voxel_ = probe_voxel;
@@ -20,9 +22,9 @@ void Screen::look_from(const Camera& camera, const glm::dvec3& probe_voxel)
     arrange(false);
 }
 
-void Screen::arrange(bool session_changed)
+void Screen::arrange(bool look_changed)
 {
-    const std::vector<Pane> panes = panes_of(session_.view, camera_, pixels_, renderer_.volume().info(), probe_voxel_);
+    const std::vector<Pane> panes = panes_of(view_, camera_, pixels_, renderer_.scene().info(), probe_voxel_);
     retire_beyond(panes.size());
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
@@ -32,7 +34,7 @@ void Screen::arrange(bool session_changed)
         Pane& before = parts_[i].pane;
         const bool looks_the_same = before.shot == pane.shot && before.box.end - before.box.begin == size;
         before = pane;
-        if (is_new || session_changed || !looks_the_same) parts_[i].view->look(session_, pane.shot, size);
+        if (is_new || look_changed || !looks_the_same) parts_[i].view->look(look_, interaction_, pane.shot, size);
     }
 }
 
@@ -56,17 +58,30 @@ void Screen::show_probe(const ProbeLook& probe)
 {
     // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel of any slice that shows all of the volume.
     constexpr double STIR_VOXELS = 0.05;
-    const glm::dvec3 voxel = probe.center / renderer_.volume().info().spacing;
-    const bool follows = session_.view.arrangement == Arrangement::slices && !parts_.empty();
+    const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
+    const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();
     if (follows && glm::distance(voxel, probe_voxel_) > STIR_VOXELS) look_from(camera_, voxel);
     for (const Part& part : parts_)
         part.view->show_probe(part.pane.kind == Pane::Kind::slice && !probe.preview ? std::nullopt
                                                                                     : std::optional(probe));
 }
 
-void Screen::changed(const VoxelBox& voxels)
+/// Bricks that arrive are those that one pane needs: the others are drawn with theirs when their turn comes.
+void Screen::take_changed()
 {
-    for (const Part& part : parts_) part.view->changed(voxels);
+    renderer_.scene().advance();
+    for (const Scene::Changed& what : renderer_.scene().take_changed()) switch (what.cause) {
+            case Scene::Cause::edit:
+                for (const Part& part : parts_) part.view->changed(what.voxels);
+                break;
+            case Scene::Cause::bricks:
+                if (turn_ < parts_.size()) parts_[turn_].view->bricks_arrived(what.voxels);
+                break;
+            case Scene::Cause::light:
+                for (const Part& part : parts_)
+                    if (!part.pane.shot.is_slice) part.view->light_changed(what.voxels);
+                break;
+        }
 }
 
 void Screen::update_occlusion()
@@ -77,23 +92,22 @@ void Screen::update_occlusion()
 
 bool Screen::is_loading() const
 {
-    return renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
 /// The volume loads what one pane needs at a time. One that is interrupted is to be drawn again when its turn comes.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;
-    if (is_loading() && turn_ < parts_.size()) parts_[turn_].view->came({Size3(0), renderer_.volume().info().size});
+    if (is_loading() && turn_ < parts_.size())
+        parts_[turn_].view->bricks_arrived({Size3(0), renderer_.scene().info().size});
     turn_ = part;
 }
 
 void Screen::advance()
 {
     for (const Part& part : parts_) part.view->collect();
-    if (renderer_.paged())
-        for (const VoxelBox& voxels : renderer_.paged()->advance())
-            if (turn_ < parts_.size()) parts_[turn_].view->came(voxels);
+    take_changed();
     const auto first = [&](const auto& wants) {
         size_t part = 0;
         while (part < parts_.size() && !wants(part)) ++part;
@@ -104,7 +118,7 @@ void Screen::advance()
         return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
     });
     if (next == parts_.size()) return;
-    // One at a time, so that what is on its way stays short whoever sent it.
+    // One at a time, so that little is on its way, whichever view submitted it.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);
@@ -121,7 +135,8 @@ void Screen::wait()
 
 bool Screen::complete() const
 {
-    return !is_loading() && std::ranges::all_of(parts_, [](const Part& part) { return part.view->is_finished(); });
+    return !is_loading() && !renderer_.scene().has_changed() &&
+           std::ranges::all_of(parts_, [](const Part& part) { return part.view->is_finished(); });
 }
 
 std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks) const
@@ -136,7 +151,7 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
                        .probe = {.center = probe.center, .radius = probe.radius, .color = probe.color},
                        .balls = marks.balls,
                        .lines = marks.lines},
-                      renderer_.volume().info());
+                      renderer_.scene().info());
 }
 
 Image8 Screen::read_back()
@@ -150,11 +165,11 @@ Image8 Screen::read_back()
                                 &whole.rgba[4 * (box.begin.x + size_t(pixels_.x) * (box.begin.y + y))]);
         const bool is_map = part.pane.kind == Pane::Kind::map || part.pane.kind == Pane::Kind::slice;
         if (!is_map) continue;
-        const glm::dvec3 probe = probe_voxel_ * renderer_.volume().info().spacing;
+        const glm::dvec3 probe = probe_voxel_ * renderer_.scene().info().spacing;
         const OverlayScene scene{.main = camera_,
                                  .main_pixels = parts_[0].pane.box.end - parts_[0].pane.box.begin,
                                  .probe = {.center = probe, .is_outlined = false}};
-        draw_strokes(whole, strokes_of(part.pane, scene, renderer_.volume().info()), box);
+        draw_strokes(whole, strokes_of(part.pane, scene, renderer_.scene().info()), box);
     }
     return whole;
 }

@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "engine/live/trace_look.h"
+#include "engine/live/trace_marks.h"
 #include "engine/live/view.h"
 #include "engine/look/overlay.h"
 
@@ -23,8 +23,6 @@ public:
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
     /// Slices go where the probe goes.
     void show_probe(const ProbeLook& probe);
-    /// These voxels have been painted.
-    void changed(const VoxelBox& voxels);
     void update_occlusion();
 
     void advance();
@@ -54,14 +52,17 @@ public:
     std::vector<View::PassTime> pass_times() const;
 
 private:
-    void arrange(bool session_changed);
+    void arrange(bool look_changed);
     void retire_beyond(size_t panes);
+    void take_changed();
     void give_turn(size_t part);
     bool is_loading() const;
 
     Renderer& renderer_;
     View::Options options_;
-    Session session_;
+    Look look_;
+    ViewSettings view_;
+    InteractionSettings interaction_;
     Camera camera_;
     glm::uvec2 pixels_{0};
     glm::dvec3 probe_voxel_{0.0};

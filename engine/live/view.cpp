@@ -27,10 +27,10 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
 
 }  // namespace
 
-void View::look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
+void View::look(const Look& look, const InteractionSettings& interaction, const Shot& shot, const glm::uvec2& pixels)
 {
     SHVR_CHECK(pixels.x > 0 && pixels.y > 0);
-    scene_ = std::make_shared<const Scene>(Scene{session, shot, pixels});
+    sight_ = std::make_shared<const Sight>(Sight{look, interaction, shot, pixels});
 }
 
 void View::show_probe(const std::optional<ProbeLook>& probe)
@@ -42,35 +42,43 @@ void View::changed(const VoxelBox& voxels)
 {
     patch_is_dirty_ = true;
     if (base_.job) changed_during_base_.push_back(voxels);
-    if (shown_scene_) mark_voxels(voxels);
+    if (shown_sight_) mark_voxels(voxels);
 }
 
-void View::came(const VoxelBox& voxels)
+void View::bricks_arrived(const VoxelBox& voxels)
 {
     patch_is_dirty_ = true;
     if (base_.job) changed_during_base_.push_back(voxels);
-    if (shown_scene_) mark_voxels(voxels, false);
+    if (shown_sight_) mark_voxels(voxels, false);
+}
+
+/// What covers the probe shows it when all of it is renewed (submit_occlusion).
+void View::light_changed(const VoxelBox& voxels)
+{
+    occlusion_was_renewed_ = true;
+    if (base_.job) changed_during_base_.push_back(voxels);
+    if (shown_sight_) mark_voxels(voxels);
 }
 
 /// The pixels in which a camera, or either of two, may see them.
-PixelBox View::pixels_of(const Scene& scene, const VoxelBox& voxels) const
+PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
     // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
-    const glm::dvec3& spacing = renderer_.volume().info().spacing;
+    const glm::dvec3& spacing = scene().info().spacing;
     const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
-    const PixelBox one = pixels_of_box(scene.shot.camera, scene.pixels, lower, upper);
-    if (!scene.shot.right_eye) return one;
-    return united(one, pixels_of_box(*scene.shot.right_eye, scene.pixels, lower, upper));
+    const PixelBox one = pixels_of_box(sight.shot.camera, sight.pixels, lower, upper);
+    if (!sight.shot.right_eye) return one;
+    return united(one, pixels_of_box(*sight.shot.right_eye, sight.pixels, lower, upper));
 }
 
 void View::mark_voxels(const VoxelBox& voxels, bool is_urgent)
 {
-    mark_due(pixels_of(*shown_scene_, voxels), is_urgent);
+    mark_due(pixels_of(*shown_sight_, voxels), is_urgent);
 }
 
 glm::uvec2 View::tile_counts() const
 {
-    return divided(shown_scene_->pixels, TILE);
+    return divided(shown_sight_->pixels, TILE);
 }
 
 void View::mark_due(const PixelBox& pixels, bool is_urgent)
@@ -104,8 +112,12 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
 void View::advance()
 {
     reap();
-    if (renderer_.paged())
-        for (const VoxelBox& voxels : renderer_.paged()->advance()) came(voxels);
+    scene().advance();
+    for (const Scene::Changed& what : scene().take_changed()) switch (what.cause) {
+            case Scene::Cause::edit: changed(what.voxels); break;
+            case Scene::Cause::bricks: bricks_arrived(what.voxels); break;
+            case Scene::Cause::light: light_changed(what.voxels); break;
+        }
     submit_due();
 }
 
@@ -123,34 +135,35 @@ void View::submit_sketches()
 
 bool View::patch_is_due() const
 {
-    return patch_.shown.scene != shown_scene_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
+    return patch_.shown.sight != shown_sight_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
 }
 
 bool View::submit_next(bool sketches_alone)
 {
-    if (!scene_) return false;
+    if (!sight_) return false;
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
     if (base_.job || patch_.job) return false;  // on their way
-    if (scene_ != shown_scene_) {
+    if (sight_ != shown_sight_) {
         pass_times_.clear();
         changed_during_base_.clear();
-        start(base_, scene_, std::nullopt, options_.motion_ms);
-        if (probe_) start(patch_, scene_, probe_, options_.probe_ms);  // shown together with it
+        start(base_, sight_, std::nullopt, options_.motion_ms);
+        if (probe_) start(patch_, sight_, probe_, options_.probe_ms);  // shown together with it
         patch_is_dirty_ = false;
         return submit_next(sketches_alone);
     }
     if (patch_is_due()) {
         patch_is_dirty_ = false;
-        start(patch_, scene_, probe_, options_.probe_ms);
+        start(patch_, sight_, probe_, options_.probe_ms);
         finish_sketches();  // there may be nothing to draw
         return submit_next(sketches_alone);
     }
     if (sketches_alone) return false;
     if (submit_occlusion()) return true;
+    if (scene().has_changed()) return false;  // to be taken first, so that no tile is drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
-        start(patch_, scene_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
+        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
         return submit_next(sketches_alone);
     }
     return running_.empty() && submit_refinement();
@@ -158,15 +171,15 @@ bool View::submit_next(bool sketches_alone)
 
 bool View::submit_refinement()
 {
-    std::optional<FrameGraph> graph = renderer_.next_refinement(shown_scene_->session);
+    std::optional<FrameGraph> graph = next_refinement(scene(), shown_sight_->look);
     if (!graph) return false;
     submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
     return true;
 }
 
-bool View::submit_preparation(const Scene& scene)
+bool View::submit_preparation(const Sight& sight)
 {
-    std::optional<FrameGraph> graph = renderer_.next_preparation(scene.session);
+    std::optional<FrameGraph> graph = next_preparation(scene(), sight.look);
     if (!graph) return false;
     submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
     return true;
@@ -174,11 +187,11 @@ bool View::submit_preparation(const Scene& scene)
 
 Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running)
 {
-    const Scene& scene = *running.scene;
-    Renderer::Drawn drawn =
-        renderer_.draw(graph, scene.session, scene.shot, part, graph.import("light", work_.import()));
-    running.reached = drawn.reached;
-    running.tree = std::move(drawn.tree);
+    const Sight& sight = *running.sight;
+    PicturePart shown = part;
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts, those without the probe, too
+    Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", work_.import()));
+    running.feedback = std::move(drawn.feedback);
     return drawn.target;
 }
 
@@ -193,28 +206,26 @@ gpu::EncodeParams View::encoding() const
 
 bool View::occlusion_is_due() const
 {
-    const OcclusionSettings& settings = shown_scene_->session.light.occlusion;
-    return !shown_scene_->shot.is_slice && (settings.automatic || occlusion_is_asked_for_) &&
-           renderer_.occlusion().is_due();
+    const OcclusionSettings& settings = shown_sight_->look.light.occlusion;
+    return !shown_sight_->shot.is_slice && (settings.automatic || occlusion_is_asked_for_) &&
+           scene().occlusion().is_due();
 }
 
 /// A slice of what keeps ambient light off. Its bricks lie behind each other, so sharp tiles wait until all are done.
 bool View::submit_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
-    const Scene& scene = *shown_scene_;
-    if (scene.shot.is_slice) return false;
-    if (!scene.session.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    std::optional<Renderer::OcclusionSlice> slice = renderer_.next_occlusion(scene.session, scene.shot.camera, MOST);
+    const Sight& sight = *shown_sight_;
+    if (sight.shot.is_slice) return false;
+    if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
+    std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera, MOST);
     if (!slice) {
         occlusion_is_asked_for_ = false;
         patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
         occlusion_was_renewed_ = false;
         return false;
     }
-    for (const VoxelBox& voxels : slice->renewed) mark_voxels(voxels);
-    occlusion_was_renewed_ = occlusion_was_renewed_ || !slice->renewed.empty();
-    submit(std::move(slice->graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    submit(std::move(*slice), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
     return true;
 }
 
@@ -222,16 +233,16 @@ bool View::may_draw(const Tile& tile) const
 {
     constexpr double AGAIN_S = 0.25;
     if (!tile.is_due || !tile.is_shown || tile.is_urgent) return tile.is_due;
-    const bool more_comes = renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading;
+    const bool more_comes = scene().volume().state() == DeviceVolume::State::loading;
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
 bool View::submit_tiles()
 {
-    const glm::uvec2 counts = tile_counts(), pixels = shown_scene_->pixels;
+    const glm::uvec2 counts = tile_counts(), pixels = shown_sight_->pixels;
     glm::dvec2 focus = 0.5 * glm::dvec2(pixels);
     if (probe_)
-        if (const auto seen = project(shown_scene_->shot.camera, pixels, probe_->center)) focus = seen->pixel;
+        if (const auto seen = project(shown_sight_->shot.camera, pixels, probe_->center)) focus = seen->pixel;
     std::optional<glm::uvec2> nearest;
     double best = 0.0;
     for (uint32_t y = 0; y < counts.y; ++y)
@@ -242,7 +253,7 @@ bool View::submit_tiles()
             if (!nearest || square < best) nearest = glm::uvec2(x, y), best = square;
         }
     if (!nearest) return false;
-    if (submit_preparation(*shown_scene_)) return true;
+    if (submit_preparation(*shown_sight_)) return true;
 
     // As many neighbours in its row as a step affords.
     const auto is_due = [&](uint32_t x) { return may_draw(tiles_[x + counts.x * nearest->y]); };
@@ -253,7 +264,7 @@ bool View::submit_tiles()
     while (affords_more() && begin > 0 && is_due(begin - 1)) --begin;
 
     reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
-    Running running{.purpose = Purpose::tiles, .scene = shown_scene_};
+    Running running{.purpose = Purpose::tiles, .sight = shown_sight_};
     for (uint32_t x = begin; x < end; ++x) running.tiles.push_back(x + counts.x * nearest->y);
     PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
     part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
@@ -341,14 +352,13 @@ void View::reap()
         in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
         const gpu::FrameResult result = done.submission.finish();
         account(result, done.pixels);
-        if (done.reached && renderer_.paged())
-            renderer_.paged()->note_reached(done.tree, result.read_backs[*done.reached]);
+        scene().volume().take_feedback(done.feedback, result);
         switch (done.purpose) {
             case Purpose::preparation: break;
             case Purpose::base: --base_.running; break;
             case Purpose::patch: --patch_.running; break;
             case Purpose::tiles:
-                if (done.scene != shown_scene_) break;
+                if (done.sight != shown_sight_) break;
                 for (uint32_t tile : done.tiles) tiles_[tile].is_shown = true;
                 ++revision_;
                 break;
@@ -359,16 +369,15 @@ void View::reap()
 
 bool View::complete() const
 {
-    if (!scene_) return true;
-    if (renderer_.paged() && renderer_.paged()->state() == PagedVolume::State::loading) return false;
-    return is_finished();
+    if (!sight_) return true;
+    return scene().volume().state() != DeviceVolume::State::loading && !scene().has_changed() && is_finished();
 }
 
 bool View::is_finished() const
 {
-    if (!scene_) return true;
-    if (scene_ != shown_scene_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
-    if (occlusion_is_due() || renderer_.refinement_is_due()) return false;
+    if (!sight_) return true;
+    if (sight_ != shown_sight_ || !running_.empty() || base_.job || patch_.job || patch_is_due()) return false;
+    if (occlusion_is_due() || scene().volume().refinement_is_due()) return false;
     return (patch_.shown.share == 1.0 || patch_.shown.part.empty()) &&
            std::ranges::none_of(tiles_, [](const Tile& tile) { return tile.is_due; });
 }
@@ -376,11 +385,11 @@ bool View::is_finished() const
 std::vector<View::Layer> View::layers() const
 {
     std::vector<Layer> layers;
-    if (!shown_scene_) return layers;
-    const glm::uvec2 pixels = shown_scene_->pixels;
+    if (!shown_sight_) return layers;
+    const glm::uvec2 pixels = shown_sight_->pixels;
     const auto add_sketch = [&](const Sketch& sketch) {
         const Sketch::Content& shown = sketch.shown;
-        if (shown.scene != shown_scene_ || shown.part.empty()) return;
+        if (shown.sight != shown_sight_ || shown.part.empty()) return;
         layers.push_back({.image = sketch.images[sketch.front].import(),
                           .source = {glm::uvec2(0), shown.target.end - shown.target.begin},
                           .target = shown.target});
@@ -405,7 +414,7 @@ std::vector<View::Layer> View::layers() const
 
 Image8 View::read_back()
 {
-    const glm::uvec2 pixels = shown_scene_ ? shown_scene_->pixels : glm::uvec2(0);
+    const glm::uvec2 pixels = shown_sight_ ? shown_sight_->pixels : glm::uvec2(0);
     Image8 picture{int(pixels.x), int(pixels.y), std::vector<uint8_t>(size_t(pixels.x) * pixels.y * 4)};
     for (const Layer& layer : layers()) {
         const glm::uvec2 size = layer.target.end - layer.target.begin;

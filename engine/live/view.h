@@ -5,8 +5,8 @@
 //                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
-//   voxels painted    the tiles that show them, again
-//   light kept off    ambient occlusion, nearest bricks first, before the sharp tiles that show it
+//   voxels changed    the tiles that show them, again
+//   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
 // Everything is drawn in small graphs of about `step_ms` each, and no more than about `in_flight_ms` of them are on the
 // way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
@@ -37,25 +37,31 @@ public:
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
 
     /// What is to be seen: all of it is drawn anew. Not to be called where nothing changed.
-    void look(const Session& session, const Shot& shot, const glm::uvec2& pixels);
+    void look(const Look& look, const InteractionSettings& interaction, const Shot& shot, const glm::uvec2& pixels);
+    void look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
+    {
+        look(session.look(), session.interaction, shot, pixels);
+    }
     void show_probe(const std::optional<ProbeLook>& probe);
-    /// These voxels have been painted.
+    /// These voxels look different: a person has changed them.
     void changed(const VoxelBox& voxels);
-    /// These have come to the device, finer than before. While more of them come, tiles that were drawn without them are
+    /// Paged bricks of them have arrived, finer than before. While more of them come, tiles that were drawn without them are
     /// drawn again a few times a second.
-    void came(const VoxelBox& voxels);
+    void bricks_arrived(const VoxelBox& voxels);
+    /// Their ambient occlusion has been renewed.
+    void light_changed(const VoxelBox& voxels);
 
     /// Ambient occlusion is renewed though the session says not to do so by itself.
     void update_occlusion() { occlusion_is_asked_for_ = true; }
 
     /// Takes what the device has finished and what has come to it, and submits what is due next.
     void advance();
-    // The parts of advance(), for who has several views: what has come is told with came().
+    // The parts of advance(), for owners of several views, who take what has changed from the scene and report it.
     void collect() { reap(); }
     void submit_sketches();  ///< only what is_sketched() waits for
     void submit_due();
     /// All of the picture is there, coarse perhaps.
-    bool is_sketched() const { return scene_ == shown_scene_ && !base_.job && !patch_.job && !patch_is_due(); }
+    bool is_sketched() const { return sight_ == shown_sight_ && !base_.job && !patch_.job && !patch_is_due(); }
     /// Nothing is due or on its way, whatever may still come to the device.
     bool is_finished() const;
     bool is_idle() const { return running_.empty(); }
@@ -65,8 +71,8 @@ public:
     /// The picture is as sharp as the budget lets it be, and nothing is due or on its way.
     bool complete() const;
     /// The camera of what layers() show; null before there is anything.
-    const Camera* shown_camera() const { return shown_scene_ ? &shown_scene_->shot.camera : nullptr; }
-    /// Counts what changed in layers(): who shows them compares.
+    const Camera* shown_camera() const { return shown_sight_ ? &shown_sight_->shot.camera : nullptr; }
+    /// Changes with layers(), for callers that show them.
     uint64_t revision() const { return revision_; }
 
     /// Images to be copied over each other, back to front. Each is an rgba8_unorm image (red and blue swapped where the
@@ -90,17 +96,18 @@ public:
     uint64_t submissions() const { return submissions_; }
 
 private:
-    struct Scene {
-        Session session;
+    struct Sight {
+        Look look;
+        InteractionSettings interaction;
         Shot shot;
         glm::uvec2 pixels{0};
     };
-    using SceneRef = std::shared_ptr<const Scene>;
+    using SightRef = std::shared_ptr<const Sight>;
 
     /// A part of a picture at some scale, in an image of its own. Two images: one is shown while the other is drawn.
     struct Sketch {
         struct Content {
-            SceneRef scene;
+            SightRef sight;
             std::optional<ProbeLook> probe;
             double share = 1.0;    ///< of the screen's pixels, along each axis; 1: sharp
             glm::uvec2 pixels{0};  ///< of the whole picture, scaled
@@ -109,7 +116,7 @@ private:
         };
         std::array<gpu::Storage, 2> images;
         uint32_t front = 0;
-        Content shown;               ///< in images[front]; scene is null where there is nothing
+        Content shown;               ///< in images[front]; sight is null where there is nothing
         std::optional<Content> job;  ///< goes to the other image
         uint32_t next_row = 0;       ///< of the job, that is to be drawn next
         uint32_t next_encoded = 0;   ///< row of the target, that is to be encoded next
@@ -132,24 +139,24 @@ private:
         double estimate_ms = 0.0;
         uint64_t pixels = 0;
         std::vector<uint32_t> tiles;  ///< indices
-        SceneRef scene;
-        std::optional<uint32_t> reached;  ///< Renderer::Drawn
-        PagedVolume::TreeRef tree;
+        SightRef sight;
+        DeviceVolume::Feedback feedback;
     };
 
     bool submit_next(bool sketches_alone);
     bool may_draw(const Tile& tile) const;
-    bool submit_preparation(const Scene& scene);
+    bool submit_preparation(const Sight& sight);
     bool submit_refinement();
+    Scene& scene() const { return renderer_.scene(); }
     Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
-    void start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms);
+    void start(Sketch& sketch, const SightRef& sight, const std::optional<ProbeLook>& probe, double target_ms);
     bool submit_sketch(Sketch& sketch, Purpose purpose);
     void submit_rows(Sketch& sketch, Purpose purpose);
     void submit_encoding(Sketch& sketch, Purpose purpose);
     bool submit_occlusion();
     bool occlusion_is_due() const;
     void mark_voxels(const VoxelBox& voxels, bool is_urgent = true);
-    PixelBox pixels_of(const Scene& scene, const VoxelBox& voxels) const;
+    PixelBox pixels_of(const Sight& sight, const VoxelBox& voxels) const;
     bool submit_tiles();
     void encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end);
     gpu::EncodeParams encoding() const;
@@ -171,8 +178,8 @@ private:
 
     Renderer& renderer_;
     Options options_;
-    SceneRef scene_;                  ///< what is wanted
-    SceneRef shown_scene_;            ///< what base, tiles and patch show
+    SightRef sight_;                  ///< what is wanted
+    SightRef shown_sight_;            ///< what base, tiles and patch show
     std::optional<ProbeLook> probe_;  ///< what is wanted
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< painted under the probe

@@ -22,29 +22,29 @@ double share_for(double ms, double target_ms, double most)
 
 }  // namespace
 
-void View::start(Sketch& sketch, const SceneRef& scene, const std::optional<ProbeLook>& probe, double target_ms)
+void View::start(Sketch& sketch, const SightRef& sight, const std::optional<ProbeLook>& probe, double target_ms)
 {
     const bool is_patch = &sketch == &patch_;
-    PixelBox part{glm::uvec2(0), scene->pixels};
+    PixelBox part{glm::uvec2(0), sight->pixels};
     if (is_patch) part = PixelBox{};
     if (is_patch && probe) {
-        const glm::dvec3& spacing = renderer_.volume().info().spacing;
-        part = pixels_of_ball(scene->shot.camera, scene->pixels, probe->center, probe->reach(spacing));
-        if (const auto& eye = scene->shot.right_eye)
-            part = united(part, pixels_of_ball(*eye, scene->pixels, probe->center, probe->reach(spacing)));
+        const glm::dvec3& spacing = scene().info().spacing;
+        part = pixels_of_ball(sight->shot.camera, sight->pixels, probe->center, probe->reach(spacing));
+        if (const auto& eye = sight->shot.right_eye)
+            part = united(part, pixels_of_ball(*eye, sight->pixels, probe->center, probe->reach(spacing)));
     }
     // Where all is still it is made sharp, whatever it costs.
-    const double most = std::isinf(target_ms) ? 1.0 : scene->session.interaction.resolution;
+    const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     sketch_ms_ = 0.0;
-    Sketch::Content content{.scene = scene, .probe = probe, .share = share};
-    content.pixels = glm::uvec2(glm::ceil(glm::dvec2(scene->pixels) * share));
+    Sketch::Content content{.sight = sight, .probe = probe, .share = share};
+    content.pixels = glm::uvec2(glm::ceil(glm::dvec2(sight->pixels) * share));
     if (!part.empty()) {
-        const glm::dvec2 scale = glm::dvec2(content.pixels) / glm::dvec2(scene->pixels);
+        const glm::dvec2 scale = glm::dvec2(content.pixels) / glm::dvec2(sight->pixels);
         content.part = {glm::uvec2(glm::floor(glm::dvec2(part.begin) * scale)),
                         glm::min(glm::uvec2(glm::ceil(glm::dvec2(part.end) * scale)), content.pixels)};
-        content.target = {content.part.begin * scene->pixels / content.pixels,
-                          content.part.end * scene->pixels / content.pixels};
+        content.target = {content.part.begin * sight->pixels / content.pixels,
+                          content.part.end * sight->pixels / content.pixels};
         reserve(sketch.images[1 - sketch.front], is_patch ? "probe's pixels" : "sketch", Format::rgba8_unorm,
                 content.target.end - content.target.begin);
         reserve(work_, "light", Format::rgba32_float, content.part.end - content.part.begin);
@@ -59,7 +59,7 @@ bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
     if (sketch.next_row < sketch.job->part.end.y) {
-        if (!submit_preparation(*sketch.job->scene)) submit_rows(sketch, purpose);
+        if (!submit_preparation(*sketch.job->sight)) submit_rows(sketch, purpose);
         return true;
     }
     if (sketch.next_encoded >= sketch.job->target.end.y) return false;
@@ -77,10 +77,10 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
                            .begin = {job.part.begin.x, sketch.next_row},
                            .end = {job.part.end.x, sketch.next_row + rows},
                            .target = {0, sketch.next_row - job.part.begin.y},
-                           .detail_pixels = job.scene->pixels,
+                           .detail_pixels = job.sight->pixels,
                            .probe = job.probe};
     FrameGraph graph;
-    Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .scene = job.scene};
+    Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, running);
     sketch.next_row += rows;
     if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, when all are there
@@ -100,7 +100,7 @@ void View::submit_encoding(Sketch& sketch, Purpose purpose)
     FrameGraph graph;
     encode_rows(graph, graph.import("light", work_.import()), sketch, sketch.next_encoded, end);
     const double estimate_ms = ENLARGING_MS * width * (end - sketch.next_encoded);
-    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .scene = sketch.job->scene});
+    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .sight = sketch.job->sight});
     sketch.next_encoded = end;
     ++sketch.running;
 }
@@ -109,7 +109,7 @@ void View::submit_encoding(Sketch& sketch, Purpose purpose)
 void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end)
 {
     const Sketch::Content& job = *sketch.job;
-    const glm::dvec2 step = glm::dvec2(job.pixels) / glm::dvec2(job.scene->pixels);
+    const glm::dvec2 step = glm::dvec2(job.pixels) / glm::dvec2(job.sight->pixels);
     const glm::uvec2 from(job.target.begin.x, begin);
     gpu::EncodeParams params = encoding();
     params.target = from - job.target.begin;
@@ -136,7 +136,7 @@ void View::finish_sketches()
     if (!base_.job) return;
     average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());
     flip(base_);
-    shown_scene_ = base_.shown.scene;
+    shown_sight_ = base_.shown.sight;
     reset_tiles();
     for (const VoxelBox& voxels : std::exchange(changed_during_base_, {})) changed(voxels);
 }

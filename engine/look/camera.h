@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/base/spelling.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {
@@ -33,6 +34,12 @@ struct Camera {
     double shift_right = 0.0;
     bool operator==(const Camera&) const = default;
 };
+inline constexpr Spelling<Camera::Projection> PROJECTIONS[] = {{Camera::Projection::perspective, "perspective"},
+                                                               {Camera::Projection::orthographic, "orthographic"}};
+constexpr std::span<const Spelling<Camera::Projection>> spellings_of(Camera::Projection)
+{
+    return PROJECTIONS;
+}
 
 /// A camera that follows the volume: one of `camera_sides()`, then turned and tilted about the volume's centre.
 struct SideView {

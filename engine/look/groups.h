@@ -22,7 +22,7 @@ struct GroupSettings {
 };
 using Groups = std::map<uint8_t, GroupSettings>;  ///< 1 ... 255; a group without an entry has nothing set
 
-/// What comes of that.
+/// The look that results.
 struct ColorGroup {
     std::string name;
     glm::dvec3 color{1.0};
@@ -39,7 +39,7 @@ ColorGroup group_of(const Groups& groups, uint8_t group);
 uint8_t parent_of(const Groups& groups, uint8_t group);
 /// Whether `group` is `above`, or below it in the tree. `above` may not become the child of such a group.
 bool is_within(const Groups& groups, uint8_t group, uint8_t above);
-/// A group whose ancestors come back to it; nothing where there is none. Only trees are asked for anything else.
+/// A group that is its own ancestor, if any. The other functions need groups without cycles.
 std::optional<uint8_t> group_in_cycle(const Groups& groups);
 
 }  // namespace shvr

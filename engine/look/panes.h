@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/spelling.h"
 #include "engine/look/camera_motion.h"
 
 namespace shvr {
@@ -16,8 +17,23 @@ enum class Arrangement {
     overview,  ///< the camera's view, and the volume from the top, the front and the right, with the camera's frustum
     slices     ///< the camera's view, and the planes through the probe across z, y and x
 };
+inline constexpr Spelling<Arrangement> ARRANGEMENTS[] = {{Arrangement::single, "single"},
+                                                         {Arrangement::stereo, "stereo"},
+                                                         {Arrangement::overview, "overview"},
+                                                         {Arrangement::slices, "slices"}};
+constexpr std::span<const Spelling<Arrangement>> spellings_of(Arrangement)
+{
+    return ARRANGEMENTS;
+}
 
 enum class StereoOutput { side_by_side, top_bottom, anaglyph };
+inline constexpr Spelling<StereoOutput> STEREO_OUTPUTS[] = {{StereoOutput::side_by_side, "side_by_side"},
+                                                            {StereoOutput::top_bottom, "top_bottom"},
+                                                            {StereoOutput::anaglyph, "anaglyph"}};
+constexpr std::span<const Spelling<StereoOutput>> spellings_of(StereoOutput)
+{
+    return STEREO_OUTPUTS;
+}
 
 struct StereoSettings {
     StereoOutput output = StereoOutput::side_by_side;

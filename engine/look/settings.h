@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/base/spelling.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -20,7 +21,7 @@ struct OcclusionSettings {
     uint32_t rays = 32;        ///< for each voxel
     bool full_sphere = false;  ///< rays from behind surfaces, too
     double curve = 1.0;        ///< exponent of what arrives: above 1 darker
-    bool automatic = true;     ///< false: the window renews it when it is asked to
+    bool automatic = true;     ///< false: the window renews it on request
     bool operator==(const OcclusionSettings&) const = default;
 };
 
@@ -49,9 +50,21 @@ struct DistanceBlend {
 };
 
 enum class Sampling { automatic, exact, hardware };
+inline constexpr Spelling<Sampling> SAMPLINGS[] = {
+    {Sampling::automatic, "automatic"}, {Sampling::exact, "exact"}, {Sampling::hardware, "hardware"}};
+constexpr std::span<const Spelling<Sampling>> spellings_of(Sampling)
+{
+    return SAMPLINGS;
+}
 
-/// Whether bricks come and go on the device. Automatic: where there are levels to choose from, or the budget asks for it.
+/// Whether bricks are paged on the device. Automatic: where there are levels to choose from, or the budget requires it.
 enum class Paging { automatic, always, never };
+inline constexpr Spelling<Paging> PAGINGS[] = {
+    {Paging::automatic, "automatic"}, {Paging::always, "always"}, {Paging::never, "never"}};
+constexpr std::span<const Spelling<Paging>> spellings_of(Paging)
+{
+    return PAGINGS;
+}
 
 struct RenderSettings {
     glm::uvec2 size{512, 512};                  ///< pixels

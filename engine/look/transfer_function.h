@@ -37,6 +37,7 @@ public:
 
     /// Linear RGB and opacity per reference length; all 0 outside [lower, upper].
     glm::dvec4 at(double intensity) const;
+    bool operator==(const TransferFunction&) const = default;
 
 private:
     std::vector<ControlPoint> points_;

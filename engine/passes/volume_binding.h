@@ -8,11 +8,11 @@
 
 namespace shvr {
 
-/// Of a paged volume (shaders/pages.h).
+/// Of paged bricks (shaders/pages.h).
 struct PageBinding {
     Resource directory;
     Resource cell_leap;     ///< r8ui per cell of every slot
-    Resource reached;       ///< bit per entry: set where a ray visited the brick
+    Resource reached;       ///< bit per entry: where rays mark the bricks that they visit
     bool feedback = false;  ///< they are to
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;
@@ -26,7 +26,7 @@ struct VolumeBinding {
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
     std::array<Resource, 2> leap_scratch;  ///< what its stages hand on
-    // Paged volumes:
+    // Where they are paged:
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};
     glm::uvec3 cell_counts{1};

@@ -23,14 +23,20 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
     }
 }
 
-/// A pane in parts of at most `side` pixels a side, the first one last.
-std::vector<PicturePart> parts_of(const glm::uvec2& pixels, uint32_t side, const std::optional<ProbeLook>& probe)
+/// A pane in parts, the first one last.
+std::vector<PicturePart> parts_of(const glm::uvec2& pixels, const RenderOptions& options, const VolumeInfo& volume)
 {
+    const std::optional<VoxelBox> always_shown = voxels_of_shell(options.probe, volume);
+    const uint32_t side = options.part_pixels;
     std::vector<PicturePart> parts;
     for (uint32_t y = 0; y < pixels.y; y += side)
         for (uint32_t x = 0; x < pixels.x; x += side) {
             const glm::uvec2 begin(x, y);
-            parts.push_back({.pixels = pixels, .begin = begin, .end = glm::min(begin + side, pixels), .probe = probe});
+            parts.push_back({.pixels = pixels,
+                             .begin = begin,
+                             .end = glm::min(begin + side, pixels),
+                             .probe = options.probe,
+                             .always_shown = always_shown});
         }
     std::ranges::reverse(parts);
     return parts;
@@ -61,17 +67,17 @@ uint64_t area_of(const PicturePart& part)
 
 }  // namespace
 
-PictureJob::PictureJob(Renderer& renderer, Session session, const Camera& camera, const RenderOptions& options)
-    : renderer_(renderer), session_(std::move(session)), camera_(camera), options_(options), size_(session_.render.size)
+PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options)
+    : renderer_(renderer), look_(session.look()), options_(options), size_(look_.render.size)
 {
-    const VolumeInfo& info = renderer_.volume().info();
+    const VolumeInfo& info = scene().info();
     const uint64_t bytes = uint64_t(size_.x) * size_.y * 4 * sizeof(float);
-    if (bytes > renderer_.host_budget_)
+    if (bytes > renderer_.host_budget())
         fail("render.size is ", size_.x, " x ", size_.y, " pixels, which take ", bytes >> 20,
-             " MiB of memory; expected at most the host's budget, ", renderer_.host_budget_ >> 20, " MiB");
-    const glm::dvec3 probe_voxel = session_.probe.voxel.value_or(0.5 * glm::dvec3(info.size));
-    panes_ = panes_of(session_.view, camera_, size_, info, probe_voxel);
-    overlay_ = {.main = camera_,
+             " MiB of memory; expected at most the host's budget, ", renderer_.host_budget() >> 20, " MiB");
+    const glm::dvec3 probe_voxel = session.probe.voxel.value_or(0.5 * glm::dvec3(info.size));
+    panes_ = panes_of(session.view, camera, size_, info, probe_voxel);
+    overlay_ = {.main = camera,
                 .main_pixels = panes_[0].box.end - panes_[0].box.begin,
                 .probe = {.center = probe_voxel * info.spacing, .is_outlined = false}};
     if (const auto& probe = options_.probe) {
@@ -79,10 +85,6 @@ PictureJob::PictureJob(Renderer& renderer, Session session, const Camera& camera
                           .radius = probe->radius,
                           .color = probe->color,
                           .is_outlined = options_.outlines_probe};
-        if (probe->shell) {
-            const glm::dvec3 middle = probe->center / info.spacing, reach = probe->radius / info.spacing;
-            always_shown_ = VoxelBox{Size3(glm::floor(middle - reach)), Size3(glm::ceil(middle + reach))};
-        }
     }
     picture_.image = {int(size_.x), int(size_.y), std::vector<float>(size_t(size_.x) * size_.y * 4)};
     begin_pane();
@@ -90,20 +92,27 @@ PictureJob::PictureJob(Renderer& renderer, Session session, const Camera& camera
 
 void PictureJob::begin_pane()
 {
-    parts_ = parts_of(pane().box.end - pane().box.begin, options_.part_pixels, options_.probe);
-    if (!renderer_.paged_) renew_occlusion();
+    parts_ = parts_of(pane().pixels(), options_, scene().info());
 }
 
 void PictureJob::end_pane()
 {
     const PixelBox& box = pane().box;
-    draw_strokes(picture_.image, strokes_of(pane(), overlay_, renderer_.volume().info()), box);
+    draw_strokes(picture_.image, strokes_of(pane(), overlay_, scene().info()), box);
 }
 
+/// All that the look wants and that can be made with the bricks that are there.
 void PictureJob::renew_occlusion()
 {
-    if (!pane().shot.is_slice)
-        append(picture_.passes, renderer_.make_occlusion(session_, pane().shot.camera, options_));
+    constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
+    if (pane().shot.is_slice) return;
+    if (scene().has_occlusion(look_)) {
+        scene().want_occlusion(look_);
+        scene().advance(true);
+    }
+    while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST))
+        append(picture_.passes,
+               renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
 }
 
 void PictureJob::step()
@@ -113,31 +122,23 @@ void PictureJob::step()
         ++pane_;
         begin_pane();
     }
-    const std::optional<VoxelBox> shown_before = renderer_.always_shown_;
-    renderer_.show_always(always_shown_);
     const PicturePart part = parts_.back();
     parts_.pop_back();
-    if (renderer_.paged_) {
-        draw_paged(part);
-    } else {
-        append(picture_.passes, draw(part));
-        drawn_pixels_ += area_of(part);
-    }
-    renderer_.always_shown_ = shown_before;
+    draw_completely(part);
     if (parts_.empty()) end_pane();
 }
 
-/// With the bricks that are there. Pixels go to the picture, and what rays came by to the volume.
+/// With the bricks that are there. Pixels go to the picture, and which bricks rays visited to the volume.
 std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
     const glm::uvec2 size = part.end - part.begin, origin = pane().box.begin + part.begin;
     const Resource color = graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
-    const Renderer::Drawn drawn = renderer_.draw(graph, session_, pane().shot, part, color, options_.count_work);
+    const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work);
     const uint32_t pixels = graph.read_back(drawn.target);
     gpu::FrameResult result =
-        renderer_.executor_.run(graph, {.timestamps = options_.timestamps, .serialize = options_.serialize});
-    if (drawn.reached) renderer_.paged_->note_reached(drawn.tree, result.read_backs[*drawn.reached]);
+        renderer_.executor().run(graph, {.timestamps = options_.timestamps, .serialize = options_.serialize});
+    scene().volume().take_feedback(drawn.feedback, result);
     const std::byte* row = result.read_backs[pixels].data();
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
@@ -146,77 +147,37 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
     return std::move(result.passes);
 }
 
-void PictureJob::draw_paged(const PicturePart& part)
+/// With all bricks that its rays visit, or else in quarters.
+void PictureJob::draw_completely(const PicturePart& part)
 {
-    PagedVolume& volume = *renderer_.paged_;
-    const Shot& shot = pane().shot;
-    const glm::uvec2 pixels = pane().box.end - pane().box.begin;
-    renderer_.look(session_, shot, pixels);
-    if (area_of(part) != PixelBox{glm::uvec2(0), pixels}.area()) volume.forget_reached();
+    using State = DeviceVolume::State;
+    DeviceVolume& volume = scene().volume();
+    look_at(scene(), look_, pane().shot, part);
+    if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
     std::vector<gpu::PassReport> passes;
     for (;;) {
         renew_occlusion();
         passes = draw(part);
-        static_cast<void>(volume.advance(true));
-        if (!shot.is_slice && renderer_.occlusion_.is_due()) continue;  // on what rays came by for the first time
-        if (volume.state() == PagedVolume::State::complete && !volume.is_stale()) break;
-        if (volume.state() == PagedVolume::State::limited) break;
+        scene().advance(true);
+        if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
+        if (volume.state() == State::complete && !volume.is_stale()) break;
+        if (volume.state() == State::limited) break;
     }
-    if (volume.state() == PagedVolume::State::limited && area_of(part) > 1) {
+    if (volume.state() == State::limited && area_of(part) > 1) {
         for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
         return;
     }
     drawn_pixels_ += area_of(part);
-    picture_.complete = picture_.complete && volume.state() == PagedVolume::State::complete && volume.missing() == 0;
+    picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
     append(picture_.passes, std::move(passes));
 }
 
 Picture PictureJob::take()
 {
     SHVR_CHECK(is_done());
-    picture_.complete = picture_.complete && !renderer_.occlusion_has_no_room_;
-    picture_.warnings = renderer_.take_messages();
+    picture_.complete = picture_.complete && !scene().occlusion_has_no_room();
+    picture_.warnings = scene().take_messages();
     return std::move(picture_);
-}
-
-/// All that `session` wants and that can be made with the bricks that are there. Returns the passes.
-std::vector<gpu::PassReport> Renderer::make_occlusion(const Session& session, const Camera& camera,
-                                                      const RenderOptions& options)
-{
-    constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
-    std::vector<gpu::PassReport> passes;
-    if (paged_ && draws_occlusion(session)) {
-        occlusion_.look(occlusion_look(session), *volume_, mask_);
-        want_around();
-        static_cast<void>(paged_->advance(true));
-    }
-    while (std::optional<OcclusionSlice> slice = next_occlusion(session, camera, MOST))
-        append(passes, executor_.run(std::move(slice->graph), {.timestamps = options.timestamps}).passes);
-    return passes;
-}
-
-Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
-{
-    PictureJob job(*this, session, camera, options);
-    while (!job.is_done()) job.step();
-    return job.take();
-}
-
-std::optional<glm::dvec3> Renderer::pick(const Session& session, const Camera& camera, const glm::uvec2& pixels,
-                                         const glm::uvec2& pixel)
-{
-    FrameGraph graph;
-    Prepared prepared = prepare(graph, session, camera, {.pixels = pixels, .begin = pixel, .end = pixel + 1u}, false);
-    prepared.input.pick = true;
-    prepared.input.shaded = false;
-    prepared.input.params.opacity_limit = std::min(prepared.input.params.opacity_limit, 0.5f);
-    const Resource reached = graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1)));
-    const uint32_t index = graph.read_back(raycast(graph, prepared.volume, prepared.input, reached));
-    const gpu::FrameResult result = executor_.run(std::move(graph), {.timestamps = false});
-    glm::vec4 voxel_and_hit;
-    std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);
-    if (voxel_and_hit.w == 0.0f) return std::nullopt;
-    return glm::dvec3(voxel_and_hit) * volume_->info().spacing;
 }
 
 }  // namespace shvr

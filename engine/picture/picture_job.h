@@ -10,11 +10,11 @@ namespace shvr {
 class PictureJob {
 public:
     /// Fails where the host's budget does not hold the picture.
-    PictureJob(Renderer& renderer, Session session, const Camera& camera, const RenderOptions& options);
+    PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options);
 
     bool is_done() const { return parts_.empty() && pane_ + 1 >= panes_.size(); }
-    /// Draws the next part, and waits for it. Where bricks come and go it waits for those, too: a part is drawn again until
-    /// its rays come by nothing that is not there, and one that needs more at once than there is room for is quartered.
+    /// Draws the next part, and waits for it. It waits for paged bricks, too: a part is drawn again until its rays visit
+    /// nothing that is not there, and one that needs more at once than there is room for is quartered.
     void step();
     /// Of all pixels, the share that is drawn.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
@@ -25,17 +25,16 @@ private:
     void begin_pane();
     void end_pane();
     std::vector<gpu::PassReport> draw(const PicturePart& part);
-    void draw_paged(const PicturePart& part);
+    void draw_completely(const PicturePart& part);
     void renew_occlusion();
+    Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }
 
     Renderer& renderer_;
-    Session session_;
-    Camera camera_;
+    Look look_;
     RenderOptions options_;
     glm::uvec2 size_;
     OverlayScene overlay_;
-    std::optional<VoxelBox> always_shown_;
     std::vector<Pane> panes_;
     size_t pane_ = 0;
     std::vector<PicturePart> parts_;  ///< of the pane, the next one last

@@ -64,10 +64,10 @@ Json listed_labels(const fs::path& folder)
     std::error_code ignored;
     const fs::path file = folder / ".zattrs";
     if (!fs::exists(file, ignored)) return Json::object();
-    const nlohmann::json attributes = read_json_object(file, LARGEST_ZARR_ATTRIBUTES);
-    const auto names = attributes.find("labels");
-    if (names != attributes.end() && !names->is_array()) refuse_json(file, "labels", *names, "a list of names");
-    return attributes;
+    const JsonDocument attributes = read_zarr_json(file, LARGEST_ZARR_ATTRIBUTES);
+    const JsonNode names = attributes.root()["labels"];
+    if (names.exists() && !names.is_array()) names.refuse("a list of names");
+    return attributes.value();
 }
 
 /// The file and what bears its name beside it (headers lead to other files), or what the folder holds.
@@ -142,7 +142,7 @@ fs::path label_image_target(const fs::path& folder)
     if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
         const fs::path file = target / ".zattrs";
         const bool is_label_image = fs::exists(file, error) && !fs::exists(target / PROJECT_RECORD, error) &&
-                                    read_json_object(file, LARGEST_ZARR_ATTRIBUTES).contains("image-label");
+                                    read_zarr_json(file, LARGEST_ZARR_ATTRIBUTES).root()["image-label"].exists();
         if (!is_label_image)
             fail(target.string(), ": is there already and is no label image; expected a new name, or one to replace");
     }

@@ -55,7 +55,7 @@ std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Gro
     try {
         read = read_label_looks(mask);
     } catch (const Error& error) {
-        return {error.what()};  // whoever reads the mask says more
+        return {error.what()};  // the mask's reader reports the details
     }
     for (const LabelLook& look : read.looks) {
         if (look.value < 1 || look.value > 255 || groups.contains(uint8_t(look.value))) continue;

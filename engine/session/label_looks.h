@@ -15,9 +15,9 @@ namespace shvr {
 /// Of the groups that are painted or set up, ascending.
 std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask);
 
-/// Gives each group that `groups` does not define what the label image `mask` says of it, where that is another look than
-/// it has anyway. Labels above 255 are no groups. Nothing where `mask` is no label image. Returns a sentence for each entry
-/// that cannot be taken.
+/// Gives each group that `groups` does not define its look in the label image `mask`, if that differs from the default. Labels
+/// above 255 are not groups. Does nothing if `mask` is not a label image. Returns a sentence for each list with entries that
+/// are malformed.
 std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Groups& groups);
 
 }  // namespace shvr

@@ -10,7 +10,7 @@
 #include "engine/formats/zarr/project.h"
 #include "engine/look/session_color.h"
 #include "engine/session/label_looks.h"
-#include "engine/session/session_json.h"
+#include "engine/session/session_keys.h"
 #include "engine/session/transfer_presets.h"
 #include "engine/volume/content_hash.h"
 
@@ -42,9 +42,12 @@ fs::path session_file_of(const fs::path& path)
 }
 
 /// The smallest session for a volume file.
-nlohmann::json document_for_volume(const fs::path& path)
+JsonDocument document_for_volume(const fs::path& path)
 {
-    return {{"shvr_session", 1}, {"volume", {{"path", fs::absolute(path).lexically_normal().string()}}}};
+    JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
+    // Not by way of text: a path need not be UTF-8.
+    document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
+    return document;
 }
 
 }  // namespace
@@ -58,17 +61,18 @@ std::unique_ptr<VolumeSource> open_source(const Session& session)
 
 namespace {
 
-std::pair<nlohmann::json, UnmeasuredSession> open_unmeasured(const fs::path& path,
-                                                             const std::vector<std::string>& settings)
+std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
+                                                           const std::vector<std::string>& settings)
 {
     const fs::path session_file = session_file_of(path);
     const fs::path file = session_file.empty() ? path : session_file;
-    nlohmann::json document = session_file.empty() ? document_for_volume(path)
-                                                   : json_of(read_text(file, LARGEST_SESSION_FILE), file.string());
+    JsonDocument document = session_file.empty()
+                                ? document_for_volume(path)
+                                : session_document(read_text(file, LARGEST_SESSION_FILE), file.string());
     apply_settings(document, settings);
     UnmeasuredSession opened;
     Session& session = opened.session;
-    session = read_session(document, fs::absolute(file).parent_path(), file.string());
+    session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
     opened.source = open_source(session);
     // A project whose record is sound knows its statistics, too.
@@ -99,7 +103,7 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     if (std::string& preset = opened.session.transfer_preset; !preset.empty())
         opened.session.transfer_function =
             transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);
-    if (!document.contains("transfer_function")) {
+    if (!document.root()["transfer_function"].exists()) {
         TransferFunction& function = opened.session.transfer_function;
         function = automatic_transfer_function(opened.statistics);
         opened.warnings.push_back(sentence("no transfer function given; a ramp from ", function.lower(), " to ",
@@ -118,8 +122,8 @@ Camera camera_named(const Session& session, const std::string& name_or_json, con
     const std::string name = name_or_json.empty() ? "front" : name_or_json;
     const std::string origin = "camera";
     if (is_camera_object(name)) {
-        const nlohmann::json document = json_of(name, origin);
-        return camera_of(read_camera(JsonNode(document, origin)), volume);
+        const JsonDocument document = session_document(name, origin);
+        return camera_of(read_camera(document.root()), volume);
     }
     if (const auto found = session.cameras.find(name); found != session.cameras.end())
         return camera_of(found->second, volume);

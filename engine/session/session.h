@@ -11,6 +11,7 @@
 #include "engine/formats/open_volume.h"
 #include "engine/look/camera.h"
 #include "engine/look/groups.h"
+#include "engine/look/look.h"
 #include "engine/look/panes.h"
 #include "engine/look/settings.h"
 #include "engine/look/surface_tree.h"
@@ -30,39 +31,31 @@ struct InteractionSettings {
 /// Where a person works, and with what. What is not given here is chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
-    double radius_voxels = 6.0;       ///< along x; of the probe and of the brush
-    uint8_t group = 1;                ///< that is painted
-    Brush brush = Brush::flood;
-    RegionShape region = RegionShape::ball;
-    int connectivity = 6;                    ///< 6 or 26
-    std::optional<double> paint_threshold;   ///< intensity; the middle of what the transfer function shows
-    std::optional<double> haptic_threshold;  ///< intensity; the paint threshold
+    BrushSettings brush;
+    std::optional<double> haptic_threshold;  ///< intensity; the brush's threshold
     bool shown = false;                      ///< in pictures; the window shows it always
-    /// An iso-surface at the paint threshold in the probe's region: what density painting would lift over it.
+    /// An iso-surface at the brush's threshold in the probe's region: what density painting would lift over it.
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
     bool preview = false;        ///< what the brush would change there is drawn
-    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
-    std::optional<DensityBrush> density;
-    bool paints_group = true;  ///< false, where there is `density`: offsets alone
     bool operator==(const ProbeSettings&) const = default;
 };
 
 /// Of one file.
-inline constexpr size_t MOST_SESSION_SURFACES = 100'000;
+inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;  ///< for bare voxels
     OpenOptions open_options;             ///< what to take from files that hold more than one volume
-    /// Of the volume's voxels (content_hash.h), as `open_session` finds it; empty where not all were gone through, and in a
+    /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and in a
     /// session that was only read. Not written.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
     TransferFunction transfer_function;
-    std::string transfer_preset;  ///< `open_session` makes a function of it, and forgets it
+    std::string transfer_preset;  ///< `open_session` turns it into a function and clears it
     Groups groups;
     Light light;
     DistanceBlend blend;
@@ -71,17 +64,21 @@ struct Session {
     InteractionSettings interaction;
     CutBox cut;
     ProbeSettings probe;
-    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MOST_SESSION_SURFACES in a file
+    std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
     std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
     /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< the same, of density offsets
-    /// Of what was done, beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
+    /// The journal beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
     std::filesystem::path journal_path;
+    bool operator==(const Session&) const = default;
+
+    /// What pictures depend on of it.
+    Look look() const { return {transfer_function, groups, light, blend, cut, render, view.slices}; }
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
-/// it: its path, and a transfer function from its statistics, which the caller is told of in `warnings`).
+/// it: its path, and a transfer function from its statistics, which `warnings` reports).
 /// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
 /// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
 /// automatic one as a volume file. Session files hold at most 16 MiB.
@@ -92,8 +89,7 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
-/// Without what is found in the voxels, which are not gone through: a transfer function is as the file says, and the hash is
-/// known of projects alone.
+/// Without what takes a pass over the voxels: the transfer function is the file's, and only projects have a hash.
 struct UnmeasuredSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -120,8 +116,7 @@ TissueRange tissue_range(const VolumeStatistics& statistics);
 /// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
-/// The middle of what a transfer function shows, weighted by its opacity: what painting starts from where nothing else is
-/// said.
+/// The middle of what a transfer function shows, weighted by its opacity: the default threshold of the brush.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".

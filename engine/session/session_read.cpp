@@ -1,248 +1,246 @@
-// The keys of a session file, version 1, one function a section. README.md lists them.
+// Session files: keys in.
 
-#include <charconv>
-#include <limits>
+#include <algorithm>
 
-#include <nlohmann/json.hpp>
-
-#include "engine/annotation/trace/trace_file.h"
 #include "engine/base/text.h"
-#include "engine/session/session_read.h"
-#include "engine/volume/grid.h"
+#include "engine/look/session_color.h"
+#include "engine/session/session_keys.h"
 
 namespace shvr {
 namespace {
 
-constexpr int64_t VERSION = 1;
+/// Which keys an object may have. Of values it reads only choices, on which other keys depend.
+class KnownKeys : public Fields {
+public:
+    explicit KnownKeys(const JsonNode& node) : node_(node) {}
+    const std::vector<std::string_view>& names() const { return names_; }
 
-glm::dvec3 read_spacing(const JsonNode& node, const glm::dvec3& fallback)
-{
-    return node.vector(fallback, above_zero(1e-12, 1e12));
-}
-
-std::filesystem::path read_path(const JsonNode& node, const std::filesystem::path& folder)
-{
-    if (!node.exists()) return {};
-    const std::string text = node.text("");
-    if (has_controls(text)) node.refuse("a path");
-    if (is_address(text)) node.refuse(NO_ADDRESS);
-    return std::filesystem::absolute(folder / text).lexically_normal();
-}
-
-std::string read_unit(const JsonNode& node, const std::string& fallback)
-{
-    const std::string unit = node.text(fallback);
-    if (has_controls(unit)) node.refuse("the name of a unit");
-    return unit;
-}
-
-ProceduralSpec read_procedural(const JsonNode& node)
-{
-    node.expect_object({"procedural", "size", "seed", "type", "spacing", "unit"});
-    ProceduralSpec spec;
-    std::map<std::string, std::string> kinds;
-    for (const std::string& kind : procedural_kinds()) kinds[kind] = kind;
-    spec.kind = node["procedural"].choice(spec.kind, kinds);
-    spec.size = node["size"].size(spec.size);
-    spec.seed = static_cast<uint32_t>(node["seed"].whole(spec.seed, 0, std::numeric_limits<uint32_t>::max()));
-    std::map<std::string, VoxelType> types;
-    for (const VoxelType type : VOXEL_TYPES) types[name_of(type)] = type;
-    spec.type = node["type"].choice(spec.type, types);
-    spec.spacing = read_spacing(node["spacing"], spec.spacing);
-    spec.unit = read_unit(node["unit"], spec.unit);
-    return spec;
-}
-
-RawLayout read_raw_layout(const JsonNode& node)
-{
-    const JsonNode raw = node["raw"];
-    RawLayout layout = raw.checked([text = raw.text("")] { return parse_raw_layout(text); });
-    layout.spacing = read_spacing(node["spacing"], layout.spacing);
-    layout.unit = read_unit(node["unit"], layout.unit);
-    return layout;
-}
-
-void read_volume(const JsonNode& node, const std::filesystem::path& folder, Session& session)
-{
-    if (node["procedural"].exists()) {
-        session.procedural = read_procedural(node);
-        return;
+    using Fields::choice;
+    using Fields::color;
+    using Fields::number;
+    using Fields::section;
+    using Fields::vector;
+    void any_flag(std::string_view name, std::optional<bool>&, const About&) override { know(name); }
+    void number(std::string_view name, std::optional<double>&, const NumberRange&, const About&) override
+    {
+        know(name);
     }
-    if (node["raw"].exists()) {
-        node.expect_object({"path", "raw", "spacing", "unit"});
-        session.raw_layout = read_raw_layout(node);
-    } else {
-        node.expect_object({"path", "raw", "procedural", "channel", "frame"});
-        session.open_options = {.channel = node["channel"].text(""), .frame = node["frame"].text("")};
+    void any_whole(std::string_view name, std::optional<int64_t>&, int64_t, int64_t, const About&) override
+    {
+        know(name);
     }
-    session.volume_path = read_path(node.required("path", "the path of a volume file"), folder);
-}
-
-uint8_t group_number(const JsonNode& groups, const std::string& name)
-{
-    uint8_t group = 0;
-    const auto result = std::from_chars(name.data(), name.data() + name.size(), group);
-    if (result.ec != std::errc() || result.ptr != name.data() + name.size() || group == 0 || name[0] == '0')
-        groups[name].refuse("a group number from 1 to 255 as its name");
-    return group;
-}
-
-Groups read_groups(const JsonNode& node)
-{
-    Groups groups;
-    if (!node.exists()) return groups;
-    for (const std::string& name : node.names()) {
-        const uint8_t number = group_number(node, name);
-        const JsonNode entry = node[name];
-        entry.expect_object({"name", "parent", "color", "opacity", "visible"});
-        GroupSettings& group = groups[number];
-        group.name = entry["name"].text("");
-        group.parent = uint8_t(entry["parent"].whole(0, 0, 255));
-        if (entry["color"].exists()) group.color = entry["color"].color(glm::dvec3(0.0));
-        if (entry["opacity"].exists()) group.opacity = entry["opacity"].number(0.0, SHARE);
-        group.visible = entry["visible"].flag(true);
+    void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,
+                const About&) override
+    {
+        know(name);
+        for (const std::string_view each : names)
+            if (node_[name].is(each)) value = each;
     }
-    if (const std::optional<uint8_t> group = group_in_cycle(groups))
-        node[std::to_string(*group)]["parent"].refuse("a group that is not the group itself or below it");
-    return groups;
-}
-
-CutBox read_cut(const JsonNode& node)
-{
-    CutBox cut;
-    if (!node.exists()) return cut;
-    node.expect_object({"lower", "upper"});
-    const NumberRange voxel = range(0.0, double(LARGEST_SIDE));
-    cut.lower = node["lower"].vector(cut.lower, voxel);
-    cut.upper = node["upper"].vector(cut.upper, voxel);
-    if (glm::any(glm::greaterThan(cut.lower, cut.upper))) node.refuse("a lower corner that is not above the upper one");
-    return cut;
-}
-
-DensityBrush read_density(const JsonNode& node)
-{
-    node.expect_object({"offset", "falloff"});
-    DensityBrush density;
-    const JsonNode offset = node["offset"];
-    if (offset.is_text()) {
-        if (offset.text("") != "automatic") offset.refuse("a number or \"automatic\"");
-    } else {
-        density.offset = read_intensity(offset);
+    void text(std::string_view name, std::string&, const About&) override { know(name); }
+    void path(std::string_view name, std::filesystem::path&, const About&) override { know(name); }
+    void color(std::string_view name, std::optional<glm::dvec4>&, bool, const About&) override { know(name); }
+    void vector(std::string_view name, std::optional<glm::dvec3>&, const NumberRange&, const About&) override
+    {
+        know(name);
     }
-    density.falloff =
-        node["falloff"].choice(density.falloff, {{"flat", Falloff::flat}, {"distance", Falloff::distance}});
-    return density;
-}
-
-ProbeSettings read_probe(const JsonNode& node)
-{
-    ProbeSettings probe;
-    if (!node.exists()) return probe;
-    node.expect_object({"voxel", "radius_voxels", "group", "brush", "region", "connectivity", "paint_threshold",
-                        "haptic_threshold", "shown", "shell", "shell_opacity", "preview", "density", "paints_group"});
-    if (node["voxel"].exists())
-        probe.voxel = node["voxel"].vector(glm::dvec3(0.0), range(-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)));
-    probe.radius_voxels = node["radius_voxels"].number(probe.radius_voxels, above_zero(1e-3, 127.0));
-    probe.group = uint8_t(node["group"].whole(probe.group, 0, 255));
-    probe.brush = node["brush"].choice(probe.brush,
-                                       {{"fill", Brush::fill}, {"flood", Brush::flood}, {"speckle", Brush::speckle}});
-    probe.region = node["region"].choice(probe.region, {{"ball", RegionShape::ball}, {"box", RegionShape::box}});
-    const auto connectivity = int(node["connectivity"].whole(probe.connectivity, 6, 26));
-    if (connectivity != 6 && connectivity != 26) node["connectivity"].refuse("6 or 26");
-    probe.connectivity = connectivity;
-    probe.paint_threshold = read_intensity(node["paint_threshold"]);
-    probe.haptic_threshold = read_intensity(node["haptic_threshold"]);
-    probe.shown = node["shown"].flag(probe.shown);
-    probe.shell = node["shell"].flag(probe.shell);
-    probe.shell_opacity = node["shell_opacity"].number(probe.shell_opacity, SHARE);
-    probe.preview = node["preview"].flag(probe.preview);
-    if (node["density"].exists()) probe.density = read_density(node["density"]);
-    probe.paints_group = node["paints_group"].flag(probe.paints_group);
-    if (!probe.paints_group && !probe.density) node["paints_group"].refuse("true, where there is no probe.density");
-    return probe;
-}
-
-SurfaceLook read_surface(const JsonNode& node)
-{
-    node.expect_object({"from", "to", "radius", "radii", "color"});
-    const NumberRange radius = above_zero(1e-12, 1e15);
-    SurfaceLook surface;
-    surface.from = node.required("from", "three numbers, [x, y, z]").vector(surface.from, COORDINATE);
-    surface.to = node["to"].vector(surface.from, COORDINATE);
-    if (node["radii"].exists()) {
-        if (node["radius"].exists()) node["radius"].refuse("either radius or radii");
-        const std::vector<JsonNode> radii = node["radii"].elements();
-        if (radii.size() != 2) node["radii"].refuse("two numbers above 0, [from, to]");
-        surface.radius_from = radii[0].number(0.0, radius);
-        surface.radius_to = radii[1].number(0.0, radius);
-    } else {
-        surface.radius_from = surface.radius_to = node.required("radius", "a number above 0").number(0.0, radius);
+    void numbers(std::string_view name, std::optional<glm::dvec2>&, const NumberRange&, const About&) override
+    {
+        know(name);
     }
-    surface.color = node["color"].color(surface.color);
-    return surface;
-}
-
-std::vector<SurfaceLook> read_surfaces(const JsonNode& node)
-{
-    if (!node.exists()) return {};
-    const std::vector<JsonNode> elements = node.elements();
-    if (elements.size() > MOST_SESSION_SURFACES)
-        node.checked([&] { fail(elements.size(), " surfaces; expected at most ", MOST_SESSION_SURFACES); });
-    std::vector<SurfaceLook> surfaces;
-    surfaces.reserve(elements.size());
-    for (const JsonNode& element : elements) surfaces.push_back(read_surface(element));
-    return surfaces;
-}
-
-void read_annotation(const JsonNode& node, const std::filesystem::path& folder, Session& session)
-{
-    if (!node.exists()) return;
-    node.expect_object({"mask", "trace", "density"});
-    session.mask_path = read_path(node["mask"], folder);
-    session.trace_path = read_path(node["trace"], folder);
-    if (session.trace_path.empty() && !session.mask_path.empty()) {
-        session.trace_path = session.mask_path;
-        session.trace_path.replace_extension(".graphml");
+    void wholes(std::string_view name, std::vector<int64_t>&, int64_t, int64_t, const About&) override { know(name); }
+    void other(std::string_view name, const std::function<void(const JsonNode&)>&,
+               const std::function<std::optional<std::string>()>&, const About&) override
+    {
+        know(name);
     }
-    if (!session.trace_path.empty() && !is_trace_file(session.trace_path))
-        node["trace"].refuse("a path that ends in .graphml, .txt, .swc or .rsml");
-    session.density_path = read_path(node["density"], folder);
-}
+    void section(std::string_view name, const Visit&, const About&) override { know(name); }
+    void items(std::string_view name, size_t, size_t, const VisitItem&, const About&) override { know(name); }
+    void entries(std::string_view name, std::vector<std::string>, std::string_view, const VisitEntry&,
+                 const About&) override
+    {
+        know(name);
+    }
+    bool has(std::string_view name, bool) override { return node_[name].exists(); }
+    void mention(std::string_view name, const About&) override { know(name); }
+
+private:
+    void know(std::string_view name) { names_.push_back(name); }
+    JsonNode node_;
+    std::vector<std::string_view> names_;
+};
+
+class Reader : public Fields {
+public:
+    /// Refuses keys that are unknown, then reads.
+    static void read(const JsonNode& node, const std::filesystem::path& folder, const Visit& visit)
+    {
+        KnownKeys known(node);
+        visit(known);
+        node.allow(known.names());
+        Reader reader(node, folder);
+        visit(reader);
+    }
+
+    using Fields::choice;
+    using Fields::color;
+    using Fields::number;
+    using Fields::section;
+    using Fields::vector;
+    void any_flag(std::string_view name, std::optional<bool>& value, const About& about) override
+    {
+        if (const Member node = member(name, about)) value = node.flag();
+    }
+    void number(std::string_view name, std::optional<double>& value, const NumberRange& range,
+                const About& about) override
+    {
+        if (const Member node = member(name, about)) value = node.number(range);
+    }
+    void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
+                   const About& about) override
+    {
+        if (const Member node = member(name, about)) value = node.whole(lower, upper);
+    }
+    void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,
+                const About& about) override
+    {
+        if (const Member node = member(name, about)) value = names[node.choice(names)];
+    }
+    void text(std::string_view name, std::string& value, const About& about) override
+    {
+        if (const Member node = member(name, about)) value = node.text();
+    }
+    void path(std::string_view name, std::filesystem::path& value, const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        const std::string text = node.text("a path");
+        if (has_controls(text)) node.refuse("a path");
+        if (is_address(text)) node.refuse(NO_ADDRESS);
+        value = std::filesystem::absolute(folder_ / text).lexically_normal();
+    }
+    void color(std::string_view name, std::optional<glm::dvec4>& value, bool has_alpha, const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        if (has_alpha)
+            value = node.parsed(color_of, "a colour, \"#rrggbb\" or \"#rrggbbaa\"");
+        else
+            value = glm::dvec4(read_color(node), 1.0);
+    }
+    void vector(std::string_view name, std::optional<glm::dvec3>& value, const NumberRange& range,
+                const About& about) override
+    {
+        if (const Member node = member(name, about)) value = node.vector(range);
+    }
+    void numbers(std::string_view name, std::optional<glm::dvec2>& value, const NumberRange& range,
+                 const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        if (node.count() != 2) node.refuse("two numbers, [from, to]");
+        const std::vector<JsonNode> elements = node.elements();
+        value = glm::dvec2(elements[0].number(range), elements[1].number(range));
+    }
+    void wholes(std::string_view name, std::vector<int64_t>& value, int64_t lower, int64_t upper,
+                const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        if (node.count() != value.size())
+            node.refuse(value.size() == 2 ? "two whole numbers, [width, height]" : "three whole numbers, [x, y, z]");
+        const std::vector<JsonNode> elements = node.elements();
+        for (size_t i = 0; i < value.size(); ++i) value[i] = elements[i].whole(lower, upper);
+    }
+    void other(std::string_view name, const std::function<void(const JsonNode&)>& read,
+               const std::function<std::optional<std::string>()>&, const About& about) override
+    {
+        if (const Member node = member(name, about)) read(node);
+    }
+    void section(std::string_view name, const Visit& visit, const About& about) override
+    {
+        if (const Member node = member(name, about)) read(node, folder_, visit);
+    }
+    void items(std::string_view name, size_t, size_t most, const VisitItem& visit, const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        const std::vector<JsonNode> elements = node.elements(0, most);
+        for (size_t i = 0; i < elements.size(); ++i)
+            read(elements[i], folder_, [&](Fields& f) { visit(f, i, elements.size()); });
+    }
+    void entries(std::string_view name, std::vector<std::string>, std::string_view, const VisitEntry& visit,
+                 const About& about) override
+    {
+        const Member node = member(name, about);
+        if (!node) return;
+        for (const std::string& key : node.names()) read(node[key], folder_, [&](Fields& f) { visit(f, key); });
+    }
+    bool has(std::string_view name, bool) override { return node_[name].exists(); }
+    void mention(std::string_view, const About&) override {}
+    void check(std::string_view name, bool holds, const std::string& expected) override
+    {
+        if (holds) return;
+        JsonNode node = node_;
+        while (!name.empty()) {
+            const size_t end = std::min(name.find('.'), name.size());
+            node = node[name.substr(0, end)];
+            name.remove_prefix(std::min(end + 1, name.size()));
+        }
+        node.refuse(expected);
+    }
+    void checked(const std::function<void()>& run) override { node_.checked(run); }
+
+private:
+    Reader(const JsonNode& node, const std::filesystem::path& folder) : node_(node), folder_(folder) {}
+
+    /// The value of a key, if it is there; one that must be there refuses itself when its value is taken.
+    struct Member : JsonNode {
+        bool is_taken;
+        explicit operator bool() const { return is_taken; }
+    };
+    Member member(std::string_view name, const About& about) const
+    {
+        const JsonNode node = node_[name];
+        return {node, node.exists() || about.is_required};
+    }
+
+    JsonNode node_;
+    const std::filesystem::path& folder_;
+};
 
 }  // namespace
 
-Session read_session(const nlohmann::json& json, const std::filesystem::path& folder, const std::string& origin)
+glm::dvec3 read_color(const JsonNode& node)
 {
-    const JsonNode document(json, origin);
-    document.expect_object({"shvr_session", "volume", "camera", "cameras", "transfer_function", "groups", "light",
-                            "blend", "render", "view", "interaction", "cut", "probe", "surfaces", "annotation"});
-    document.required("shvr_session", "the version of the session, 1").whole(VERSION, VERSION, VERSION);
+    const auto parse = [](std::string_view text) { return text.size() == 7 ? color_of(text) : std::nullopt; };
+    return glm::dvec3(node.parsed(parse, "a colour, \"#rrggbb\""));
+}
+
+CameraSpec read_camera(const JsonNode& node)
+{
+    CameraSpec camera;
+    Reader::read(node, {}, [&](Fields& f) { fields(f, camera); });
+    return camera;
+}
+
+JsonDocument session_document(std::string_view text, const std::string& origin)
+{
+    return {text, origin, {.depth = 16, .expected = "a session"}};
+}
+
+Session read_session(const JsonDocument& document, const std::filesystem::path& folder)
+{
     Session session;
-    read_volume(document.required("volume", "an object with path or procedural"), folder, session);
-    session.cameras = read_cameras(document["cameras"]);
-    session.camera_name = read_camera_choice(document, json, session);
-    session.transfer_function = read_transfer_function(document["transfer_function"]);
-    if (document["transfer_function"].exists())
-        session.transfer_preset = document["transfer_function"]["preset"].text("");
-    session.groups = read_groups(document["groups"]);
-    session.light = read_light(document["light"]);
-    session.blend = read_blend(document["blend"]);
-    session.render = read_render(document["render"]);
-    session.view = read_view(document["view"]);
-    session.interaction = read_interaction(document["interaction"]);
-    session.cut = read_cut(document["cut"]);
-    session.probe = read_probe(document["probe"]);
-    session.surfaces = read_surfaces(document["surfaces"]);
-    read_annotation(document["annotation"], folder, session);
+    Reader::read(document.root(), folder, [&](Fields& f) { fields(f, session); });
     return session;
 }
 
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings)
 {
-    nlohmann::json document = json_of(text, origin);
+    JsonDocument document = session_document(text, origin);
     apply_settings(document, settings);
-    return read_session(document, folder, origin);
+    return read_session(document, folder);
 }
 
 }  // namespace shvr

@@ -1,10 +1,11 @@
-// "--set key=value": dotted keys into the JSON of a session.
+// "--set key=value": dotted keys into the JSON of a session. What the value is, the table of keys says: a text is taken as it
+// stands, anything else is JSON.
 
 #include <charconv>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/session/session_json.h"
+#include "engine/session/session_keys.h"
 
 namespace shvr {
 namespace {
@@ -17,6 +18,16 @@ struct Setting {
     std::vector<std::string> keys;
     json value;
 };
+
+/// The value of a key that is a text may be a JSON text, too.
+json value_of(const std::string& key, const std::string& text, const std::string& setting)
+{
+    static const std::vector<SessionKey> keys = session_keys();
+    const auto known = std::ranges::find_if(keys, [&](const SessionKey& each) { return each.covers(key); });
+    const bool is_text = known != keys.end() && known->is_text;
+    if ((is_text && !text.starts_with('"')) || !json::accept(text)) return text;
+    return session_document(text, "--set " + setting).value();
+}
 
 template <class... Parts>
 [[noreturn]] void refuse_setting(const std::string& setting, const Parts&... parts)
@@ -49,8 +60,7 @@ Setting parse_setting(const std::string& setting)
         parsed.keys.push_back(setting.substr(begin, end - begin));
         begin = end + 1;
     }
-    const std::string value = setting.substr(equals + 1);
-    parsed.value = json::accept(value) ? json_of(value, "--set " + setting) : json(value);
+    parsed.value = value_of(setting.substr(0, equals), setting.substr(equals + 1), setting);
     return parsed;
 }
 
@@ -75,10 +85,12 @@ json missing_container(const json* fallback)
 
 }  // namespace
 
-void apply_settings(json& document, const std::vector<std::string>& settings)
+void apply_settings(JsonDocument& session, const std::vector<std::string>& settings)
 {
-    if (!document.is_object()) return;  // `read_session` says what is wrong
-    const json defaults = json_of(to_text(Session{}, {}), "defaults");
+    json& document = session.value();
+    if (!document.is_object() || settings.empty()) return;
+    const JsonDocument standard = session_document(to_text(Session{}, {}), "defaults");
+    const json& defaults = standard.value();
     for (const std::string& setting : settings) {
         const Setting parsed = parse_setting(setting);
         json* place = &document;

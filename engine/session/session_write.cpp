@@ -1,23 +1,14 @@
+// Session files: keys out, in the order in which session_keys*.cpp visits them.
+
 #include <nlohmann/json.hpp>
 
 #include "engine/look/session_color.h"
-#include "engine/session/session_json.h"
+#include "engine/session/session_keys.h"
 
 namespace shvr {
 namespace {
 
-// Keeps the order in which keys are added, which is the order of README.md.
 using OrderedJson = nlohmann::ordered_json;
-
-OrderedJson array_of(const glm::dvec3& v)
-{
-    return {v.x, v.y, v.z};
-}
-
-std::string color_text(const glm::dvec3& linear)
-{
-    return text_of_color({linear, 1.0});
-}
 
 std::string path_text(const std::filesystem::path& path, const std::filesystem::path& folder)
 {
@@ -31,221 +22,89 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
     return (is_inside ? relative : path).generic_string();
 }
 
-std::string raw_text(const RawLayout& layout)
-{
-    const char* const order = !layout.big_endian ? "" : *layout.big_endian ? ":big" : ":little";
-    return sentence(layout.size.x, "x", layout.size.y, "x", layout.size.z, ":", name_of(layout.type), order, ":",
-                    layout.offset_bytes);
-}
-
-OrderedJson write_volume(const Session& session, const std::filesystem::path& folder)
-{
-    if (const auto& spec = session.procedural) {
-        return {{"procedural", spec->kind},
-                {"size", {spec->size.x, spec->size.y, spec->size.z}},
-                {"seed", spec->seed},
-                {"type", name_of(spec->type)},
-                {"spacing", array_of(spec->spacing)},
-                {"unit", spec->unit}};
+class Writer : public Fields {
+public:
+    static OrderedJson write(const std::filesystem::path& folder, const Visit& visit)
+    {
+        Writer writer(folder);
+        visit(writer);
+        return std::move(writer.object_);
     }
-    OrderedJson volume = {{"path", path_text(session.volume_path, folder)}};
-    if (const auto& layout = session.raw_layout) {
-        volume["raw"] = raw_text(*layout);
-        volume["spacing"] = array_of(layout->spacing);
-        volume["unit"] = layout->unit;
+
+    using Fields::choice;
+    using Fields::color;
+    using Fields::number;
+    using Fields::section;
+    using Fields::vector;
+    void any_flag(std::string_view name, std::optional<bool>& value, const About&) override
+    {
+        if (value) put(name, *value);
     }
-    if (!session.open_options.channel.empty()) volume["channel"] = session.open_options.channel;
-    if (!session.open_options.frame.empty()) volume["frame"] = session.open_options.frame;
-    return volume;
-}
-
-OrderedJson write_camera(const CameraSpec& spec)
-{
-    if (const auto* view = std::get_if<SideView>(&spec)) {
-        return {{"side", view->side},
-                {"zoom", view->zoom},
-                {"turn_degrees", view->turn_degrees},
-                {"tilt_degrees", view->tilt_degrees}};
+    void number(std::string_view name, std::optional<double>& value, const NumberRange&, const About&) override
+    {
+        if (value) put(name, *value);
     }
-    const Camera& camera = std::get<Camera>(spec);
-    const bool is_perspective = camera.projection == Camera::Projection::perspective;
-    OrderedJson written = {{"projection", is_perspective ? "perspective" : "orthographic"},
-                           {"eye", array_of(camera.eye)},
-                           {"target", array_of(camera.target)},
-                           {"up", array_of(camera.up)}};
-    if (is_perspective)
-        written["fov_y_degrees"] = camera.fov_y_degrees;
-    else
-        written["height"] = camera.height;
-    written["near"] = camera.near_distance;
-    written["far"] = camera.far_distance;
-    if (camera.shift_right != 0.0) written["shift_right"] = camera.shift_right;
-    return written;
-}
-
-OrderedJson write_cameras(const Session& session)
-{
-    OrderedJson cameras = OrderedJson::object();
-    for (const auto& [name, camera] : session.cameras) cameras[name] = write_camera(camera);
-    return cameras;
-}
-
-OrderedJson write_points(const TransferFunction& function)
-{
-    OrderedJson points = OrderedJson::array();
-    for (const ControlPoint& point : function.points())
-        points.push_back(
-            {{"intensity", point.intensity}, {"color", color_text(point.color)}, {"opacity", point.opacity}});
-    return points;
-}
-
-OrderedJson write_groups(const Session& session)
-{
-    OrderedJson groups = OrderedJson::object();
-    for (const auto& [number, group] : session.groups) {
-        OrderedJson& entry = groups[std::to_string(number)];
-        entry["visible"] = group.visible;
-        if (!group.name.empty()) entry["name"] = group.name;
-        if (group.parent != 0) entry["parent"] = group.parent;
-        if (group.color) entry["color"] = color_text(*group.color);
-        if (group.opacity) entry["opacity"] = *group.opacity;
+    void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t, int64_t, const About&) override
+    {
+        if (value) put(name, *value);
     }
-    return groups;
-}
-
-OrderedJson write_light(const Light& light)
-{
-    return {{"shaded", light.shaded},
-            {"ambient", light.ambient},
-            {"diffuse", light.diffuse},
-            {"specular", light.specular},
-            {"shininess", light.shininess},
-            {"direction", array_of(light.direction)},
-            {"gradient_fade", light.gradient_fade},
-            {"occlusion",
-             {{"strength", light.occlusion.strength},
-              {"radius", light.occlusion.radius},
-              {"rays", light.occlusion.rays},
-              {"full_sphere", light.occlusion.full_sphere},
-              {"curve", light.occlusion.curve},
-              {"automatic", light.occlusion.automatic}}}};
-}
-
-OrderedJson write_blend(const DistanceBlend& blend)
-{
-    OrderedJson node{{"size", blend.size}, {"rate", blend.rate}};
-    if (blend.color) node["color"] = color_text(*blend.color);
-    return node;
-}
-
-const char* name_of(Paging paging)
-{
-    switch (paging) {
-        case Paging::automatic: return "automatic";
-        case Paging::always: return "always";
-        case Paging::never: return "never";
+    void choice(std::string_view name, std::string& value, const std::vector<std::string_view>&, const About&) override
+    {
+        put(name, value);
     }
-    SHVR_CHECK(false, "paging ", int(paging));
-    return "";
-}
-
-const char* name_of(Sampling sampling)
-{
-    switch (sampling) {
-        case Sampling::automatic: return "automatic";
-        case Sampling::exact: return "exact";
-        case Sampling::hardware: return "hardware";
+    void text(std::string_view name, std::string& value, const About&) override
+    {
+        if (!value.empty()) put(name, value);
     }
-    return "automatic";
-}
-
-OrderedJson write_render(const RenderSettings& render)
-{
-    return {{"size", {render.size.x, render.size.y}},
-            {"step_voxels", render.step_voxels},
-            {"opacity_limit", render.opacity_limit},
-            {"background", text_of_color(render.background)},
-            {"sampling", name_of(render.sampling)},
-            {"paging", name_of(render.paging)},
-            {"detail", render.detail},
-            {"skip_empty_space", render.skip_empty_space},
-            {"preintegration", render.preintegration}};
-}
-
-const char* name_of(Arrangement arrangement)
-{
-    switch (arrangement) {
-        case Arrangement::single: return "single";
-        case Arrangement::stereo: return "stereo";
-        case Arrangement::overview: return "overview";
-        case Arrangement::slices: return "slices";
+    void path(std::string_view name, std::filesystem::path& value, const About& about) override
+    {
+        if (!value.empty() || about.is_required) put(name, path_text(value, folder_));
     }
-    return "single";
-}
-
-const char* name_of(StereoOutput output)
-{
-    switch (output) {
-        case StereoOutput::side_by_side: return "side_by_side";
-        case StereoOutput::top_bottom: return "top_bottom";
-        case StereoOutput::anaglyph: return "anaglyph";
+    void color(std::string_view name, std::optional<glm::dvec4>& value, bool, const About&) override
+    {
+        if (value) put(name, text_of_color(*value));
     }
-    return "side_by_side";
-}
-
-OrderedJson write_view(const ViewSettings& view)
-{
-    OrderedJson slices{{"paint_share", view.slices.paint_share}, {"zoom", view.slices.zoom}};
-    if (view.slices.black) slices["black"] = *view.slices.black;
-    if (view.slices.white) slices["white"] = *view.slices.white;
-    return {{"arrangement", name_of(view.arrangement)},
-            {"stereo",
-             {{"output", name_of(view.stereo.output)},
-              {"eye_distance", view.stereo.eye_distance},
-              {"toe_in", view.stereo.toe_in}}},
-            {"slices", slices},
-            {"overview_zoom", view.overview_zoom}};
-}
-
-OrderedJson write_probe(const ProbeSettings& probe)
-{
-    const std::map<Brush, const char*> brushes{
-        {Brush::fill, "fill"}, {Brush::flood, "flood"}, {Brush::speckle, "speckle"}};
-    OrderedJson document = {{"radius_voxels", probe.radius_voxels},
-                            {"group", probe.group},
-                            {"brush", brushes.at(probe.brush)},
-                            {"region", probe.region == RegionShape::ball ? "ball" : "box"},
-                            {"connectivity", probe.connectivity}};
-    if (probe.voxel) document["voxel"] = array_of(*probe.voxel);
-    if (probe.paint_threshold) document["paint_threshold"] = *probe.paint_threshold;
-    if (probe.haptic_threshold) document["haptic_threshold"] = *probe.haptic_threshold;
-    document["shown"] = probe.shown;
-    document["shell"] = probe.shell;
-    document["shell_opacity"] = probe.shell_opacity;
-    document["preview"] = probe.preview;
-    if (probe.density)
-        document["density"] = {
-            {"offset", probe.density->offset ? OrderedJson(*probe.density->offset) : OrderedJson("automatic")},
-            {"falloff", probe.density->falloff == Falloff::flat ? "flat" : "distance"}};
-    document["paints_group"] = probe.paints_group;
-    return document;
-}
-
-OrderedJson write_surfaces(const std::vector<SurfaceLook>& surfaces)
-{
-    OrderedJson array = OrderedJson::array();
-    for (const SurfaceLook& surface : surfaces) {
-        OrderedJson entry{{"from", array_of(surface.from)}};
-        if (surface.to != surface.from) entry["to"] = array_of(surface.to);
-        if (surface.radius_to == surface.radius_from)
-            entry["radius"] = surface.radius_from;
-        else
-            entry["radii"] = {surface.radius_from, surface.radius_to};
-        entry["color"] = color_text(surface.color);
-        array.push_back(std::move(entry));
+    void vector(std::string_view name, std::optional<glm::dvec3>& value, const NumberRange&, const About&) override
+    {
+        if (value) put(name, {value->x, value->y, value->z});
     }
-    return array;
-}
+    void numbers(std::string_view name, std::optional<glm::dvec2>& value, const NumberRange&, const About&) override
+    {
+        if (value) put(name, {value->x, value->y});
+    }
+    void wholes(std::string_view name, std::vector<int64_t>& value, int64_t, int64_t, const About&) override
+    {
+        put(name, value);
+    }
+    void other(std::string_view name, const std::function<void(const JsonNode&)>&,
+               const std::function<std::optional<std::string>()>& written, const About&) override
+    {
+        if (const std::optional<std::string> text = written()) put(name, OrderedJson::parse(*text));
+    }
+    void section(std::string_view name, const Visit& visit, const About&) override { put(name, write(folder_, visit)); }
+    void items(std::string_view name, size_t count, size_t, const VisitItem& visit, const About&) override
+    {
+        OrderedJson array = OrderedJson::array();
+        for (size_t i = 0; i < count; ++i) array.push_back(write(folder_, [&](Fields& f) { visit(f, i, count); }));
+        put(name, std::move(array));
+    }
+    void entries(std::string_view name, std::vector<std::string> keys, std::string_view, const VisitEntry& visit,
+                 const About&) override
+    {
+        OrderedJson object = OrderedJson::object();
+        for (const std::string& key : keys) object[key] = write(folder_, [&](Fields& f) { visit(f, key); });
+        put(name, std::move(object));
+    }
+    bool has(std::string_view, bool is_set) override { return is_set; }
+    void mention(std::string_view, const About&) override {}
+
+private:
+    explicit Writer(const std::filesystem::path& folder) : folder_(folder) {}
+    void put(std::string_view name, OrderedJson value) { object_[std::string(name)] = std::move(value); }
+
+    OrderedJson object_ = OrderedJson::object();
+    const std::filesystem::path& folder_;
+};
 
 bool is_row(const OrderedJson& value)
 {
@@ -272,31 +131,9 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
-    OrderedJson document = {{"shvr_session", 1}, {"volume", write_volume(session, folder)}};
-    if (!session.camera_name.empty()) {
-        const std::string& name = session.camera_name;
-        document["camera"] = is_camera_object(name) ? OrderedJson::parse(name) : OrderedJson(name);
-    }
-    document["cameras"] = write_cameras(session);
-    if (session.transfer_preset.empty())
-        document["transfer_function"] = {{"points", write_points(session.transfer_function)}};
-    else
-        document["transfer_function"] = {{"preset", session.transfer_preset}};
-    document["groups"] = write_groups(session);
-    document["light"] = write_light(session.light);
-    document["blend"] = write_blend(session.blend);
-    document["render"] = write_render(session.render);
-    document["view"] = write_view(session.view);
-    document["interaction"] = {{"resolution", session.interaction.resolution},
-                               {"frames_per_second", session.interaction.frames_per_second},
-                               {"screenshot_scale", session.interaction.screenshot_scale}};
-    document["cut"] = {{"lower", array_of(session.cut.lower)}, {"upper", array_of(session.cut.upper)}};
-    document["probe"] = write_probe(session.probe);
-    if (!session.surfaces.empty()) document["surfaces"] = write_surfaces(session.surfaces);
-    if (!session.mask_path.empty()) document["annotation"]["mask"] = path_text(session.mask_path, folder);
-    if (!session.trace_path.empty()) document["annotation"]["trace"] = path_text(session.trace_path, folder);
-    if (!session.density_path.empty()) document["annotation"]["density"] = path_text(session.density_path, folder);
+    Session written = session;  // `fields` takes what it could change
     try {
+        const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";
     } catch (const OrderedJson::type_error&) {
         fail("session of ", session.volume_path.string(), ": a name or path is not UTF-8, which JSON cannot hold; ",

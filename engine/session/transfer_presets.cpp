@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/base/assets.h"
 #include "engine/base/file.h"
-#include "engine/session/session_json.h"
+#include "engine/session/session_keys.h"
 
 namespace shvr {
 
@@ -19,17 +17,17 @@ constexpr int64_t LARGEST_FILE = 1 << 20;
 
 TransferPreset parse_transfer_preset(const std::string& text, const std::string& name, const std::string& origin)
 {
-    const nlohmann::json json = json_of(text, origin);
-    const JsonNode document(json, origin);
-    document.expect_object({"note", "points"});
-    TransferPreset preset{.name = name, .note = document.required("note", "a sentence").text("")};
+    const JsonDocument json(text, origin, {.expected = "a transfer function"});
+    const JsonNode document = json.root();
+    document.allow({"note", "points"});
+    TransferPreset preset{.name = name, .note = document["note"].text("a sentence")};
     double last = -1.0;
-    for (const JsonNode& element : document.required("points", "an array").elements()) {
-        element.expect_object({"at", "color", "opacity"});
+    for (const JsonNode& element : document["points"].elements()) {
+        element.allow({"at", "color", "opacity"});
         ControlPoint point;
-        point.intensity = element.required("at", "a share").number(0.0, {last, 10.0, ""});
-        point.color = element.required("color", "a colour").color(point.color);
-        point.opacity = element.required("opacity", "a number from 0 to 1").number(0.0, {0.0, 1.0, ""});
+        point.intensity = element["at"].number({last, 10.0});
+        point.color = read_color(element["color"]);
+        point.opacity = element["opacity"].number(SHARE);
         last = point.intensity;
         preset.points.push_back(point);
     }

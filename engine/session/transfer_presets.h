@@ -13,9 +13,9 @@ struct TransferPreset {
     std::vector<ControlPoint> points;  ///< `intensity` is the share `at` of the file
 };
 
-/// All there are, by name; none where the program finds no assets. Fails where a file is broken.
+/// All presets, by name; none if the program finds no assets. Fails if a file is broken.
 std::vector<TransferPreset> transfer_presets();
-/// Fails with the names that there are where it is none of them.
+/// Fails with a list of the names if there is no such preset.
 TransferPreset transfer_preset_named(const std::string& name);
 /// A preset's text; `origin` names it in messages.
 TransferPreset parse_transfer_preset(const std::string& text, const std::string& name, const std::string& origin);

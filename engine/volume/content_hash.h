@@ -1,7 +1,7 @@
 #pragma once
-// A number that says whether two volumes hold the same voxels, whatever the files they come from: XXH3-128 of every slice
-// along z (its voxels x fastest, then y, little-endian), and of those hashes in their order, each in its canonical form.
-// It finds changes and mistakes, not forgery. Written "xxh3-128:" and 32 hexadecimal digits.
+// Identifies the voxels of a volume, whatever file they come from: XXH3-128 of every slice along z (its voxels x
+// fastest, then y, little-endian), and of those hashes in their order, each in its canonical form. It finds changes and
+// mistakes, not forgery. Written "xxh3-128:" and 32 hexadecimal digits.
 
 #include <array>
 #include <memory>
@@ -36,8 +36,8 @@ std::string content_hash(std::span<const SliceHash> slices);
 /// Reads the whole of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
 
-/// Hands out another source, which must outlive it, and hashes what `read` hands out of level 0: whole rows, each once and
-/// in order, of one or more slices at a time, as `measure` and `content_hash` read. One thread at a time.
+/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0: whole rows, each once
+/// and in order, of one or more slices at a time, as `measure` and `content_hash` read. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -49,13 +49,13 @@ public:
         source_.read_level(level, box, voxels);
     }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Empty until all slices went by. What is read after that does not count.
+    /// Empty until all slices were read. Later reads do not count.
     std::string hash() const;
 
 private:
     const VolumeSource& source_;
-    mutable std::vector<SliceHasher> hashers_;  ///< of the slices that are going by
-    mutable std::vector<SliceHash> slices_;     ///< that went by
+    mutable std::vector<SliceHasher> hashers_;  ///< of the slices being read
+    mutable std::vector<SliceHash> slices_;     ///< of the slices read
 };
 
 }  // namespace shvr

@@ -1,8 +1,8 @@
 #pragma once
-// How a coarser level is made of a finer one; the only ways, in projects and in memory.
+// How a coarser level is made from a finer one, in projects and in memory alike.
 //
-// A voxel is the mean of the 2^3 voxels it stands for: of those that there are at the volume's end, and of the finite
-// ones; NaN where none is. Sums are exact for integers and taken in double for floats, along y and z before x. Integers are
+// A voxel is the mean of the 2^3 voxels it stands for: of those inside the volume, and of the finite ones; NaN where
+// there are none. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
 // rounded to nearest, ties to even; floats once, to their type. Any thread may call these.
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace shvr {
 
 enum class Halving {
     mean,   ///< of intensities
-    label,  ///< of labels: there is none between two labels
+    label,  ///< of labels, which have no mean
 };
 
 /// Sums of eight voxels, without overflow.
@@ -49,7 +49,7 @@ T mean_of(HalvingSum<T> sum)
     }
 }
 
-/// Of voxels `begin` to `end` of every row; those that are not finite left out.
+/// Of voxels `begin` to `end` of every row, without those that are not finite.
 template <class T>
 T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
 {
@@ -66,7 +66,7 @@ T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
     return count > 0 ? static_cast<T>((sum[0] + sum[1]) / count) : std::numeric_limits<T>::quiet_NaN();
 }
 
-/// Loops of this length, which compilers know, are what nearly all time goes into.
+/// Nearly all time goes into loops of this length, which compilers know.
 inline constexpr int64_t BLOCK = 64;
 
 template <int ROWS, class T, class Length>
@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // One that is not finite leaves no mean that is.
+        // A value that is not finite makes the mean so.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
@@ -106,8 +106,7 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
-/// The label that most of the voxels have. Of several, one that is not 0, which is what nothing was marked in, and of those
-/// the smallest.
+/// The most frequent label. Of several, one that is not 0 (background), and of those the smallest.
 template <class T>
 void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
 {

@@ -1,9 +1,9 @@
 #pragma once
-// Density offsets: what a person adds to single voxels so that they are seen. Kept beside the volume, in bricks of 32^3,
+// Density offsets: what a person adds to single voxels to make them visible. Kept beside the volume, in bricks of 32^3,
 // and added when voxels are read (offset_source.h); the volume's own file is never written.
 //
-// An offset is 32 bits: an int32 for volumes of integers, which is exact, and a float for volumes of floats. All bits 0
-// is "none" for both, and the only 0 there is. Any thread may call these.
+// An offset has 32 bits: an int32 for volumes of integers, which is exact, and a float for volumes of floats. All bits
+// 0 is "none" for both; -0 does not occur. Any thread may call these.
 
 #include <array>
 #include <bit>
@@ -17,7 +17,7 @@ namespace shvr {
 
 using OffsetBrick = std::array<uint32_t, size_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZE * gpu::BRICK_SIZE>;  ///< x fastest
 
-/// The largest magnitude of an offset: it takes any voxel of the type to any other (types of 32 bits: half of the way;
+/// The largest magnitude of an offset: enough to turn any value of the type into any other (32-bit types: half of that;
 /// float64: what a float holds).
 double offset_limit(VoxelType type);
 
@@ -27,7 +27,7 @@ inline double offset_of(VoxelType type, uint32_t bits)
                           : static_cast<double>(std::bit_cast<int32_t>(bits));
 }
 
-/// Rounded to nearest (integers: halves away from 0), and to the limit where it is beyond. `offset` is a number.
+/// Rounded to nearest (integers: halves away from 0) and clamped to the limit. `offset` is not NaN.
 uint32_t offset_bits(VoxelType type, double offset);
 
 }  // namespace shvr

@@ -1,11 +1,11 @@
 #pragma once
-// Where voxels come from. A source knows one volume and hands out boxes of it in the file's own type; it knows nothing
-// of windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine,
-// but broken". `open_volume` (open_volume.h) tries them in a listed order.
+// Where voxels come from. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
+// windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine, but broken".
+// `open_volume` (open_volume.h) tries them in a listed order.
 //
 // Levels. Level 0 is the volume. A voxel of level l stands for 2^l voxels of level 0 along each axis and lies on them
-// exactly: voxel i covers [2^l i, 2^l (i + 1)), so that position p of level 0 is position p / 2^l of level l. A level has
-// ceil(size / 2^l) voxels along each axis; the last ones may stand for fewer. Most files have level 0 alone.
+// exactly: voxel i covers [2^l i, 2^l (i + 1)), so that position p of level 0 is position p / 2^l of level l. A level
+// has ceil(size / 2^l) voxels along each axis; the last ones may stand for fewer. Most files have level 0 alone.
 
 #include <filesystem>
 #include <functional>
@@ -17,8 +17,8 @@
 
 namespace shvr {
 
-/// What a person chooses where a file holds more than one volume. A reader of a format that can hold several refuses a
-/// file that does, in words that name the choices, unless one is chosen here; other readers need not look.
+/// What a person chooses where a file holds several volumes. Unless one is chosen here, a reader refuses such a file
+/// with a message that names the choices; readers of formats that hold one volume ignore this.
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
     std::string frame{};    ///< a number from 1, where there is more than one point in time
@@ -35,19 +35,19 @@ public:
     /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
-    /// How voxels of level 0 lie together where they come from: boxes of whole such blocks, counted from voxel 0, are
-    /// read without decoding anything twice. 1, 1, 1: it does not matter.
+    /// The block size of level 0 in the file: boxes of whole blocks, counted from voxel 0, are read without decoding
+    /// anything twice. 1, 1, 1: it does not matter.
     virtual Size3 block() const { return Size3(1); }
 
     /// How many levels there are, at least 1.
     virtual int levels() const { return 1; }
     /// As `read`, of a level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// What is known, without reading voxels, of the values of level 0 that brick `brick` of `level` stands for, and of
-    /// those of all levels below it: the bricks of gpu::BRICK_SIZE voxels a side that start at voxel 0, and one voxel of
-    /// `level` around. Nothing where the source does not know.
+    /// What is known, without reading voxels, of the values of level 0 and of all levels up to `level` within brick
+    /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it.
+    /// Nothing where the source does not know.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
-    /// The statistics of level 0 where the source knows them; `measure` goes through the voxels.
+    /// The statistics of level 0 where the source knows them; `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
 
 protected:
@@ -65,13 +65,13 @@ private:
 VolumeStatistics measure(const VolumeSource& source);
 inline constexpr int64_t MOST_MEASURED = int64_t{1} << 27;
 
-/// The same of a level, always by going through its voxels.
+/// The same for a level, always by reading its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level);
 /// The statistics of integers of 8 or 16 bits, of which `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
-/// What a person should know of the voxels before looking at them, one sentence each: NaN, infinities, outliers,
-/// and that they were not all looked at.
+/// What a person should know about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
+/// level was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

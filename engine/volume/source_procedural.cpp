@@ -87,7 +87,7 @@ public:
 
     int levels() const override { return levels_; }
 
-    /// Every voxel of a volume without end cannot be asked; those of a coarse level are voxels, too.
+    /// A huge volume cannot be measured voxel by voxel; a coarse level stands for it.
     std::optional<VolumeStatistics> statistics() const override
     {
         if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;

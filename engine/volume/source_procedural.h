@@ -24,13 +24,14 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Levels, each the same function at the centres of larger voxels. 0: one, or for more than 2^33 voxels as many as leave
-    /// one brick.
+    /// Levels, each the same function at the centres of larger voxels. 0: one, or above 2^33 voxels as many as it takes
+    /// to end with a single brick.
     int levels = 0;
+    bool operator==(const ProceduralSpec&) const = default;
 };
 
-/// Voxels are the field at their centres, rounded half up; in int8 every intensity is lower by 128, so that none is
-/// cut.
+/// Voxels are the field at their centres, rounded half up; for int8 every intensity is lowered by 128, so that none is
+/// clamped.
 ///
 /// constant        every voxel 128.
 /// ramp            rises along x from 0 at voxel centre 0 to 250 at the last centre.

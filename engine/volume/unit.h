@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// "micron", "µm", "micrometer" -> "um"; what is unknown stays as it is, but for control characters, and is cut at 60.
+/// "micron", "µm", "micrometer" -> "um"; unknown units are kept, without control characters and cut at 60.
 std::string plain_unit(std::string_view unit);
 
 /// Micrometres in a unit of length; nothing where it is none ("voxel").

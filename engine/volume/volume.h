@@ -41,24 +41,24 @@ struct VoxelBox {
 };
 
 struct VolumeInfo {
-    std::string name;    ///< what a person calls it: the file's name
-    std::string format;  ///< "raw", "nrrd", "mhd", "procedural"
+    std::string name;    ///< for people: the file's name
+    std::string format;  ///< the reader's name for it: "raw", "nrrd", "tiff", ...
     Size3 size{0};       ///< voxels
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
     std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" where the file states none
-    /// Where the file says the volume lies: in frame `frame` ("RAS", "LPS", or "" where it says nothing), the centre of
+    /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" where it states none), the centre of
     /// voxel 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
-    /// stated, not drawn: volume space is voxel * spacing. It is right-handed, so a reader that finds left-handed axes
-    /// hands the voxels out in reverse order along one of them, and says so here and in a warning.
+    /// exported, not drawn: volume space is voxel * spacing. It is right-handed: a reader that finds left-handed axes
+    /// reverses the order of voxels along one of them, and says so here and in a warning.
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// What a reader had to assume or leave out, one sentence each ("no spacing stated; 1 voxel assumed").
+    /// What the reader had to assume or leave out, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
 
-/// size.x * size.y * size.z; fails where the product leaves 63 bits. Each side must be 1 ... 2^20.
+/// size.x * size.y * size.z; fails where that exceeds 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);
 
 /// Smallest and largest finite value; `lower > upper` where there is none.
@@ -74,14 +74,14 @@ struct VolumeStatistics {
     double maximum = 0.0;
     double mean = 0.0;
     int64_t not_finite = 0;
-    std::vector<int64_t> histogram{};  ///< 256 bins over range(); what lies beyond counts in the first or last bin
-    /// Where a few voxels lie so far from all others that codes over [minimum, maximum] would tell those others badly
-    /// apart: the extremes without those few. Never so where every integer has a code of its own.
+    std::vector<int64_t> histogram{};  ///< 256 bins over range(); values beyond count in the first or last bin
+    /// Where a few outliers would leave too few codes for all other voxels: the extremes without those few. Unused
+    /// where every integer has its own code.
     std::optional<ValueRange> bulk{};
-    int64_t beyond_bulk = 0;  ///< those few
-    int measured_level = 0;   ///< that all this is of; means over voxels, where it is not level 0
+    int64_t beyond_bulk = 0;  ///< outliers
+    int measured_level = 0;   ///< of which level these statistics are; above 0, voxels are means
 
-    /// What pictures, thresholds and the histogram span.
+    /// The range of pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
 };
 
@@ -100,8 +100,8 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// The window over VolumeStatistics::range(). Of 16-bit integers of which only a coarser level was measured: over all
-/// of the type's values, since level 0 may reach farther than its means.
+/// The window over VolumeStatistics::range(). For 16-bit integers of which only a coarser level was measured: over all
+/// values of the type, since level 0 may exceed its means.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 

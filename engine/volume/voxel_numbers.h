@@ -10,8 +10,8 @@ namespace shvr {
 /// values.size() voxels of `type`, wherever they lie.
 void load_voxels(VoxelType type, const std::byte* voxels, std::span<double> values);
 
-/// Integers are rounded to nearest, halves up. Values must be finite, and within what `type` holds, where it holds
-/// integers.
+/// Integers are rounded to nearest, halves up. Values must be finite and, for integer types, within the range of
+/// `type`.
 void store_voxels(VoxelType type, std::span<const double> values, std::byte* voxels);
 
 }  // namespace shvr

@@ -48,10 +48,9 @@ class CliTest(unittest.TestCase):
         """Fails with one sentence on standard error that says all of `says`, and nothing on standard output."""
         result = self.check(*arguments, status=status)
         self.assertEqual(result.stdout, "")
-        if status != 2:  # wrong usage points to --help as well
-            lines = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
-            self.assertEqual(len(lines), 1, result.stderr)
-            self.assertTrue(lines[0].startswith("shvr: "), result.stderr)
+        lines = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("shvr: "), result.stderr)
         for word in says:
             self.assertIn(word, result.stderr)
         return result.stderr

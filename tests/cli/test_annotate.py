@@ -206,7 +206,7 @@ class Annotate(CliTest):
         self.assertIn(f"session.journal: is of an image with the hash {image}; expected xxh3-128:", stderr)
         (self.folder / "session.journal").unlink()
         stderr = self.annotate([{"op": "save"}], status=1).stderr
-        self.assertIn(f'paint.mask.json: image is "{image}"; expected "xxh3-128:', stderr)
+        self.assertIn(f'paint.mask.json: key image is "{image}"; expected "xxh3-128:', stderr)
         self.assertIn("the mask was painted on other voxels", stderr)
         self.assertEqual(stderr.count("shvr: "), 1, stderr)
         self.assertEqual(self.mask.read_bytes(), painted)
@@ -214,8 +214,8 @@ class Annotate(CliTest):
         record.unlink()
         self.annotate([{"op": "save"}])
         self.assertNotEqual(json.loads(record.read_text())["image"], image)
-        for wrong, says in (("[" * 10_000, "is nested more than 64 deep"), ('{"shvr_mask": 2}', "shvr_mask is 2; expected 1"),
-                            ('{"shvr_mask": 1}', "image is missing"), ("\0", "is not valid JSON")):
+        for wrong, says in (("[" * 10_000, "JSON nests deeper than 64 levels"), ('{"shvr_mask": 2}', "key shvr_mask is 2; expected 1"),
+                            ('{"shvr_mask": 1}', "key image is missing"), ("\0", "is not JSON: ")):
             record.write_text(wrong)
             self.assertIn(f"paint.mask.json: {says}", self.annotate([{"op": "save"}], status=1).stderr)
 

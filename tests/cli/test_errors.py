@@ -29,6 +29,40 @@ class Usage(CliTest):
             with self.subTest(arguments=arguments):
                 self.check_refused(*arguments, status=2)
 
+    def test_an_unknown_command_is_named_beside_the_known_ones(self):
+        self.check_refused("reander", "a", status=2, says=['"reander"', "render", "view"])
+
+    def test_wrong_usage_names_the_help_of_its_command(self):
+        self.check_refused("render", "a", "--sise", "1", status=2, says=["--sise", "see shvr render --help"])
+
+    def test_the_version_is_told(self):
+        self.assertRegex(self.check("--version").stdout, r"^shvr \d+\.\d+\.\d+\n$")
+
+    def test_budgets_are_numbers(self):
+        session = self.write_session()
+        for budget in ["0", "-5", "1.5", "99999999999999999999", "much"]:
+            for option in ["--budget-device", "--budget-host"]:
+                with self.subTest(option=option, budget=budget):
+                    self.check_refused("render", session, "-o", self.folder / "a.png", option, budget, status=2,
+                                       says=[option, budget, "expected a whole number of MiB from 1 to"])
+
+    def test_a_malformed_layout_is_wrong_usage(self):
+        for layout in ["12", "4x4:uint8", "4x4x4:uint9", "0x4x4:uint8", "4x4x4:uint8:middle"]:
+            with self.subTest(layout=layout):
+                self.check_refused("info", self.folder / "a.raw", "--raw", layout, status=2, says=[layout])
+
+    def test_outputs_are_checked_before_any_work(self):
+        volume = self.folder / "missing.nhdr"  # opening it would fail otherwise
+        for command, option, name in [("render", "--output", "a.jpg"), ("export", "--mask", "a.png"),
+                                      ("export", "--mesh", "a.stl"), ("profile", "--csv", "a.txt"),
+                                      ("profile", "--graph", "a.pdf")]:
+            with self.subTest(command=command, option=option):
+                self.check_refused(command, volume, option, self.folder / name, status=2, says=[option, name])
+        for command, option, name in [("render", "--output", "a.png"), ("export", "--metrics", "a.csv"),
+                                      ("profile", "--trace", "a.json")]:
+            with self.subTest(command=command, option=option):
+                self.check_refused(command, volume, option, self.folder / "none" / name, says=["none", "no folder"])
+
     def test_without_a_display_the_window_says_so(self):
         for arguments in [[], ["view"], ["view", self.write_session()]]:
             result = run(*arguments, environment={"DISPLAY": "", "WAYLAND_DISPLAY": ""})

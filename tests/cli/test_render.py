@@ -95,6 +95,24 @@ class Render(CliTest):
         self.check_refused("render", session, "-o", self.folder / "none" / "a.png", says=["a.png"])
         self.assertEqual([path.name for path in self.folder.iterdir()], ["session.json"])
 
+    def test_an_incomplete_picture_is_refused_unless_it_is_allowed(self):
+        voxels = bytes((x * y * z) % 251 for z in range(40) for y in range(40) for x in range(40))
+        (self.folder / "a.raw").write_bytes(voxels)
+        project = self.folder / "a.zarr"
+        self.check("import", self.folder / "a.raw", project, "--raw", "40x40x40:uint8")
+        picture = self.folder / "a.png"
+        render = ["render", project, "-o", picture, "--size", "64x48", "--set", "render.detail=0"]
+        self.assertIs(self.check_json(*render)["complete"], True)
+        picture.unlink()
+        chunks = [path for path in (project / "0").rglob("*") if path.is_file() and not path.name.startswith(".")]
+        self.assertTrue(chunks)
+        for chunk in chunks:
+            chunk.write_bytes(b"no chunk")
+        self.check_refused(*render, says=["a.zarr", "incomplete", "--allow-incomplete"])
+        self.assertFalse(picture.exists())
+        self.assertIs(self.check_json(*render, "--allow-incomplete")["complete"], False)
+        self.assertTrue(picture.exists())
+
     def test_a_budget_that_is_too_small_names_what_did_not_fit(self):
         session = self.write_session(volume={"procedural": "sphere", "size": [128, 128, 128]})
         self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1", says=["device memory", "bricks"])

@@ -9,16 +9,6 @@
 
 namespace shvr::test {
 
-inline WorkFiles files_in(const std::filesystem::path& folder)
-{
-    return {.journal = folder / "a.journal",
-            .mask = folder / "a.mask",
-            .trace = folder / "a.graphml",
-            .density = folder / "a.offset",
-            .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
-            .volume = annotated_volume()};
-}
-
 /// What opening says goes to `said`.
 inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said)
 {

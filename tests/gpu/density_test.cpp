@@ -1,5 +1,5 @@
 // Density offsets on the device: a picture after an update is the picture of a volume that has them from the start, bit
-// for bit, wholly on the device or in bricks that come and go; brushes see base plus offset.
+// for bit, wholly on the device or in paged bricks; brushes see base plus offset.
 
 #include <random>
 
@@ -98,7 +98,7 @@ void check_updates(Paging paging, double detail, double occlusion, int trials)
         const DensityField& field = annotator.document().density;
         anew.load(raised(source, field), paging);
         const std::vector<int64_t> painted = annotator.document().mask.painted_bricks();
-        if (!painted.empty()) anew.renderer.update_mask(annotator.document().mask, painted);
+        if (!painted.empty()) anew.renderer.scene().update_mask(annotator.document().mask, painted);
         const Picture expected = anew.renderer.render(session, camera);
         CHECK(different_bits(seen.image, expected.image) == 0);
         different += different_bits(seen.image, untouched) > 0;
@@ -117,7 +117,7 @@ TEST_CASE("a resident volume whose offsets change is drawn as one that has them 
     check_updates(Paging::never, 0.0, 0.0, 8);
 }
 
-TEST_CASE("so is one whose bricks come and go, at the finest level and at coarser ones")
+TEST_CASE("so is a paged one, at the finest level and at coarser ones")
 {
     check_updates(Paging::always, 0.0, 0.0, 8);
     check_updates(Paging::always, 4.0, 0.0, 8);
@@ -129,7 +129,7 @@ TEST_CASE("so is the ambient occlusion of both")
     check_updates(Paging::always, 0.0, 0.7, 4);
 }
 
-TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that come and go")
+TEST_CASE("many offsets at once, as a file brings them, are seen in paged bricks")
 {
     const Source source = open_procedural({.kind = "tubes", .size = Size3(288), .seed = 3});
     const Camera camera = camera_looking("front", source->info());
@@ -138,7 +138,7 @@ TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that 
     Device updated, anew;
     updated.load(source, Paging::always);
     static_cast<void>(updated.renderer.render(session, camera));
-    REQUIRE(updated.renderer.paged()->counts().resident > 200);
+    REQUIRE(updated.renderer.volume().counts()->resident > 200);
     DensityField field(source->info().size, source->info().type);
     std::vector<VoxelBox> boxes;
     for (int64_t brick = 0; brick < 729; ++brick) {
@@ -147,7 +147,7 @@ TEST_CASE("many offsets at once, as a file brings them, are seen in bricks that 
         field.put(brick, offsets);
         boxes.push_back(voxels_of({0, field.position_of(brick)}, field.size()));
     }
-    updated.renderer.update_density(field, boxes);
+    updated.renderer.scene().update_density(field, boxes);
     const Picture seen = updated.renderer.render(session, camera);
     CHECK(seen.complete);
     anew.load(raised(source, field), Paging::always);

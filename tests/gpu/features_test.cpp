@@ -146,7 +146,7 @@ public:
         session.render.detail = 0.0;
         session.probe.voxel = glm::dvec3(24.5, 20.5, 22.5);
         renderer_.load(source_, {.minimum = 0.0, .maximum = 255.0}, session.render);
-        renderer_.set_surfaces(session.surfaces);
+        renderer_.scene().set_surfaces(session.surfaces);
         Annotator annotator(renderer_);
         if (scenery.is_painted) {
             PaintOp paint{.brush = Brush::fill,
@@ -290,7 +290,7 @@ TEST_CASE_FIXTURE(Everything, "any two features go together")
             for (const float value : picture.image.rgba)
                 wrong += !std::isfinite(value) || value < 0.0f || value > 1.001f;
             CHECK(wrong == 0);
-            // Bricks that come and go are to change no bit of whatever else there is.
+            // Paged bricks are to change no bit of whatever else there is.
             if (scenery.paging != Paging::always || scenery.sampling != Sampling::exact) continue;
             scenery.paging = Paging::never;
             CHECK(different_bits(draw(scenery).image, picture.image) == 0);

@@ -15,6 +15,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/annotation/work/script.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
@@ -100,7 +101,7 @@ struct Studio {
     void set_up(const Golden& golden)
     {
         renderer.load(golden.opened.source, golden.opened.statistics, golden.opened.session.render);
-        renderer.set_surfaces(golden.opened.session.surfaces);
+        renderer.scene().set_surfaces(golden.opened.session.surfaces);
         annotator.emplace(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {
@@ -381,7 +382,7 @@ TEST_CASE("every wrong rendering fails a golden")
             Session session = golden.opened.session;
             Camera camera = Studio::camera_of_golden(golden);
             mutation.apply(session, camera);
-            studio.renderer.set_surfaces(session.surfaces);
+            studio.renderer.scene().set_surfaces(session.surfaces);
             if (why_different(studio.draw(session, camera), expected)) caught_by[mutation.name].push_back(golden.name);
         }
     }

@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/device/resident_volume.h"
 #include "engine/live/annotator.h"
 #include "tests/support/gpu.h"
 
@@ -32,7 +33,7 @@ Grid grid_of(OnDevice& device, const Session& session)
 {
     device.draw(session, camera_looking("front", device.volume().info()));
     FrameGraph graph;
-    const VolumeBinding volume = device.renderer().resident()->import(graph);
+    const VolumeBinding volume = dynamic_cast<ResidentVolume&>(device.renderer().volume()).import(graph);
     const uint32_t back = graph.read_back(volume.leap);
     const gpu::FrameResult result = device.renderer().executor().run(graph);
     Grid grid{.counts = glm::ivec3(volume.cell_counts)};
@@ -234,7 +235,8 @@ namespace {
 struct Refining : OnDevice {
     void refine(const Session& session)
     {
-        while (std::optional<FrameGraph> graph = renderer().next_refinement(session)) renderer().executor().run(*graph);
+        while (std::optional<FrameGraph> graph = next_refinement(renderer().scene(), session.look()))
+            renderer().executor().run(*graph);
     }
 };
 
@@ -275,7 +277,7 @@ TEST_CASE_FIXTURE(Refining, "painting patches what it can reach, and refining ma
         CHECK(wrong == 0);
         check_painted(fresh, annotator.document().mask);
         refine(session);
-        CHECK(!renderer().refinement_is_due());
+        CHECK(!renderer().volume().refinement_is_due());
     }
 }
 
@@ -286,7 +288,7 @@ TEST_CASE_FIXTURE(OnDevice, "a patch covers what a change can reach and no more,
     draw(session, camera_looking("front", volume().info()));
     Annotator annotator(renderer());
     annotator.paint({.brush = Brush::fill, .group = 1, .radius_voxels = 4.0, .path = {{128.5, 128.5, 128.5}}});
-    const std::optional<FrameGraph> patch = renderer().next_preparation(session);
+    const std::optional<FrameGraph> patch = next_preparation(renderer().scene(), session.look());
     REQUIRE(patch);
     REQUIRE(patch->passes().size() > 0);
     uint64_t threads = 0;

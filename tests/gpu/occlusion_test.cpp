@@ -55,7 +55,7 @@ TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(
 std::vector<double> values_of(OnDevice& device)
 {
     FrameGraph graph;
-    const OcclusionBinding binding = device.renderer().occlusion().import(graph);
+    const OcclusionBinding binding = device.renderer().scene().occlusion().bring_up_to_date(graph);
     const uint32_t back = graph.read_back(binding.values);
     const gpu::FrameResult result = device.renderer().executor().run(graph, {.timestamps = false});
     const std::vector<std::byte>& bytes = result.read_backs[back];
@@ -281,7 +281,7 @@ TEST_CASE_FIXTURE(OnDevice, "what a change makes anew is what making everything 
     const auto below = [&](int end) { return int(random() % uint32_t(end)); };
     for (int trial = 0; trial < 10; ++trial) {
         CAPTURE(trial);
-        const uint64_t before = renderer().occlusion().counts().values;
+        const uint64_t before = renderer().scene().occlusion().counts().values;
         switch (trial % 5) {
             case 0:
             case 1:
@@ -295,9 +295,9 @@ TEST_CASE_FIXTURE(OnDevice, "what a change makes anew is what making everything 
             default: annotator.undo(); break;
         }
         const ImageF renewed = draw(session, camera);
-        const uint64_t made = renderer().occlusion().counts().values - before;
+        const uint64_t made = renderer().scene().occlusion().counts().values - before;
         if (trial < 2) CHECK(made < 36);
-        renderer().occlusion().clear();
+        renderer().scene().occlusion().clear();
         CHECK(different_bits(renewed, draw(session, camera)) == 0);
     }
 }
@@ -313,7 +313,7 @@ TEST_CASE_FIXTURE(OnDevice, "a look's light does not depend on the looks before 
     sessions[4].light.occlusion.full_sphere = true;
     std::vector<ImageF> alone;
     for (const Session& session : sessions) {
-        renderer().occlusion().clear();
+        renderer().scene().occlusion().clear();
         alone.push_back(draw(session, camera));
     }
     for (size_t i = 0; i < sessions.size(); ++i) {
@@ -346,8 +346,7 @@ TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all lig
     check_below("clear medium", worst_difference(pixels_of(with), pixels_of(draw(clear, camera))), 2e-6);
 }
 
-TEST_CASE_FIXTURE(OnDevice,
-                  "a volume in bricks is lit as one whose bricks come and go is, and as filtered ones nearly are")
+TEST_CASE_FIXTURE(OnDevice, "a volume in bricks is lit as a paged one is, and as filtered ones nearly are")
 {
     const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0);
     const TestVolume scene = blobs({100, 70, 66});
@@ -463,7 +462,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     // The volume takes nearly all of it.
     Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{40} << 20}});
     renderer.load(source, measure(*source), session.render);
-    REQUIRE(renderer.paged() == nullptr);
+    REQUIRE(!renderer.volume().counts());
     const Camera camera = camera_looking("front", source->info());
     const Picture plain = renderer.render(session, camera);
     CHECK(plain.complete);
@@ -474,9 +473,9 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
     CHECK(without.image.rgba == plain.image.rgba);
     CHECK(renderer.render(session, camera).warnings.empty());
-    // Told in time, the volume leaves room: its bricks come and go.
+    // Told in time, the volume leaves room: it is paged.
     renderer.load(source, measure(*source), session.render, true);
-    REQUIRE(renderer.paged() != nullptr);
+    REQUIRE(renderer.volume().counts());
     const Picture with = renderer.render(session, camera);
     CHECK(with.complete);
     CHECK(with.warnings.empty());

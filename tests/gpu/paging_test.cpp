@@ -1,4 +1,4 @@
-// Bricks that come and go: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
+// Paged bricks: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
 // budget; nothing is loaded twice; what cannot be read is named.
 
 #include <chrono>
@@ -58,7 +58,7 @@ struct Budgeted {
         load(source, session, paging);
         return renderer.render(session, camera);
     }
-    PagedVolume::Counts counts() { return renderer.paged()->counts(); }
+    DeviceVolume::Counts counts() { return renderer.volume().counts().value(); }
 };
 
 /// Another source, some of whose bricks cannot be read.
@@ -138,7 +138,7 @@ TEST_CASE("pictures are the same at every budget, and the budget holds")
     }
 }
 
-TEST_CASE("only bricks that rays come by are loaded, each once")
+TEST_CASE("only bricks that rays visit are loaded, each once")
 {
     const Source source = tubes({256, 256, 256});
     // Opaque from the first voxel on: only the near faces are seen.
@@ -148,7 +148,7 @@ TEST_CASE("only bricks that rays come by are loaded, each once")
     Budgeted all;
     const Picture first = all.picture(source, session, Paging::always, camera);
     CHECK(first.complete);
-    const PagedVolume::Counts counts = all.counts();
+    const DeviceVolume::Counts counts = all.counts();
     CHECK(counts.leaves == 512);
     CHECK(counts.reached <= 64 + 2 * 8);  // the face, and what its perspective shows of the sides
     // Coarser levels of 64 bricks or fewer are always there: 64 + 8 + 1.
@@ -158,7 +158,7 @@ TEST_CASE("only bricks that rays come by are loaded, each once")
     CHECK(all.counts().store.loads == counts.store.loads);
 }
 
-TEST_CASE("a view of bricks that come and go comes to rest on the direct picture and then does nothing")
+TEST_CASE("a view of paged bricks comes to rest on the direct picture and then does nothing")
 {
     const Source source = tubes({200, 180, 220});
     const Session session = session_of(0.1, true);
@@ -176,7 +176,7 @@ TEST_CASE("a view of bricks that come and go comes to rest on the direct picture
     for (size_t i = 0; i < shown.rgba.size(); ++i) different += std::abs(int(shown.rgba[i]) - int(wanted.rgba[i])) > 1;
     CHECK(different == 0);
 
-    const PagedVolume::Counts counts = seen.counts();
+    const DeviceVolume::Counts counts = seen.counts();
     CHECK(counts.evictions == 0);
     CHECK(counts.uploads <= counts.store.loads);
     const uint64_t submissions = view.submissions();
@@ -191,7 +191,7 @@ TEST_CASE("what lies around the probe is loaded before what is seen, where it ta
     const Session session = session_of(0.1, true);
     Budgeted device;
     device.load(source, session, Paging::always);
-    PagedVolume& volume = *device.renderer.paged();
+    DeviceVolume& volume = device.renderer.volume();
     const VoxelBox around{{90, 90, 90}, {100, 100, 100}};
     volume.prefer(around);
     CHECK(volume.advance(true).size() >= 8);  // two bricks along each axis, and coarse levels
@@ -201,10 +201,10 @@ TEST_CASE("what lies around the probe is loaded before what is seen, where it ta
     // All of level 0 is too much to ask for in advance: what was asked before stays.
     volume.prefer({Size3(0), source->info().size});
     static_cast<void>(volume.advance(true));
-    CHECK(volume.counts().resident < 100);
+    CHECK(volume.counts()->resident < 100);
 }
 
-TEST_CASE("what is painted is the same on bricks that come and go, and is seen the same")
+TEST_CASE("what is painted is the same on paged bricks, and is seen the same")
 {
     const Source source = tubes({150, 131, 170});
     const Session session = session_of(0.3, true);
@@ -246,7 +246,7 @@ TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, a
     CHECK(!seen.complete);
     REQUIRE(seen.warnings.size() == 1);
     CHECK(seen.warnings[0] == "chunk 0.0.0: is torn");
-    CHECK(device.renderer.paged()->missing() > 0);
+    CHECK(device.renderer.volume().missing() > 0);
     // Work on such a brick is refused in the same words.
     Annotator annotator(device.renderer);
     CHECK_THROWS_WITH(annotator.paint({.group = 1, .threshold = 0.0, .radius_voxels = 3.0, .path = {{10, 60, 60}}}),
@@ -282,7 +282,7 @@ TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corn
 
     // The same sphere in 512^3 voxels, of the same level: the picture is the same but for the step's length in voxels.
     const Source small = open_procedural({.kind = "sphere", .size = Size3(512)});
-    const int level = device.renderer.paged()->tree()->finest_level;
+    const int level = device.renderer.volume().finest_level();
     Session same = session;
     same.render.step_voxels = std::ldexp(session.render.step_voxels, level - 7);
     // Opacities are per reference length: 128 times as many of them lie along a ray.
@@ -301,7 +301,7 @@ TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corn
     session.transfer_function = TransferFunction({{-1.0, GREEN, 0.05}, {250.0, GREEN, 0.05}});
     const Picture near = device.renderer.render(session, corner);
     CHECK(near.complete);
-    CHECK(device.renderer.paged()->tree()->finest_level == 0);
+    CHECK(device.renderer.volume().finest_level() == 0);
     // Everything there is the sphere's outside: 20 voxels of one density, 0.05 opacity each.
     const double through = std::pow(1.0 - 0.05, 20.0);
     const Pixels pixels = pixels_of(near.image);
@@ -335,7 +335,7 @@ TEST_CASE("work and bricks follow the picture, not the volume")
             if (pass.name == "raycast") samples.push_back(pass.counters[gpu::COUNTER_SAMPLES]);
         wanted.push_back(device.counts().reached);
         MESSAGE(side, "^3: ", samples.back(), " samples, ", wanted.back(), " bricks of level ",
-                device.renderer.paged()->tree()->finest_level, " or coarser");
+                device.renderer.volume().finest_level(), " or coarser");
     }
     // Sides are powers of two, so every picture is made of bricks of the same share of the volume. What differs is the
     // coarse voxels' own values at the surface.

@@ -693,7 +693,7 @@ TEST_CASE("a mask that grew brick by brick looks like one loaded at once")
         bytes = mask_bytes(grown);
     }
     CHECK(growths >= 3);
-    annotator.save();
+    annotator.work().save();
     Renderer fresh(with_validation());
     load(fresh, voxels);
     Annotator loaded(fresh);

@@ -1,4 +1,4 @@
-// Pictures of several panes: two eyes, maps, slices; resident and with bricks that come and go.
+// Pictures of several panes: two eyes, maps, slices; resident and with paged bricks.
 
 #include <cmath>
 
@@ -169,7 +169,7 @@ TEST_CASE_FIXTURE(OnDevice, "off-axis and toed-in rays are those of the referenc
     }
 }
 
-TEST_CASE("panes are the same with bricks that come and go")
+TEST_CASE("panes are the same with paged bricks")
 {
     const std::shared_ptr<const VolumeSource> tubes =
         open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});

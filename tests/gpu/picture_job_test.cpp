@@ -9,7 +9,7 @@
 using namespace shvr;
 using namespace shvr::test;
 
-TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with bricks that come and go")
+TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with paged bricks")
 {
     const std::shared_ptr<const VolumeSource> tubes =
         open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});

@@ -351,11 +351,11 @@ TEST_CASE("slices show the preview's voxels, and what lies before it hides all b
     CHECK(hidden.g == doctest::Approx(0.55).epsilon(0.02));  // of a green that is a fifth white
     CHECK(hidden.r == doctest::Approx(0.55 * 0.2).epsilon(0.02));
     // A ball of the session, which is opaque and nearer, hides all of it.
-    device.renderer.set_surfaces({{.from = look.center,
-                                   .to = look.center,
-                                   .radius_from = 14.0,
-                                   .radius_to = 14.0,
-                                   .color = glm::dvec3(0.0, 0.0, 1.0)}});
+    device.renderer.scene().set_surfaces({{.from = look.center,
+                                           .to = look.center,
+                                           .radius_from = 14.0,
+                                           .radius_to = 14.0,
+                                           .color = glm::dvec3(0.0, 0.0, 1.0)}});
     session.transfer_function = TransferFunction({{254.0, glm::dvec3(0.0), 0.0}, {255.0, glm::dvec3(0.0), 0.0}});
     const glm::vec3 behind = pixel_of(device.renderer.render(session, camera, {.probe = look}).image, 80, 60);
     CHECK(behind.g == 0.0f);

@@ -27,10 +27,9 @@ TEST_CASE_FIXTURE(OnDevice, "a picture drawn in parts has the bits of one drawn 
         FrameGraph graph;
         const glm::uvec2 extent = end - begin;
         const Resource target = graph.create("part", image_desc(Format::rgba32_float, glm::uvec3(extent, 1)));
-        graph.read_back(
-            renderer()
-                .draw(graph, session, camera, {.pixels = size, .begin = begin, .end = end, .probe = probe}, target)
-                .target);
+        graph.read_back(shvr::draw(graph, renderer().scene(), session.look(), camera,
+                                   {.pixels = size, .begin = begin, .end = end, .probe = probe}, target)
+                            .target);
         const gpu::FrameResult result = renderer().executor().run(std::move(graph));
         size_t different = 0;
         for (uint32_t y = 0; y < extent.y; ++y)
@@ -71,8 +70,8 @@ TEST_CASE_FIXTURE(OnDevice, "a pixel is picked where its ray becomes half opaque
     load(ramp);
     const Session session = plain_session({{20000.0, RED, 1.0}, {65535.0, RED, 1.0}}, {65, 65});
     const Camera camera = camera_looking("front", volume().info());
-    const std::optional<glm::dvec3> hit = renderer().pick(session, camera, {65, 65}, {32, 32});
+    const std::optional<glm::dvec3> hit = renderer().pick(session.look(), camera, {65, 65}, {32, 32});
     REQUIRE(hit.has_value());
     CHECK(glm::distance(*hit, glm::dvec3(20.0, 19.9, 20.0)) < 0.6);  // the step is half a voxel
-    CHECK(!renderer().pick(session, camera, {65, 65}, {0, 0}).has_value());
+    CHECK(!renderer().pick(session.look(), camera, {65, 65}, {0, 0}).has_value());
 }

@@ -100,7 +100,7 @@ TEST_CASE_FIXTURE(Seen, "panes that stay as they are, are not drawn again")
     CHECK(off(screen) <= 1.0);
 }
 
-TEST_CASE("panes whose bricks come and go end as the picture of render, under a budget for one of them")
+TEST_CASE("panes of paged bricks end as the picture of render, under a budget for one of them")
 {
     const std::shared_ptr<const VolumeSource> tubes =
         open_procedural({.kind = "tubes", .size = {256, 256, 256}, .seed = 3});

@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(Shells, "a shell that is not seen changes no bit")
     CHECK(different_bits(picture(session, camera, shell(30000.0, 0.5, 10.0)), without) > 100);
 }
 
-TEST_CASE("a shell is the same with bricks that come and go, though nothing else of them is seen")
+TEST_CASE("a shell is the same with paged bricks, though nothing else of them is seen")
 {
     const std::shared_ptr<const VolumeSource> tubes =
         open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});

@@ -31,16 +31,16 @@ TEST_CASE_FIXTURE(OnDevice, "a surface in fog is seen through what lies before i
     const Camera camera = camera_along(volume(), {0, 0, 1}, 1.0);
     for (const double depth : {-20.0, -1.0, 0.0, 0.3, 7.77, 20.0, 63.9, 64.0, 80.0}) {
         CAPTURE(depth);
-        renderer().set_surfaces({ball({16.0, 16.0, depth + 5.0}, 5.0, white)});
+        renderer().scene().set_surfaces({ball({16.0, 16.0, depth + 5.0}, 5.0, white)});
         const double through = std::exp(-sigma * std::clamp(depth, 0.0, 64.0));
         const glm::dvec4 pixel = pixels_of(draw(session, camera))[0];
         check_below("colour", glm::distance(glm::dvec3(pixel), fog * (1.0 - through) + through * white), 1e-5);
-        const std::optional<glm::dvec3> picked = renderer().pick(session, camera, {1, 1}, {0, 0});
+        const std::optional<glm::dvec3> picked = renderer().pick(session.look(), camera, {1, 1}, {0, 0});
         REQUIRE(picked.has_value());
         const double half = std::log(2.0) / sigma;  // where the fog itself is half opaque
         CHECK(std::abs(picked->z - std::min(depth, half)) < (depth < half ? 1e-4 : 0.6));
     }
-    renderer().set_surfaces({});
+    renderer().scene().set_surfaces({});
 }
 
 TEST_CASE_FIXTURE(OnDevice, "a session without surfaces is drawn as if there never had been any")
@@ -60,20 +60,20 @@ TEST_CASE_FIXTURE(OnDevice, "a session without surfaces is drawn as if there nev
     const Picture before = renderer().render(session, camera);
     CHECK(bytes() == 0);
     CHECK(passes(before) == 0);
-    renderer().set_surfaces({ball({20, 16, 25}, 6.0, WHITE)});
+    renderer().scene().set_surfaces({ball({20, 16, 25}, 6.0, WHITE)});
     const Picture with = renderer().render(session, camera);
     CHECK(different_bits(with.image, before.image) > 100);
     CHECK(bytes() > 0);
     CHECK(passes(with) > 0);
     CHECK(different_bits(renderer().render(session, camera).image, with.image) == 0);  // uploaded once
-    renderer().set_surfaces({ball({20, 16, 1e5}, 6.0, WHITE)});                        // out of sight
+    renderer().scene().set_surfaces({ball({20, 16, 1e5}, 6.0, WHITE)});                // out of sight
     CHECK(different_bits(renderer().render(session, camera).image, before.image) == 0);
-    renderer().set_surfaces({});
+    renderer().scene().set_surfaces({});
     CHECK(bytes() == 0);
     const Picture after = renderer().render(session, camera);
     CHECK(different_bits(after.image, before.image) == 0);
     CHECK(passes(after) == 0);
-    renderer().set_surfaces({ball({20, 16, 25}, 6.0, WHITE)});
+    renderer().scene().set_surfaces({ball({20, 16, 25}, 6.0, WHITE)});
     load(noise_volume({40, 33, 50}, 97));
     CHECK(bytes() == 0);  // they belong to a volume
 }
@@ -84,7 +84,7 @@ TEST_CASE_FIXTURE(OnDevice, "cutting planes cut the volume and no surface, and t
     Session session = plain_session(uniform_points(RED, 0.1), {1, 1});
     session.light = {.shaded = false, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
     session.cut = {{0, 0, 30}, {40, 40, 40}};
-    renderer().set_surfaces({ball({20, 20, 15}, 5.0, GREEN)});
+    renderer().scene().set_surfaces({ball({20, 20, 15}, 5.0, GREEN)});
     const Camera camera = camera_along(volume(), {0, 0, 1}, 1.0);
     check_below("uncut", glm::distance(glm::dvec3(pixels_of(draw(session, camera))[0]), GREEN), 1e-6);
     session.cut = {{0, 0, 0}, {40, 40, 40}};
@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(OnDevice, "cutting planes cut the volume and no surface, and t
     const double share = 0.8 * 10.0 / 40.0;
     check_below("blended", glm::distance(glm::dvec3(pixels_of(draw(session, camera))[0]), glm::mix(GREEN, BLUE, share)),
                 1e-6);
-    renderer().set_surfaces({});
+    renderer().scene().set_surfaces({});
 }
 
 TEST_CASE_FIXTURE(OnDevice, "every variant of the ray caster stops at surfaces")
@@ -123,7 +123,7 @@ TEST_CASE_FIXTURE(OnDevice, "every variant of the ray caster stops at surfaces")
                     if (painted) CHECK(annotator.paint({.radius_voxels = 5.0, .path = {{20, 20, 20}}}) > 0);
                     const Pixels bare = pixels_of(renderer().render(session, camera).image);
                     // Before the volume, half in it, behind it; and the probe.
-                    renderer().set_surfaces(
+                    renderer().scene().set_surfaces(
                         {ball({10, 10, -8}, 6.0, GREEN), ball({30, 10, 0}, 6.0, BLUE), ball({30, 30, 50}, 6.0, RED)});
                     const Picture picture = renderer().render(session, camera, {.probe = probe});
                     const std::string kernel =

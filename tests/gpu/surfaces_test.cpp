@@ -90,7 +90,7 @@ public:
         FrameGraph graph;
         SurfacesInput input{.params = {},
                             .scene = scene.params(planes, pixels, info),
-                            .listed = scene.import(graph),
+                            .listed = scene.upload(graph),
                             .tile = {128, 128}};
         input.params.pixel_end = pixels;
         input.params.light = light;

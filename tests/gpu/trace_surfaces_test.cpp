@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/live/trace_look.h"
+#include "engine/device/trace_surfaces.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;
@@ -35,9 +35,9 @@ TEST_CASE_FIXTURE(OnDevice, "a trace that changed is drawn as one that always wa
             trace.apply(TraceInternodeChange{5000 + i, {}, TraceInternode{4 * i, (4 * i + 4) % 9600, 1}},
                         Direction::forwards);
     const std::vector<SurfaceLook> of_session{{{30, 30, 30}, {30, 30, 30}, 3.0, 3.0, glm::dvec3(0.0, 0.0, 1.0)}};
-    show_surfaces(renderer(), of_session, trace, session.groups);
+    renderer().scene().show_surfaces(of_session, trace, session.groups);
     draw(session, camera);
-    REQUIRE(renderer().replace_surfaces({}, {}));  // they are enough to be patched
+    REQUIRE(renderer().scene().replace_surfaces({}, {}));  // they are enough to be patched
 
     const auto copied = [](const Picture& picture) {
         for (const gpu::PassReport& pass : picture.passes)
@@ -71,14 +71,14 @@ TEST_CASE_FIXTURE(OnDevice, "a trace that changed is drawn as one that always wa
             if (turn == 5) change(TraceSizeChange{2, {}, 0.5});
         }
         done = changes;
-        show_changed_surfaces(renderer(), of_session, trace, session.groups, changes);
+        renderer().scene().show_trace(trace, changes);
         const Picture picture = renderer().render(session, camera);
         CHECK(copied(picture));
         patched.emplace_back(trace, pixels_of(picture.image));
     }
     for (size_t turn = 0; turn < patched.size(); ++turn) {
         CAPTURE(turn);
-        show_surfaces(renderer(), of_session, patched[turn].first, session.groups);
+        renderer().scene().show_surfaces(of_session, patched[turn].first, session.groups);
         CHECK(pixels_of(draw(session, camera)) == patched[turn].second);
     }
     CHECK(patched[0].second != patched[1].second);

@@ -48,10 +48,10 @@ public:
     {
         const glm::uvec2 size = pixels();
         FrameGraph graph;
-        const Resource light = renderer()
-                                   .draw(graph, session, camera, {.pixels = size, .end = size, .probe = probe},
-                                         graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))))
-                                   .target;
+        const Resource light =
+            shvr::draw(graph, renderer().scene(), session.look(), camera, {.pixels = size, .end = size, .probe = probe},
+                       graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))))
+                .target;
         gpu::EncodeParams params{};
         params.size = size;
         params.first = glm::vec2(0.5f);
@@ -98,7 +98,7 @@ TEST_CASE_FIXTURE(Seen, "surfaces are in the sketch, in the tiles and around the
         settle(view);
         const ScreenPixels without = shown(view);
         for (int steps = 0; steps < 7; ++steps) view.advance();
-        renderer().set_surfaces(rods);
+        renderer().scene().set_surfaces(rods);
         view.look(session, camera({1, 2, 3}), pixels());
         settle(view);
         CHECK((shown(view) != without));
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(Seen, "surfaces are in the sketch, in the tiles and around the
         for (int steps = 0; steps < 5; ++steps) view.advance();  // in the middle of a picture
         view.look(session, camera({2, 2, 3}), pixels());
         for (int steps = 0; steps < 20; ++steps) view.advance();
-        renderer().set_surfaces({});
+        renderer().scene().set_surfaces({});
         view.look(session, camera({1, 2, 3}), pixels());
         settle(view);
         CHECK((shown(view) == without));

@@ -47,6 +47,16 @@ Document unannotated()
     return {.mask = Mask(ANNOTATED_SIZE), .trace = {}, .density = DensityField(ANNOTATED_SIZE, ANNOTATED_TYPE)};
 }
 
+WorkFiles files_in(const std::filesystem::path& folder)
+{
+    return {.journal = folder / "a.journal",
+            .mask = folder / "a.mask",
+            .trace = folder / "a.graphml",
+            .density = folder / "a.offset",
+            .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
+            .volume = annotated_volume()};
+}
+
 uint64_t hash_of(const Mask& mask)
 {
     return hash_of_bricks(mask, 1);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "engine/annotation/work/history.h"
+#include "engine/annotation/work/work.h"
 
 namespace shvr::test {
 
@@ -15,6 +15,8 @@ inline constexpr VoxelType ANNOTATED_TYPE = VoxelType::int16;
 /// What is annotated.
 VolumeInfo annotated_volume();
 Document unannotated();
+/// Where work on it is kept, in `folder`.
+WorkFiles files_in(const std::filesystem::path& folder);
 
 /// Differs (but for one chance in 2^64) where any group, offset, node, internode or size differs, or what exists.
 uint64_t hash_of(const Mask& mask);

@@ -13,8 +13,8 @@
 
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/base/error.h"
+#include "engine/device/trace_surfaces.h"
 #include "engine/live/annotator.h"
-#include "engine/live/trace_look.h"
 #include "engine/volume/source_procedural.h"
 
 namespace shvr {
@@ -103,10 +103,10 @@ void one_stroke(const Folder& folder)
         draw();  // what the last undo left to do
         before.push_back(milliseconds_of(draw));
         selecting.push_back(milliseconds_of([&] { annotator.select(op); }));
-        annotator.flush();
+        annotator.work().flush();
         const uint64_t begun = annotator.work().journal().bytes;
         painting.push_back(milliseconds_of([&] { voxels = annotator.paint(op); }));
-        journaling.push_back(milliseconds_of([&] { annotator.flush(); }));
+        journaling.push_back(milliseconds_of([&] { annotator.work().flush(); }));
         bytes = int64_t(annotator.work().journal().bytes - begun);
         after.push_back(milliseconds_of(draw));
         undoing.push_back(milliseconds_of([&] { annotator.undo(); }));
@@ -150,18 +150,18 @@ void long_trace()
         at += glm::dvec3(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
         add(number);
     }
-    const double all = milliseconds_of([&] { show_surfaces(renderer, {}, trace, {}); });
+    const double all = milliseconds_of([&] { renderer.scene().show_surfaces({}, trace, {}); });
     std::vector<double> finding, showing, counting;
     for (uint32_t i = 0; i < ADDED; ++i) {
         at = {uniform(0, 1000), uniform(0, 1000), uniform(0, 1000)};
         finding.push_back(milliseconds_of([&] { trace.nearest_node(at); }));
         const std::vector<Change> changes = add(NODES + i);
-        showing.push_back(milliseconds_of([&] { show_changed_surfaces(renderer, {}, trace, {}, changes); }));
-        counting.push_back(milliseconds_of([&] { summary_of(trace); }));
+        showing.push_back(milliseconds_of([&] { renderer.scene().show_trace(trace, changes); }));
+        counting.push_back(milliseconds_of([&] { trace.summary(); }));
     }
     std::printf(
         "a node more in a trace of %u: nearest node %.3f ms, its surfaces %.2f ms (all of them %.0f ms), "
-        "lengths and segments %.0f ms\n",
+        "lengths and segments %.4f ms\n",
         NODES, median(finding), median(showing), all, median(counting));
 }
 

@@ -1,12 +1,33 @@
 #include "tools/cli/cli.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <iostream>
 
-#include "engine/live/trace_look.h"
+#include "engine/base/text.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
+
+namespace {
+
+/// Enough for any machine, and no product with 2^20 leaves 64 bits.
+constexpr int64_t MOST_MIB = int64_t{1} << 24;
+
+CLI::Validator whole_mib()
+{
+    return {[](std::string& text) {
+                const std::optional<int64_t> mib = whole_of(text);
+                return mib && *mib >= 1 && *mib <= MOST_MIB
+                           ? std::string()
+                           : sentence(in_quotes(text), " is given; expected a whole number of MiB from 1 to ",
+                                      MOST_MIB);
+            },
+            ""};
+}
+
+}  // namespace
 
 void add_output_options(CLI::App& command, Common& common)
 {
@@ -28,7 +49,15 @@ void add_input_options(CLI::App& command, Common& common)
                 help)
             ->type_name(form);
     };
-    shorthand("--raw", "volume.raw", "WxHxD:TYPE[:big|little][:OFFSET]", "How a file of bare voxels is laid out");
+    command
+        .add_option_function<std::string>(
+            "--raw",
+            [&common](const std::string& value) {
+                parse_raw_layout(value);  // what is wrong here is wrong usage, not a wrong file
+                common.settings.push_back("volume.raw=" + value);
+            },
+            "How a file of bare voxels is laid out")
+        ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
     // Text, also where it looks like a number.
     const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
         command
@@ -55,9 +84,12 @@ void add_input_options(CLI::App& command, Common& common)
 void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");
-    command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")->type_name("MIB");
+    command.add_option("--budget-device", common.budget_device_mib, "Device memory SHVR may use")
+        ->type_name("MIB")
+        ->check(whole_mib());
     command.add_option("--budget-host", common.budget_host_mib, "Host memory SHVR may use for bricks and transfers")
-        ->type_name("MIB");
+        ->type_name("MIB")
+        ->check(whole_mib());
     add_input_options(command, common);
     command.add_option("--threads", common.threads, "Worker threads; 0: one per core")->check(CLI::Range(0, 1024));
 }
@@ -76,6 +108,24 @@ void print(const Json& result)
 {
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");
+}
+
+void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions)
+{
+    if (path.empty()) return;
+    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    if (std::ranges::find(extensions, extension) == extensions.end()) {
+        std::string all;
+        for (const std::string& known : extensions) all += (all.empty() ? "" : ", ") + known;
+        throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
+    }
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+        fail(path, ": cannot be written: there is no folder ", folder.string());
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        fail(path, ": cannot be written: the folder ", folder.string(), " may not be written to");
+    if (std::filesystem::is_directory(path, ignored)) fail(path, ": is a folder; expected the name of a file");
 }
 
 glm::uvec2 parse_size(const std::string& text)
@@ -104,7 +154,8 @@ Opened open(const std::string& path, const Common& common, Work::Start start)
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
-    show_surfaces(*opened.renderer, opened.session.surfaces, opened.annotator->document().trace, opened.session.groups);
+    opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
+                                           opened.session.groups);
     return opened;
 }
 
@@ -122,17 +173,17 @@ Json bytes_of(Renderer& renderer)
 
 Json bricks_of(const Renderer& renderer)
 {
-    if (!renderer.paged()) return nullptr;
-    const PagedVolume::Counts counts = renderer.paged()->counts();
-    return {{"slots", counts.slots},
-            {"resident", counts.resident},
-            {"wanted", counts.reached},
-            {"missing", renderer.paged()->missing()},
-            {"finest_level", renderer.paged()->tree() ? renderer.paged()->tree()->finest_level : 0},
-            {"uploads", counts.uploads},
-            {"evictions", counts.evictions},
-            {"loads", counts.store.loads},
-            {"load_failures", counts.store.failures}};
+    const std::optional<DeviceVolume::Counts> counts = renderer.volume().counts();
+    if (!counts) return nullptr;
+    return {{"slots", counts->slots},
+            {"resident", counts->resident},
+            {"wanted", counts->reached},
+            {"missing", renderer.volume().missing()},
+            {"finest_level", renderer.volume().finest_level()},
+            {"uploads", counts->uploads},
+            {"evictions", counts->evictions},
+            {"loads", counts->store.loads},
+            {"load_failures", counts->store.failures}};
 }
 
 Json counters_of(const std::vector<gpu::PassReport>& passes)

@@ -39,6 +39,9 @@ void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
 /// One object on standard output.
 void print(const Json& result);
+/// Before any work: a name that ends in none of `extensions` is wrong usage, a folder that is not there or may not be
+/// written to is an error. Nothing is checked where `path` is empty: it was not asked for.
+void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 

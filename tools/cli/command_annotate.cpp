@@ -3,6 +3,7 @@
 #include <concepts>
 
 #include "engine/annotation/trace/trace_command.h"
+#include "engine/annotation/work/script.h"
 #include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
 
@@ -58,10 +59,10 @@ public:
     {
         const ProbeSettings& probe = opened.session.probe;
         TraceEffect effect = in_words([&] {
-            return effect_of(op, trace(), {opened.source->info().spacing, probe.radius_voxels, probe.group});
+            return effect_of(op, trace(), {opened.source->info().spacing, probe.brush.radius_voxels, probe.brush.group});
         });
         if (effect.selection)
-            opened.annotator->select_trace(std::move(*effect.selection));
+            opened.annotator->work().select_trace(std::move(*effect.selection));
         else
             opened.annotator->edit_trace(std::move(effect.label), std::move(effect.changes));
         if constexpr (std::same_as<Op, NodeOp>) {
@@ -82,7 +83,7 @@ public:
     void operator()(const SaveOp&)
     {
         const auto save = [&] {
-            return opened.annotator->save(label_looks(opened.session.groups, opened.annotator->document().mask));
+            return opened.annotator->work().save(label_looks(opened.session.groups, opened.annotator->document().mask));
         };
         for (const std::filesystem::path& path : in_words(save))
             say(options.common, sentence(at, ": saved ", path.string()));
@@ -121,7 +122,7 @@ void run_annotate(const AnnotateCommandOptions& options)
         replay.at = sentence(options.script, ":", line.number);
         std::visit(replay, line.op);
     }
-    opened.annotator->flush();
+    opened.annotator->work().flush();
     check_validation(opened);
     if (options.common.json)
         print({{"commands", script.size()},

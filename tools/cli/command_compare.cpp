@@ -69,6 +69,7 @@ void check_gates(const ImageDifference& difference, const CompareCommandOptions&
 
 void run_compare(const CompareCommandOptions& options)
 {
+    check_output("--diff", options.difference, {".png"});
     const Image8 a = read_png(options.a);
     const Image8 b = read_png(options.b);
     if (a.width != b.width || a.height != b.height)

@@ -21,17 +21,6 @@ struct ExportCommandOptions {
     bool break_loops = false, labels = false;
 };
 
-void check_extension(const char* option, const std::string& path, const std::vector<std::string>& known)
-{
-    if (path.empty()) return;
-    std::string all;
-    for (const std::string& extension : known) {
-        if (std::filesystem::path(path).extension() == extension) return;
-        all += (all.empty() ? "" : ", ") + extension;
-    }
-    throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
-}
-
 void check_mask_name(const std::string& path)
 {
     if (!path.empty() && !is_mask_export(path))
@@ -94,10 +83,10 @@ Json to_json(const std::vector<std::string>& written, const Mask& mask, const Tr
 void run_export(const ExportCommandOptions& options)
 {
     check_mask_name(options.mask);
-    check_extension("--offset", options.offset, {".offset", ".nrrd", ".tif", ".tiff"});
-    check_extension("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
-    check_extension("--mesh", options.mesh, {".obj", ".ply"});
-    check_extension("--metrics", options.metrics, {".csv"});
+    check_output("--offset", options.offset, {".offset", ".nrrd", ".tif", ".tiff"});
+    check_output("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
+    check_output("--mesh", options.mesh, {".obj", ".ply"});
+    check_output("--metrics", options.metrics, {".csv"});
     const OpenedSession opened = open_session(options.project, options.common.settings);
     warn(opened.source->info().warnings, options.common);
     const VolumeInfo& volume = opened.source->info();

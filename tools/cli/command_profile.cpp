@@ -76,7 +76,9 @@ void run_profile(ProfileCommandOptions options)
 {
     if (options.input.empty())
         throw UsageError("INPUT is missing; expected a session (.json), project folder or volume");
-    if (!options.graph.empty()) check_graph_extension(options.graph);
+    check_output("--trace", options.trace, {".json"});
+    check_output("--csv", options.csv, {".csv"});
+    check_output("--graph", options.graph, {".dot", ".svg", ".json"});
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));

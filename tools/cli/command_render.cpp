@@ -2,6 +2,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
+#include "engine/base/text.h"
 #include "engine/live/previewer.h"
 #include "tools/cli/cli.h"
 
@@ -12,10 +13,18 @@ namespace {
 struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
+    bool allows_incomplete = false;
 };
+
+/// Why a picture is not what was asked for.
+std::string why_incomplete(const Picture& picture)
+{
+    return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
+}
 
 void run_render(RenderCommandOptions options)
 {
+    check_output("--output", options.output, {".png", ".pfm"});
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
@@ -32,7 +41,10 @@ void run_render(RenderCommandOptions options)
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Picture picture = opened.renderer->render(
         opened.session, camera, {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
-    if (std::filesystem::path(options.output).extension() == ".pfm")
+    if (!picture.complete && !options.allows_incomplete)
+        fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
+             "; --allow-incomplete writes it nevertheless");
+    if (lower_case(std::filesystem::path(options.output).extension().string()) == ".pfm")
         write_pfm(options.output, picture.image);
     else
         write_png(options.output, to_image8(picture.image));
@@ -72,6 +84,8 @@ void add_render(CLI::App& program)
     command->add_option(
         "--tf", options->transfer_function,
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
+    command->add_flag("--allow-incomplete", options->allows_incomplete,
+                      "Write a picture that lacks something, with a warning, instead of failing");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");

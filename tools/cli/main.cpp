@@ -1,19 +1,39 @@
 // shvr: one binary, a sub-command for each thing it does.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 
+#include "engine/base/text.h"
 #include "tools/cli/cli.h"
 
 namespace {
 
 enum Exit { done = 0, world = 1, usage = 2, gate = 3 };
 
+/// One line, however CLI11 spells it.
+std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
+{
+    std::string command = "shvr", text = error.what();
+    for (const CLI::App* chosen : program.get_subcommands()) command += " " + chosen->get_name();
+    std::ranges::replace(text, '\n', ' ');
+    return text + "; see " + command + " --help";
+}
+
+std::string unknown_command(const CLI::App& program, const std::string& name)
+{
+    std::string known;
+    for (const CLI::App* command : program.get_subcommands({}))
+        known += (known.empty() ? "" : ", ") + command->get_name();
+    return shvr::in_quotes(name) + " is no command of shvr; expected one of: " + known;
+}
+
 int run(int argc, char** argv)
 {
     CLI::App program("SHVR: see, feel and annotate tubular structures in 3-D scans", "shvr");
     program.require_subcommand(1);
+    program.set_version_flag("--version", "shvr " SHVR_VERSION);
     program.footer("shvr alone opens the window. shvr COMMAND --help shows options and an example.");
     shvr::cli::add_info(program);
     shvr::cli::add_import(program);
@@ -32,9 +52,13 @@ int run(int argc, char** argv)
         if (argc == 1)
             program.parse(2, alone);
         else
-            program.parse(argc, argv);  // runs the command's callback
+            program.parse(argc, argv);     // runs the command's callback
+    } catch (const CLI::Success& asked) {  // --help, --version
+        return program.exit(asked);
     } catch (const CLI::ParseError& error) {
-        return program.exit(error) == 0 ? Exit::done : Exit::usage;
+        if (argv[1][0] != '-' && program.get_subcommands().empty())
+            throw shvr::UsageError(unknown_command(program, argv[1]));
+        throw shvr::UsageError(usage_error(program, error));
     }
     return Exit::done;
 }

@@ -211,17 +211,8 @@ std::string csv_of(const Profile& profile)
     return text.str();
 }
 
-void check_graph_extension(const std::filesystem::path& path)
-{
-    const std::string extension = path.extension().string();
-    if (extension != ".dot" && extension != ".svg" && extension != ".json")
-        throw UsageError(
-            sentence("--graph is '", path.string(), "'; expected a name that ends in .dot, .svg or .json"));
-}
-
 void write_graph(const std::filesystem::path& path, const FrameGraph& graph)
 {
-    check_graph_extension(path);
     const CompiledGraph compiled = graph.compile();
     if (path.extension() == ".json") return write_text(path, to_json_text(graph, compiled));
     const std::string graphviz = to_graphviz(graph, compiled);

@@ -48,8 +48,6 @@ std::string csv_of(const Profile& profile);
 
 /// .dot, .svg (by the program `dot`) or .json, by the extension of `path`.
 void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
-/// Fails with a `UsageError` where the extension is none of these.
-void check_graph_extension(const std::filesystem::path& path);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 

@@ -165,21 +165,19 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
-void brush_item(const char* name, Brush brush, const Model& model, Actions& actions)
+void brush_item(const BrushRow& row, const Model& model, Actions& actions)
 {
-    if (!ImGui::MenuItem(name, nullptr, model.brush.brush == brush)) return;
+    if (!ImGui::MenuItem(row.title, nullptr, model.brush.brush == row.brush)) return;
     PaintOp changed = model.brush;
     changed.path.clear();
-    changed.brush = brush;
+    changed.brush = row.brush;
     actions.push_back(SetBrush{changed});
 }
 
 void paint_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Paint")) return;
-    brush_item("Fill", Brush::fill, model, actions);
-    brush_item("Flood fill", Brush::flood, model, actions);
-    brush_item("Speckle fill", Brush::speckle, model, actions);
+    for (const BrushRow& row : BRUSHES) brush_item(row, model, actions);
     key_item("Next brush", model, actions);
     ImGui::Separator();
     for (int group = 1; group <= 9; ++group) {

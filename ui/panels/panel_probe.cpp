@@ -31,30 +31,16 @@ bool intensity_slider(const char* id, const Model& model, double& intensity)
 
 // ---- Painting
 
-struct BrushKind {
-    const char* name;
-    Brush brush;
-    const char* hint;
-};
-constexpr BrushKind BRUSHES[] = {
-    {"Fill", Brush::fill, "Paints every voxel in the probe that is at or above the paint threshold."},
-    {"Flood fill", Brush::flood,
-     "Paints what is connected to the middle of the probe: voxels at or above the threshold, inside the probe."},
-    {"Speckle fill", Brush::speckle,
-     "Paints pieces that lie wholly inside the probe and leaves larger ones alone: clears dirt and noise out of the "
-     "view."},
-};
-
 bool brush_kind(PaintOp& brush)
 {
     bool changed = false;
-    for (const BrushKind& kind : BRUSHES) {
-        if (&kind != BRUSHES) ImGui::SameLine();
-        if (ImGui::RadioButton(kind.name, brush.brush == kind.brush)) {
-            brush.brush = kind.brush;
+    for (const BrushRow& row : BRUSHES) {
+        if (row.brush != BRUSHES.front().brush) ImGui::SameLine();
+        if (ImGui::RadioButton(row.title, brush.brush == row.brush)) {
+            brush.brush = row.brush;
             changed = true;
         }
-        hint(kind.hint);
+        hint(row.hint);
     }
     return changed;
 }
@@ -184,7 +170,7 @@ void painting(const Model& model, Actions& actions)
     changed |= region_shape(brush);
     changed |= radius(model, brush);
     changed |= threshold(model, brush);
-    ImGui::BeginDisabled(brush.brush == Brush::fill);  // which asks no neighbours
+    ImGui::BeginDisabled(!row_of(brush.brush).is_connected);
     changed |= connectivity(brush);
     ImGui::EndDisabled();
     changed |= density(model, brush);

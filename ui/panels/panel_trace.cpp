@@ -33,7 +33,7 @@ void count(size_t number, const char* what, bool goes_on)
 
 void summary(const Model& model)
 {
-    const TraceSummary& trace = model.trace_summary;
+    const TraceSummary trace = model.trace.summary();
     text_label("Trace");
     count(trace.nodes, "node", true);
     count(trace.internodes, "internode", false);

@@ -120,7 +120,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     section("Probe and painting", true, probe_panel, model, actions);
     // While painting, the transfer function needs the room; while tracing the section is open, even if it was folded.
     if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
-    section("Tracing", model.trace_summary.nodes > 0, trace_panel, model, actions);
+    section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);
     section("Light and depth", false, light_panel, model, actions);
     section("Ambient occlusion", false, occlusion_panel, model, actions);

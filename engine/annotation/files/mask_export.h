@@ -15,8 +15,8 @@ namespace shvr {
 
 bool is_mask_export(const std::filesystem::path& path);
 
-/// Replaces an old file (or label image) at once or not at all. `volume`, of the mask's size, says where voxels lie; `image`
-/// is what a label image says besides.
+/// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
+/// is what a label image states besides.
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                  const LabelImage& image = {});
 

@@ -20,7 +20,7 @@ void save_mask(const std::filesystem::path& path, const Mask& mask)
         bytes.assign(strip.voxels(), 0);
         const int64_t first_brick = counts.x * (strip.brick_y + counts.y * (strip.z / BRICK_SIDE));
         for (int64_t x = 0; x < counts.x; ++x) {
-            const MaskBrick* brick = mask.brick(first_brick + x);
+            const MaskBrick* brick = mask.brick(first_brick + x).get();
             if (!brick) continue;
             for_each_row(strip, x, [&](size_t in_strip, size_t in_brick, size_t width) {
                 std::copy_n(brick->data() + in_brick, width, bytes.data() + in_strip);

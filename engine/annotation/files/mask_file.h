@@ -11,7 +11,7 @@ namespace shvr {
 void save_mask(const std::filesystem::path& path, const Mask& mask);
 
 /// Fails, naming both sizes, where the file does not hold exactly one byte per voxel of `size`.
-/// The result is a list of records, so that loading is a command like any other.
+/// Returns records, so that loading is a command like any other.
 std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const Size3& size);
 
 }  // namespace shvr

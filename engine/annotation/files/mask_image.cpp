@@ -4,6 +4,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/formats/zarr/zarr_json.h"
 
 namespace shvr {
@@ -42,20 +43,16 @@ void check_mask_image(const std::filesystem::path& mask, const std::string& cont
     const std::filesystem::path path = is_label_image ? mask / ".zattrs" : mask_image_path(mask);
     std::error_code ignored;
     if (content_hash.empty() || !std::filesystem::exists(path, ignored)) return;
-    nlohmann::json record = read_json_object(path, is_label_image ? LARGEST_ZARR_ATTRIBUTES : LARGEST_RECORD);
-    if (is_label_image) {
-        if (!record.contains("shvr")) return;
-        record = nlohmann::json(record["shvr"]);
-        if (!record.is_object()) refuse_json(path, "shvr", record, "an object");
-    }
-    const nlohmann::json& version = required(path, record, "shvr_mask", sentence(VERSION));
-    if (version != VERSION) refuse_json(path, "shvr_mask", version, sentence(VERSION));
-    const nlohmann::json& image = required(path, record, "image", "the hash of an image");
-    if (image != content_hash) {
-        refuse_json(path, "image", image,
-                    shown(content_hash) + ", the volume's: the mask was painted on other voxels (without this " +
-                        (is_label_image ? "member" : "file") + " only its size is compared)");
-    }
+    const JsonDocument document = read_zarr_json(path, is_label_image ? LARGEST_ZARR_ATTRIBUTES : LARGEST_RECORD);
+    const JsonNode record = is_label_image ? document.root()["shvr"] : document.root();
+    if (is_label_image && !record.exists()) return;
+    if (!record.is_object()) record.refuse("an object");
+    record["shvr_mask"].whole(VERSION, VERSION);
+    const JsonNode image = record.required("image", "the hash of an image");
+    if (!image.is(content_hash))
+        image.refuse(sentence(in_quotes(content_hash),
+                              ", the volume's: the mask was painted on other voxels (without this ",
+                              is_label_image ? "member" : "file", " only its size is compared)"));
 }
 
 }  // namespace shvr

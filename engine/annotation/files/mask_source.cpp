@@ -3,28 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/annotation/files/volume_place.h"
 #include "engine/annotation/files/voxel_strips.h"
 #include "engine/base/error.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
 
-namespace {
-
-VolumeInfo info_of(const Mask& mask, const VolumeInfo& volume)
+MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume)
+    : VolumeSource(info_beside(volume, "mask", VoxelType::uint8)), mask_(mask)
 {
     SHVR_CHECK(mask.size() == volume.size);
-    VolumeInfo info = volume;
-    info.name = "mask";
-    info.format = "mask";
-    info.type = VoxelType::uint8;
-    info.warnings.clear();
-    return info;
 }
-
-}  // namespace
-
-MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume) : VolumeSource(info_of(mask, volume)), mask_(mask) {}
 
 void MaskSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
 {
@@ -34,7 +24,7 @@ void MaskSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
         for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += box.size().x)
             for (int64_t x = box.lower.x; x < box.upper.x;) {
                 const int64_t end = std::min(box.upper.x, (x / BRICK_SIDE + 1) * BRICK_SIDE);
-                const MaskBrick* brick = mask_.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts));
+                const MaskBrick* brick = mask_.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts)).get();
                 auto* const to = reinterpret_cast<uint8_t*>(row + (x - box.lower.x));
                 if (brick)
                     std::copy_n(

@@ -1,5 +1,5 @@
 #pragma once
-// A mask as a volume of groups, and a volume of groups as a mask: what masks in other programs' forms go through.
+// A mask as a volume of groups, and a volume of groups as a mask: masks are exported and imported through these.
 // Any thread may call these.
 
 #include "engine/annotation/mask.h"
@@ -9,7 +9,7 @@ namespace shvr {
 
 class MaskSource final : public VolumeSource {
 public:
-    /// `volume`, whose size is the mask's, says where the voxels lie. The mask must outlive it, unchanged.
+    /// `volume`, of the mask's size, gives the voxels' positions. The mask must outlive this, unchanged.
     MaskSource(const Mask& mask, const VolumeInfo& volume);
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
@@ -18,8 +18,8 @@ private:
     const Mask& mask_;
 };
 
-/// The records that make an unpainted mask of the volume's size hold its voxels. Fails, naming `file`, where these are not
-/// uint8.
+/// The records that turn an unpainted mask of the volume's size into the volume. Fails, naming `file`, where its voxels
+/// are not uint8.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 }  // namespace shvr

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/annotation/files/offset_file.h"
+#include "engine/annotation/files/volume_place.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
@@ -14,23 +15,19 @@ namespace shvr {
 
 namespace {
 
-VolumeInfo info_of(const DensityField& field, const VolumeInfo& volume)
+VoxelType exported_type(VoxelType type)
 {
-    SHVR_CHECK(field.size() == volume.size);
-    VolumeInfo info = volume;
-    info.name = "offsets";
-    info.format = "offsets";
-    info.type = bytes_of(field.type()) == 4 && !is_float(field.type()) ? VoxelType::int32 : VoxelType::float32;
-    info.warnings.clear();
-    return info;
+    return bytes_of(type) == 4 && !is_float(type) ? VoxelType::int32 : VoxelType::float32;
 }
 
 /// The offsets as a volume.
 class FieldSource final : public VolumeSource {
 public:
     FieldSource(const DensityField& field, const VolumeInfo& volume)
-        : VolumeSource(info_of(field, volume)), field_(field)
-    {}
+        : VolumeSource(info_beside(volume, "offsets", exported_type(field.type()))), field_(field)
+    {
+        SHVR_CHECK(field.size() == volume.size);
+    }
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {

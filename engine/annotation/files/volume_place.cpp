@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/volume/unit.h"
 
 namespace shvr {
@@ -40,6 +41,15 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
     if (!is_equal || (unit != space.unit && !(from && to)))
         fail(path.string(), ": is ", what, " with voxels of ", digits_of(found.spacing), " ", unit, "; expected ",
              digits_of(space.spacing), " ", space.unit, ", the spacing of this volume");
+}
+
+VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type)
+{
+    VolumeInfo info = volume;
+    info.name = info.format = name;
+    info.type = type;
+    info.warnings.clear();
+    return info;
 }
 
 }  // namespace shvr

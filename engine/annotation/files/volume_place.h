@@ -1,6 +1,5 @@
 #pragma once
-// Whether a volume that a person's work is kept in, a mask or offsets, is of the volume that is worked on. Any thread may
-// call these.
+// Whether a file of masks or offsets belongs to the annotated volume. Any thread may call these.
 
 #include <filesystem>
 
@@ -8,11 +7,14 @@
 
 namespace shvr {
 
-/// Whether the file or folder says itself how large it is, in a form that engine/volume reads: OME-Zarr folders, NRRD, MHD,
-/// NIfTI and TIFF. Bare bytes do not.
+/// Whether the file or folder is in a form that states its size: OME-Zarr folders, NRRD, MHD, NIfTI and TIFF. Raw bytes
+/// do not.
 bool states_its_size(const std::filesystem::path& path);
 
-/// Fails, naming both, where `found` is of another size or, where it states one, spacing. `what`: "a mask".
+/// Fails, naming both, where the size or stated spacing of `found` differs. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
+
+/// What describes a volume of annotation, "mask" or "offsets", beside the annotated one: the same place, other voxels.
+VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type);
 
 }  // namespace shvr

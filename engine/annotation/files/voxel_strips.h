@@ -1,6 +1,6 @@
 #pragma once
-// Files of one value for each voxel, x fastest, without a header, gone through in strips: the rows of one slice that go
-// through one row of bricks. They are consecutive in the file, and even the largest volume's hold only 2^25 voxels.
+// Files of one value per voxel, x fastest, without a header, read and written in strips: the rows of one slice that
+// cross one row of bricks. A strip is consecutive in the file and holds at most 2^25 voxels.
 
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace shvr {
 
-/// A layer of bricks is read at once where it is no larger, else brick by brick.
+/// Layers of bricks up to this size are read at once, larger ones brick by brick.
 inline constexpr int64_t LAYER_BYTES = int64_t{64} << 20;
 
 struct VoxelStrip {
@@ -22,7 +22,7 @@ struct VoxelStrip {
     int64_t z, brick_y;
     int64_t height() const { return std::min<int64_t>(gpu::BRICK_SIZE, size.y - brick_y * gpu::BRICK_SIZE); }
     size_t voxels() const { return size_t(size.x * height()); }
-    /// The last of its layer of bricks.
+    /// Whether it is the last strip of its layer of bricks.
     bool ends_layer() const
     {
         const bool is_last_slice = z % gpu::BRICK_SIZE == gpu::BRICK_SIZE - 1 || z == size.z - 1;
@@ -47,7 +47,7 @@ void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
               size_t(BRICK_SIDE * (y + BRICK_SIDE * (strip.z % BRICK_SIDE))), size_t(width));
 }
 
-/// Opens what holds exactly that many bytes for each voxel. `kind`: the suffix that was expected, for messages.
+/// Opens a file that must hold exactly that many bytes per voxel. `kind`: the expected suffix, for messages.
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind);
 /// Fills `bytes` from where the last read ended.

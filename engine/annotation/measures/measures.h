@@ -1,6 +1,6 @@
 #pragma once
-// What is counted and measured in an annotation: segments, branches, groups and loops of the trace, and the topology of
-// the mask. Lengths, radii and positions are in the volume's unit, angles in degrees. Any thread may call these.
+// Counts and measures of an annotation: segments, branches, groups and loops of the trace, and the topology of the
+// mask. Lengths, radii and positions are in the volume's unit, angles in degrees. Any thread may call these.
 
 #include <array>
 #include <map>
@@ -8,18 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "engine/annotation/mask.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/annotation/trace/trace_segments.h"
 
 namespace shvr {
 
 struct SegmentMeasures {
-    uint32_t internode = 0;  ///< the smallest of its internodes, which names it
-    uint8_t group = 0;       ///< that most of its length is of; the smallest of several
+    uint32_t internode = 0;  ///< its name: the smallest number of its internodes
+    uint8_t group = 0;       ///< of most of its length; the smallest of several
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;
-    double chord = 0.0;                ///< between its two ends; 0 of a loop
+    double chord = 0.0;                ///< distance of its two ends; 0 for a loop
     std::optional<double> tortuosity;  ///< length / chord, 1 where straight; nothing where the chord is 0
     double radius_mean = 0.0;          ///< along its length
     double radius_least = 0.0, radius_most = 0.0;
@@ -53,12 +54,12 @@ TraceMeasures measure(const TraceGraph& trace);
 Topology topology_of(const TraceGraph& trace);
 
 /// Of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners (26), unpainted
-/// ones over faces (6); what lies outside the volume is unpainted. b1 comes from the Euler characteristic of the union of
-/// the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time and
-/// memory in proportion to the box of bricks that the voxels lie in; fails where that has more than 2^36 voxels.
+/// ones over faces (6); what lies outside the volume is unpainted. b1 comes from the Euler characteristic of the union
+/// of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
+/// and memory in proportion to the box of bricks that the voxels lie in; fails where that has more than 2^36 voxels.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 
-/// A table of all of it, one measure a row: item, number, group, measure, value, unit (RFC 4180).
+/// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).
 std::string metrics_csv(const TraceMeasures& trace, const std::array<int64_t, 256>& voxels_by_group,
                         const std::map<int, Topology>& mask_topology, const TraceSpace& space);
 

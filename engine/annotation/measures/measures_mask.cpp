@@ -112,7 +112,7 @@ private:
         const glm::i64vec3 counts = mask_.brick_counts();
         const int64_t first_brick = counts.x * (y / BRICK_SIDE + counts.y * (z / BRICK_SIDE));
         for (int64_t x = lower_.x; x < upper_.x; x = (x / BRICK_SIDE + 1) * BRICK_SIDE) {
-            const MaskBrick* brick = mask_.brick(first_brick + x / BRICK_SIDE);
+            const MaskBrick* brick = mask_.brick(first_brick + x / BRICK_SIDE).get();
             if (!brick) continue;
             const uint8_t* voxels = brick->data() + BRICK_SIDE * (y % BRICK_SIDE + BRICK_SIDE * (z % BRICK_SIDE));
             for (int64_t i = x % BRICK_SIDE; i < std::min(BRICK_SIDE, upper_.x - x / BRICK_SIDE * BRICK_SIDE); ++i) {
@@ -188,12 +188,11 @@ private:
 
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group)
 {
-    const glm::i64vec3 counts = mask.brick_counts();
     Size3 lower = mask.size(), upper(0);
     for (const int64_t brick : mask.painted_bricks()) {
-        const Size3 first = BRICK_SIDE * position_of(brick, counts);
-        lower = glm::min(lower, first);
-        upper = glm::max(upper, glm::min(first + BRICK_SIDE, mask.size()));
+        const VoxelBox box = mask.box_of(brick);
+        lower = glm::min(lower, box.lower);
+        upper = glm::max(upper, box.upper);
     }
     if (lower.x >= upper.x) return {};
     const Size3 size = upper - lower;

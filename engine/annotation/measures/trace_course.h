@@ -1,7 +1,7 @@
 #pragma once
-// Where along a trace a place is: the segments of the trace in short pieces, searched by an index. Exact: a k-d tree of
-// the pieces' middles gives candidates within half of the longest piece's length, and distances are to the pieces.
-// Any thread may ask.
+// Locates positions along a trace: its segments are cut into short pieces, which an index searches. Exact: a k-d tree
+// of the pieces' midpoints gives candidates within half of the longest piece's length, and distances are to the pieces.
+// Any thread may query.
 
 #include <vector>
 
@@ -10,12 +10,12 @@
 
 namespace shvr {
 
-/// A place of a trace, and its radius there.
+/// A position on a trace, and the radius there.
 struct TraceSample {
     glm::dvec3 position;
     double radius;
 };
-/// Along an internode from end to end, both ends among them, at most `step` apart but no more than 65.
+/// Samples along an internode, both ends included: at most `step` apart, but no more than 65.
 std::vector<TraceSample> samples_of(const TraceGraph& trace, const TraceInternode& internode, double step);
 
 class TraceCourse {
@@ -29,11 +29,11 @@ public:
     struct Near {
         size_t segment;
         double distance;
-        double along;  ///< from where the segment begins
+        double along;  ///< distance from the start of the segment
     };
-    /// The segments that a ball touches once both have grown by `slack` together, each where it is nearest; ascending.
+    /// The segments within `slack` of touching a ball, each at its nearest position; ascending.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
-    /// To the nearest place of any; infinite where there is none.
+    /// Distance to the nearest position of any segment; infinite where there is none.
     double distance_to(const glm::dvec3& position) const;
 
 private:

@@ -17,7 +17,7 @@ int64_t painted_in_row(const Mask& mask, int64_t first, int64_t last, int64_t y,
     const glm::i64vec3 counts = mask.brick_counts();
     int64_t painted = 0;
     for (int64_t x = first; x <= last; x = (x / BRICK_SIDE + 1) * BRICK_SIDE) {
-        const MaskBrick* brick = mask.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts));
+        const MaskBrick* brick = mask.brick(index_of(Size3(x, y, z) / BRICK_SIDE, counts)).get();
         if (!brick) continue;
         const uint8_t* row = brick->data() + BRICK_SIDE * (y % BRICK_SIDE + BRICK_SIDE * (z % BRICK_SIDE));
         for (int64_t i = x; i <= std::min(last, x / BRICK_SIDE * BRICK_SIDE + BRICK_SIDE - 1); ++i)

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/annotation/mask.h"
 #include "engine/annotation/trace/tracing.h"
 
 namespace shvr {
@@ -17,7 +18,7 @@ struct Dice {
     std::optional<double> painted;       ///< 2 |A and B| / (|A| + |B|) of all that is painted; nothing where nothing is
     std::map<uint8_t, double> by_group;  ///< groups that are in either
 };
-/// Counts voxels that belong together, some at a time.
+/// Counts pairs of voxels, a batch at a time.
 class DiceCounter {
 public:
     void add(std::span<const uint8_t> a, std::span<const uint8_t> b);
@@ -27,29 +28,30 @@ private:
     std::array<int64_t, 256> in_a_{}, in_b_{}, in_both_{};
     int64_t painted_in_both_ = 0;
 };
-/// Both of one size (SHVR_CHECK).
+/// Both masks have the same size (SHVR_CHECK).
 Dice dice_of(const Mask& a, const Mask& b);
 
 struct BallScores {
     std::optional<double> mean;  ///< of the shares; nothing where there is no ball
-    int64_t out = 0;             ///< balls of which less than half lies in the mask
+    int64_t out = 0;             ///< balls with less than half of their voxels in the mask
     int64_t total = 0;
 };
-/// The share of a ball's voxels that are painted. A voxel belongs to it as to a brush's ball: where its centre is at most
-/// the radius away; to one too small for any centre belongs the voxel it is in. Voxels outside the volume count as not
-/// painted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
+/// The share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball where its centre is at
+/// most the radius away; a ball too small to hold any centre has the voxel it lies in. Voxels outside the volume count
+/// as unpainted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
 double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dvec3& position, double radius);
 BallScores score_nodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 /// A ball at the middle of each, with its radius there.
 BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 
-/// A place of a trace is *near* one of the truth where their balls, grown by `slack` together, touch.
+/// A position of a trace is *near* one of the truth where their balls are within `slack` of touching.
 struct TraceComparison {
-    /// Of the truth's segments. Found: both ends have a node of the trace near them (each end its own, the nearest first,
-    /// branches before others), and the ways between these two that stay near the segment and pass no other such node
-    /// pass all of it. A segment that is traced in part is not found.
+    /// Of the truth's segments. Found: both ends have a node of the trace near them (each end its own, the nearest
+    /// first, branches before others), and the ways between these two that stay near the segment and pass no other such
+    /// node pass all of it. A segment that is traced in part is not found.
     int64_t segments_found = 0, segments_total = 0;
-    /// Segments of the trace (cut at those nodes) that leave the truth or go over to a segment that does not begin there.
+    /// Segments of the trace (cut at those nodes) that leave the truth or go over to a segment that does not begin
+    /// there.
     int64_t wrong = 0;
     /// Segments that go along a part of the truth which another one goes along, too.
     int64_t doubled = 0;

@@ -4,7 +4,6 @@
 
 #include "engine/annotation/trace/trace_edit.h"
 #include "engine/base/error.h"
-#include "engine/components/label_forest.h"
 
 namespace shvr {
 
@@ -90,44 +89,6 @@ private:
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults)
 {
     return std::visit(Effects(trace, defaults), op);
-}
-
-TraceSummary summary_of(const TraceGraph& trace)
-{
-    TraceSummary summary{.nodes = trace.nodes().size(), .internodes = trace.internodes().size()};
-    // In arrays, since looking up a node of 100,000 in their map takes as long as all the rest of it.
-    std::vector<uint32_t> numbers;
-    std::vector<glm::dvec3> positions;
-    LabelForest parts;
-    for (const auto& [number, node] : trace.nodes()) {
-        numbers.push_back(number);
-        positions.push_back(node.position);
-        parts.add();
-    }
-    const auto place_of = [&](uint32_t number) {
-        const size_t guess = number - numbers.front();  // right where none was removed
-        if (guess < numbers.size() && numbers[guess] == number) return uint32_t(guess);
-        return uint32_t(std::ranges::lower_bound(numbers, number) - numbers.begin());
-    };
-    std::vector<uint32_t> degrees(numbers.size());
-    for (const auto& [number, internode] : trace.internodes()) {
-        const uint32_t a = place_of(internode.a), b = place_of(internode.b);
-        const double length = glm::length(positions[b] - positions[a]);
-        summary.length += length;
-        summary.group_length[internode.group] += length;
-        ++degrees[a], ++degrees[b];
-        parts.join(a, b);
-    }
-    // A segment has one internode more than nodes that it goes through; a loop without a branch has as many.
-    size_t through = 0, loops = 0;
-    std::vector<bool> is_loop(numbers.size(), true);
-    for (uint32_t i = 0; i < numbers.size(); ++i) {
-        through += degrees[i] == 2;
-        if (degrees[i] != 2) is_loop[parts.root_of(i)] = false;
-    }
-    for (uint32_t i = 0; i < numbers.size(); ++i) loops += parts.root_of(i) == i && is_loop[i];
-    summary.segments = summary.internodes - through + loops;
-    return summary;
 }
 
 }  // namespace shvr

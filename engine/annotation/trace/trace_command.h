@@ -1,6 +1,6 @@
 #pragma once
-// What an operation of a script or of the window does to a trace: records for the history, or another selection, which is
-// no step of it. Positions of operations are voxels and radii voxels along x; here they become the volume's unit. Pure;
+// Turns an operation of a script or the window into records for the history, or into another selection, which is not a
+// step of it. Operations have positions in voxels and radii in voxels along x; records have the volume's unit. Pure;
 // any thread.
 
 #include <string>
@@ -10,29 +10,20 @@
 
 namespace shvr {
 
-/// What operations leave open.
+/// For what an operation does not state.
 struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< of the volume
     double radius_voxels = 6.0;  ///< the probe's
-    uint8_t group = 1;           ///< that it paints
+    uint8_t group = 1;           ///< that the probe paints
 };
 
 struct TraceEffect {
     std::string label;                        ///< of the command: "node, group 2"
-    std::vector<TraceChange> changes;         ///< empty where all is that way already
-    std::optional<TraceSelection> selection;  ///< what is to be selected instead
+    std::vector<TraceChange> changes;         ///< empty where nothing would change
+    std::optional<TraceSelection> selection;  ///< the new selection
 };
 
-/// What cannot be done fails with a sentence, and so does what is farther away than the operation allows.
+/// Fails where the operation cannot be carried out, or its target is farther away than it allows.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
-
-/// What a panel tells of a trace.
-struct TraceSummary {
-    size_t nodes = 0, internodes = 0, segments = 0;
-    double length = 0.0;                     ///< of all internodes, in the volume's unit
-    std::map<uint8_t, double> group_length;  ///< by the internodes' groups
-};
-/// Goes through all of it: to be asked once after each change.
-TraceSummary summary_of(const TraceGraph& trace);
 
 }  // namespace shvr

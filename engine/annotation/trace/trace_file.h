@@ -1,14 +1,14 @@
 #pragma once
 // Traces in files. The extension says which form:
 //
-//   .graphml  all there is, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
+//   .graphml  everything, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
 //   .txt      the thesis's lines "-v x, y, z, group, radius" and "-l node, node, group"; nodes count from 0
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
 //   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Positions and radii are in the volume's unit, but RSML counts in pixels: we write voxels along x, and convert from other
-// units of length. The way there and back costs the last bit or two. An internode has no group of its own in SWC and RSML,
-// and only GraphML keeps numbers and the sizes of groups.
+// Positions and radii are in the volume's unit, except in RSML, which counts in pixels: written as voxels along x, and
+// converted from other units of length on reading; a round trip costs the last bit or two. An internode has no group of
+// its own in SWC and RSML, and only GraphML keeps numbers and the radii of groups.
 //
 // Files come from strangers: every refusal is one sentence with file, line or element, value and what was expected.
 // Any thread may call these.
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/annotation/trace/tracing.h"
+#include "engine/volume/volume.h"
 
 namespace shvr {
 
@@ -31,19 +32,20 @@ struct TraceSpace {
 };
 TraceSpace space_of(const VolumeInfo& volume);
 
-/// What to do with loops in a form that holds trees. Broken: of each loop the internode with the largest number is left
-/// out, so that the earliest drawn stay; which ones is said in a comment of the file and returned.
+/// What to do with loops in a form that holds trees. Broken: the internode with the largest number, the last one drawn,
+/// is left out of each loop; those left out are listed in a comment of the file and returned.
 enum class Loops { refuse, break_open };
 
-/// Written as `write_file_atomically` does. Returns a sentence for each thing that was left out.
+/// Writes as `write_file_atomically` does. Returns a sentence for each thing left out.
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
                                     Loops loops = Loops::refuse);
 
 struct TraceFile {
     TraceGraph trace;
-    std::optional<TraceSpace> space;  ///< where the file states all of it
+    std::optional<TraceSpace> space;  ///< where the file states all of this
 };
-/// At most 256 MiB and 4 million nodes. Fails where a stated size, spacing or unit (RSML: no length) is not `expected`'s.
+/// At most 256 MiB and 4 million nodes. Fails where a stated size, spacing or unit (RSML: no length) is not
+/// `expected`'s.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` knows the extension.

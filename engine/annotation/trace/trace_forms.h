@@ -1,5 +1,5 @@
 #pragma once
-// The forms that trace_file.h joins, one pair of functions each, and what they share. Text in, text out: no files.
+// The forms behind trace_file.h, one pair of functions each, and what they share. Text in, text out: no files.
 // Any thread may call these.
 
 #include <string>
@@ -24,13 +24,13 @@ struct StatedSpace {
     std::optional<std::string> unit;
 };
 
-/// Collects nodes and internodes from a file and refuses what no trace is. `where` begins every sentence.
+/// Collects nodes and internodes from a file and refuses what is not a trace. `where` begins every message.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
 
     const std::string& file() const { return file_; }
-    /// Numbered in the order they come, unless `number` says otherwise.
+    /// Numbered in order of appearance, unless `number` is given.
     uint32_t add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number = {});
     void add_internode(const std::string& where, const TraceInternode& internode, std::optional<uint32_t> number = {});
 
@@ -62,7 +62,7 @@ struct TraceTrees {
     std::vector<Place> places;         ///< depth first, roots (smallest numbers first) without an internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
-/// Fails where there are loops that are not to be broken; `form` is named ("SWC").
+/// Fails where there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
 
 }  // namespace shvr

@@ -1,9 +1,9 @@
 #pragma once
-// The nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points as they were when it was
-// built, and a list of those that changed since, which is searched one by one and stays below a 32nd of the tree. So a
-// question costs microseconds also between edits, and building costs each edit little.
+// The nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points at the time it was
+// built, and a list of those changed since, which is searched linearly and stays below a 32nd of the tree. So queries
+// between edits take microseconds, and rebuilding costs little per edit.
 //
-// One thread changes it; any number may ask meanwhile nobody does.
+// One thread changes it; any number of threads may query while nobody does.
 
 #include <cstdint>
 #include <map>
@@ -20,9 +20,9 @@ public:
     void set(uint32_t number, const glm::dvec3& position);
     void erase(uint32_t number);
 
-    /// The smallest number of those nearest. Coordinates must be finite.
+    /// The smallest number among the nearest. Coordinates must be finite.
     std::optional<uint32_t> nearest(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
-    /// All at most `distance` away, ascending.
+    /// The numbers of all points within `distance`, ascending.
     std::vector<uint32_t> within(const glm::dvec3& position, double distance) const;
 
 private:
@@ -36,9 +36,9 @@ private:
     template <class Visit>
     void search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const;
 
-    std::vector<Point> tree_;    ///< of a range, the median along its longest axis lies in the middle
-    std::vector<uint8_t> axes_;  ///< along which each splits
-    std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< since the tree was built; nothing: gone
+    std::vector<Point> tree_;    ///< in the middle of each range: the median along its longest axis
+    std::vector<uint8_t> axes_;  ///< the splitting axis of each
+    std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< since the tree was built; nothing: removed
 };
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// A trace as tubes of triangles: a ball for each node and a truncated cone for each internode, each of them closed and
-// seen from outside counter-clockwise. Vertices lie on the true surface, so that balls and cones are a little smaller
-// than what they stand for (a cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
+// A trace as tubes of triangles: a ball for each node and a truncated cone for each internode, each closed and
+// counter-clockwise seen from outside. Vertices lie on the true surface, so balls and cones are slightly too small (a
+// cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
 //
 //   .obj   a group "group_N" for each colour group; text
 //   .ply   binary; each face has the property `group`
@@ -22,10 +22,10 @@ struct TracePart {
 };
 /// Empty where the radius is 0.
 TracePart mesh_of(const TraceNode& node);
-/// Empty where it has no length or no radius.
+/// Empty where the internode has no length or no radius.
 TracePart mesh_of(const TraceGraph& trace, const TraceInternode& internode);
 
-/// Written as AtomicWriter does; group by group.
+/// Writes as AtomicWriter does, group by group.
 void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
 
 }  // namespace shvr

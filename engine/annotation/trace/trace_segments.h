@@ -1,6 +1,7 @@
 #pragma once
 // Segments of a trace: chains of internodes between two nodes that are a branch (three or more internodes) or an end
-// (one), and loops that no such node lies on. Every internode belongs to exactly one segment. Any thread may call these.
+// (one), and loops that no such node lies on. Every internode belongs to exactly one segment. Any thread may call
+// these.
 
 #include <set>
 #include <vector>
@@ -20,10 +21,10 @@ TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const 
 /// All of them, by their smallest internode. Nodes without internodes belong to none.
 std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
 
-/// What acting on the segment acts on: its internodes, and its nodes but for branches, which other segments share.
+/// What edits of the segment apply to: its internodes, and its nodes except branches, which other segments share.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
-/// The shortest way from a point to an internode.
+/// The distance of a point from an internode.
 double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
 
 }  // namespace shvr

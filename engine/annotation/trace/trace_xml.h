@@ -1,5 +1,5 @@
 #pragma once
-// For the trace_*.cpp of forms in XML.
+// What the forms in XML share.
 
 #include <string>
 #include <string_view>
@@ -13,7 +13,7 @@ struct StringWriter : pugi::xml_writer {
     void write(const void* data, size_t size) override { text.append(static_cast<const char*>(data), size); }
 };
 
-/// Without its namespace.
+/// The name without its namespace.
 inline std::string_view name_of(const pugi::xml_node& node)
 {
     const std::string_view name = node.name();

@@ -106,12 +106,12 @@ std::optional<uint32_t> TraceGraph::nearest_node(const glm::dvec3& position, std
 
 void TraceGraph::select(TraceSelection selection)
 {
-    const std::string misfits = misfit_of(TraceSelectionChange{{}, selection}, true);
-    SHVR_CHECK(misfits.empty(), misfits);
+    const std::string reason = why_not(TraceSelectionChange{{}, selection}, true);
+    SHVR_CHECK(reason.empty(), reason);
     selection_ = std::move(selection);
 }
 
-std::string TraceGraph::misfit_of(const TraceNodeChange& change, bool forwards) const
+std::string TraceGraph::why_not(const TraceNodeChange& change, bool forwards) const
 {
     const auto& [number, before, after] = change;
     const auto &from = forwards ? before : after, &to = forwards ? after : before;
@@ -123,7 +123,7 @@ std::string TraceGraph::misfit_of(const TraceNodeChange& change, bool forwards) 
     return {};
 }
 
-std::string TraceGraph::misfit_of(const TraceInternodeChange& change, bool forwards) const
+std::string TraceGraph::why_not(const TraceInternodeChange& change, bool forwards) const
 {
     const auto& [number, before, after] = change;
     const auto &from = forwards ? before : after, &to = forwards ? after : before;
@@ -140,7 +140,7 @@ std::string TraceGraph::misfit_of(const TraceInternodeChange& change, bool forwa
     return {};
 }
 
-std::string TraceGraph::misfit_of(const TraceSizeChange& change, bool forwards) const
+std::string TraceGraph::why_not(const TraceSizeChange& change, bool forwards) const
 {
     const auto &from = forwards ? change.before : change.after, &to = forwards ? change.after : change.before;
     const auto found = internode_radii_.find(change.group);
@@ -149,7 +149,7 @@ std::string TraceGraph::misfit_of(const TraceSizeChange& change, bool forwards) 
     return sentence("the size of group ", int(change.group), " is not what the record says");
 }
 
-std::string TraceGraph::misfit_of(const TraceSelectionChange& change, bool forwards) const
+std::string TraceGraph::why_not(const TraceSelectionChange& change, bool forwards) const
 {
     const TraceSelection& to = forwards ? change.after : change.before;
     for (const uint32_t number : to.nodes)
@@ -159,17 +159,20 @@ std::string TraceGraph::misfit_of(const TraceSelectionChange& change, bool forwa
     return {};
 }
 
-std::string TraceGraph::misfit(const TraceChange& change, Direction direction) const
+std::string TraceGraph::why_it_does_not_fit(const TraceChange& change, Direction direction) const
 {
-    return std::visit([&](const auto& record) { return misfit_of(record, direction == Direction::forwards); }, change);
+    return std::visit([&](const auto& record) { return why_not(record, direction == Direction::forwards); }, change);
 }
 
 void TraceGraph::set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to)
 {
     if (to) {
-        nodes_[number] = *to;
         next_node_ = std::max(next_node_, uint64_t{number} + 1);
-        if (!from || from->position != to->position) index_.set(number, to->position);
+        const bool moves = !from || from->position != to->position;
+        if (moves) tally_.before_move(*this, number);
+        nodes_[number] = *to;
+        if (moves) tally_.after_move(*this, number);
+        if (moves) index_.set(number, to->position);
         return;
     }
     nodes_.erase(number);
@@ -181,8 +184,12 @@ void TraceGraph::set_internode(uint32_t number, const std::optional<TraceInterno
                                const std::optional<TraceInternode>& to)
 {
     if (from && to) {
+        tally_.change_group(*this, *from, *to);
         internodes_[number] = *to;
-    } else if (to) {
+        return;
+    }
+    tally_.before_link(*this, from ? *from : *to, from.has_value());
+    if (to) {
         internodes_[number] = *to;
         for (const uint32_t end : {to->a, to->b}) keep(internodes_of_[end], number);
         next_internode_ = std::max(next_internode_, uint64_t{number} + 1);
@@ -194,12 +201,13 @@ void TraceGraph::set_internode(uint32_t number, const std::optional<TraceInterno
         internodes_.erase(number);
         if (holds(selection_.internodes, number)) selection_ = {};
     }
+    tally_.after_link(*this, to ? *to : *from, to.has_value());
 }
 
 void TraceGraph::apply(const TraceChange& change, Direction direction)
 {
-    const std::string misfits = misfit(change, direction);
-    SHVR_CHECK(misfits.empty(), misfits);
+    const std::string reason = why_it_does_not_fit(change, direction);
+    SHVR_CHECK(reason.empty(), reason);
     const bool forwards = direction == Direction::forwards;
     std::visit(
         [&](const auto& record) {

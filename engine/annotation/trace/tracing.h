@@ -2,9 +2,9 @@
 // The trace: a graph of nodes along the centre lines of tubes and of internodes that join two of them. Loops are
 // allowed; a node joined to itself, or two nodes joined twice, are not. Positions and radii are in volume space
 // (physical, the volume's unit). Like the mask, the trace changes through records of exact before and after values and
-// through nothing else. What is selected is not annotation and needs no record, but commands may carry it.
+// through nothing else. The selection is not annotation and needs no record, but commands may carry it.
 //
-// Numbers of nodes and internodes are given once and never again, not even after an undo.
+// Numbers of nodes and internodes are never reused, not even after an undo.
 //
 // Not thread safe: one thread owns a trace (the main one) and lends it as const.
 
@@ -18,8 +18,9 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/annotation/mask.h"
+#include "engine/annotation/direction.h"
 #include "engine/annotation/trace/trace_index.h"
+#include "engine/annotation/trace/trace_tally.h"
 
 namespace shvr {
 
@@ -42,7 +43,7 @@ struct TraceSelection {
     std::vector<uint32_t> nodes, internodes;
     bool operator==(const TraceSelection&) const = default;
     bool empty() const { return nodes.empty() && internodes.empty(); }
-    /// The node, where exactly one and nothing else is selected.
+    /// The node, where exactly one node and nothing else is selected.
     std::optional<uint32_t> node() const;
     std::optional<uint32_t> internode() const;
 };
@@ -53,20 +54,20 @@ struct TraceNodeChange {
     std::optional<TraceNode> before, after;
     bool operator==(const TraceNodeChange&) const = default;
 };
-/// The same; what stays keeps its nodes.
+/// The same; an internode that is only changed keeps its nodes.
 struct TraceInternodeChange {
     uint32_t internode = 0;
     std::optional<TraceInternode> before, after;
     bool operator==(const TraceInternodeChange&) const = default;
 };
-/// The radius of all internodes of a group; nothing: they taper from node to node.
+/// The radius of all internodes of a group; without one they taper from node to node.
 struct TraceSizeChange {
     uint8_t group = 0;
     std::optional<double> before, after;
     bool operator==(const TraceSizeChange&) const = default;
 };
-/// Selects without asking what is selected. A command that changes the selection begins with one whose `after` is empty
-/// and ends with one whose `before` is: in both directions nothing is selected that is not there.
+/// Replaces the selection, whatever it is. A command that changes the selection begins with one whose `after` is empty
+/// and ends with one whose `before` is, so that in both directions nothing is selected that does not exist.
 struct TraceSelectionChange {
     TraceSelection before, after;
     bool operator==(const TraceSelectionChange&) const = default;
@@ -84,36 +85,40 @@ public:
     std::span<const uint32_t> internodes_of(uint32_t node) const;
     std::optional<uint32_t> internode_between(uint32_t a, uint32_t b) const;
     double length_of(const TraceInternode& internode) const;
-    /// At the share `t` (0 ... 1) of the way from a to b.
+    /// At the fraction `t` (0 ... 1) of the way from a to b.
     double radius_of(const TraceInternode& internode, double t) const;
 
-    /// The numbers that come next: larger than any that was ever applied.
+    /// The next numbers: larger than any ever applied.
     uint64_t next_node() const { return next_node_; }
     uint64_t next_internode() const { return next_internode_; }
-    /// Passes over numbers below these; what a file remembers of nodes that are gone.
+    /// Never uses numbers below these, which a file states because of nodes that were deleted.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
-    /// The node nearest to a position; the smallest number of several equally near. Nothing where there is none.
+    /// The node nearest to a position, the smallest number of several; nothing where there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
+    /// Numbers, lengths and segments; kept up to date, so it costs little at any size.
+    TraceSummary summary() const { return tally_.summary_of(*this); }
+
     const TraceSelection& selection() const { return selection_; }
-    /// What is selected must be there (SHVR_CHECK).
+    /// What is selected must exist (SHVR_CHECK).
     void select(TraceSelection selection);
 
-    /// Why a record cannot be applied: the trace must hold what it says, a removed node has no internodes, an internode
-    /// joins two nodes that are there and not joined yet, what is selected is there. Empty where it fits.
-    std::string misfit(const TraceChange& change, Direction direction) const;
-    /// Applies a record that fits (SHVR_CHECK). What is removed is no longer selected.
+    /// Why a record cannot be applied: the trace must match its before values, a removed node must have no internodes,
+    /// an internode must join two existing nodes that are not joined yet, and what is selected must exist. Empty where
+    /// it fits.
+    std::string why_it_does_not_fit(const TraceChange& change, Direction direction) const;
+    /// Applies a record that fits (SHVR_CHECK). Deselects what it removes.
     void apply(const TraceChange& change, Direction direction);
 
-    /// Equal nodes, internodes and sizes; neither the selection nor the numbers to come.
+    /// Compares nodes, internodes and radii, but neither the selection nor the next numbers.
     friend bool operator==(const TraceGraph& left, const TraceGraph& right);
 
 private:
-    std::string misfit_of(const TraceNodeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceInternodeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceSizeChange& change, bool forwards) const;
-    std::string misfit_of(const TraceSelectionChange& change, bool forwards) const;
+    std::string why_not(const TraceNodeChange& change, bool forwards) const;
+    std::string why_not(const TraceInternodeChange& change, bool forwards) const;
+    std::string why_not(const TraceSizeChange& change, bool forwards) const;
+    std::string why_not(const TraceSelectionChange& change, bool forwards) const;
     void set_node(uint32_t number, const std::optional<TraceNode>& from, const std::optional<TraceNode>& to);
     void set_internode(uint32_t number, const std::optional<TraceInternode>& from,
                        const std::optional<TraceInternode>& to);
@@ -125,6 +130,7 @@ private:
     uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
     TraceSelection selection_;
     TraceIndex index_;
+    TraceTally tally_;
 };
 
 }  // namespace shvr

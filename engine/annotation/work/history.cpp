@@ -6,66 +6,6 @@
 
 namespace shvr {
 
-namespace {
-
-/// The part of the document that a kind of change is about.
-Mask& part_for(Document& document, const MaskBrickChange&)
-{
-    return document.mask;
-}
-DensityField& part_for(Document& document, const DensityBrickChange&)
-{
-    return document.density;
-}
-TraceGraph& part_for(Document& document, const TraceChange&)
-{
-    return document.trace;
-}
-
-Direction opposite(Direction direction)
-{
-    return direction == Direction::forwards ? Direction::backwards : Direction::forwards;
-}
-
-/// The i-th change to be applied.
-const Change& in_order(std::span<const Change> changes, size_t i, Direction direction)
-{
-    return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
-}
-
-}  // namespace
-
-void apply(Document& document, const Change& change, Direction direction)
-{
-    std::visit([&](const auto& record) { part_for(document, record).apply(record, direction); }, change);
-}
-
-void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
-{
-    for (size_t i = 0; i < changes.size(); ++i) {
-        const Change& change = in_order(changes, i, direction);
-        const std::string misfit = std::visit(
-            [&](const auto& record) { return part_for(document, record).misfit(record, direction); }, change);
-        if (misfit.empty()) {
-            apply(document, change, direction);
-            continue;
-        }
-        while (i > 0) apply(document, in_order(changes, --i, direction), opposite(direction));
-        fail(misfit);
-    }
-}
-
-uint64_t memory_of(std::span<const Change> changes)
-{
-    uint64_t bytes = changes.size_bytes();
-    for (const Change& change : changes) {
-        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) bytes += mask->runs.size() * sizeof(MaskRun);
-        if (const auto* density = std::get_if<DensityBrickChange>(&change))
-            bytes += density->runs.size() * sizeof(DensityRun);
-    }
-    return bytes;
-}
-
 void History::push(Entry entry)
 {
     while (commands_.size() > done_) {
@@ -77,13 +17,14 @@ void History::push(Entry entry)
     commands_.push_back(std::move(entry));
 }
 
-void History::perform(Document& document, Command command, RecordNumber record)
+const Command* History::perform(Document& document, Command command, RecordNumber record)
 {
-    if (command.changes.empty()) return;
+    if (command.changes.empty()) return nullptr;
     for (const Change& change : command.changes) apply(document, change, Direction::forwards);
     const uint64_t memory = memory_of(command.changes);
     push({std::move(command), {record}, memory});
     ++done_;
+    return &commands_.back().command;
 }
 
 void History::extend(Document& document, std::vector<Change> changes, RecordNumber record)
@@ -160,7 +101,7 @@ void History::bring(Entry& entry)
 
 void History::shrink(uint64_t most_bytes, RecordNumber durable)
 {
-    // The command done last may go on, and its caller may look at it.
+    // The last command may be extended, and its caller may still read it.
     for (; memory_ > most_bytes && dropped_ + 1 < done_; ++dropped_) {
         Entry& entry = commands_[dropped_];
         if (entry.records.back() == 0 || entry.records.back() > durable) return;

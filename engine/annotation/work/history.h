@@ -1,54 +1,16 @@
 #pragma once
-// One history for everything a person does. A command is a label and a list of change records, each of which holds
-// exact before and after; undo and redo are one loop over the records and know nothing of tools. A new tool makes new
-// command contents, never new undo code; a new kind of annotation adds one alternative to `Change`.
+// One history for everything a person does. Undo and redo are one loop over the records of a command and know nothing
+// of tools: a new tool makes new command contents, never new undo code.
 //
 // Commands that the journal holds can be dropped from memory, the oldest first; undoing one fetches it again.
 //
 // Not thread safe: the main thread owns it.
 
-#include <cstdint>
 #include <functional>
-#include <iterator>
-#include <span>
-#include <string>
-#include <variant>
-#include <vector>
 
-#include "engine/annotation/density.h"
-#include "engine/annotation/mask.h"
-#include "engine/annotation/trace/tracing.h"
+#include "engine/annotation/work/change.h"
 
 namespace shvr {
-
-/// Everything that is annotated. Nothing but `apply` changes it.
-struct Document {
-    Mask mask;
-    TraceGraph trace;
-    DensityField density{};
-};
-
-using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange>;
-
-/// Records of one kind, as a command takes them.
-template <class Record>
-std::vector<Change> as_changes(std::vector<Record> records)
-{
-    return {std::make_move_iterator(records.begin()), std::make_move_iterator(records.end())};
-}
-
-struct Command {
-    std::string label;  ///< what the status bar says: "flood fill, group 3"
-    std::vector<Change> changes;
-};
-
-/// A record that does not fit is our mistake (SHVR_CHECK).
-void apply(Document& document, const Change& change, Direction direction);
-/// All of them in order, or in reverse order backwards. For records from files: fails with the reason where one does not
-/// fit, and then the document is as it was.
-void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
-/// Memory that they take, about.
-uint64_t memory_of(std::span<const Change> changes);
 
 /// The number of a record in the journal.
 using RecordNumber = uint64_t;
@@ -58,17 +20,17 @@ public:
     /// What the journal holds of a record; fails where it cannot be read.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
-    /// Applies the command and records it; what had been undone is dropped. A command without changes is not recorded.
-    /// `record`: where the journal has it.
-    void perform(Document& document, Command command, RecordNumber record = 0);
-    /// Applies `changes` and adds them to the command performed last, of which nothing was undone since: a stroke goes on.
+    /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the
+    /// history changes; null where it has no changes and is not recorded. `record`: where the journal has it.
+    const Command* perform(Document& document, Command command, RecordNumber record = 0);
+    /// Applies `changes` and adds them to the last command, after which nothing was undone: a stroke continues.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
-    /// The command undone or redone, or null where there is none. Fails where it had been dropped and cannot be fetched or
-    /// does not fit; then nothing has changed.
+    /// The command undone or redone, or null where there is none. Fails, changing nothing, where it was dropped and
+    /// cannot be fetched or does not fit.
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// What happened to a document whose end is known: the same four without one, and without the changes.
+    /// Replays the same four for a document whose final state is known, without document and changes.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();
@@ -79,8 +41,8 @@ public:
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops changes of the oldest commands until at most `most_bytes` are left, of those whose records are at most
-    /// `durable`: the journal has them for sure.
+    /// Drops changes of the oldest commands until at most `most_bytes` are left; only of commands whose records, at
+    /// most `durable`, the journal has on disk.
     void shrink(uint64_t most_bytes, RecordNumber durable);
 
 private:

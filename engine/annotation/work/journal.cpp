@@ -46,7 +46,7 @@ FileDescriptor opened(const fs::path& path)
 {
     FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666));
     if (!file) fail(path.string(), ": cannot be written: ", reason_of(errno));
-    // Some network file systems know no locks.
+    // Some network file systems have no locks.
     if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw JournalTaken(sentence(path.string(), ": another process annotates this; expected to be the only one"));
     return file;
@@ -142,7 +142,7 @@ void Journal::flush()
     std::unique_lock lock(mutex_);
     const RecordNumber target = last_;
     if (records_.size() >= target) return;
-    // A try that runs already may have begun without what was appended last.
+    // An attempt in progress may have begun before the last record was appended.
     const uint64_t enough = tries_ + 2;
     ++flushing_;
     appended_.notify_all();
@@ -236,7 +236,7 @@ void Journal::write()
             }
         }
         if (!failure.empty()) {
-            // Half a record would be in the way of readers, and what could not be synced may not be there.
+            // Half a record would stop readers, and what could not be synced may be missing.
             static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
             written = 0;
             written_bytes = 0;

@@ -1,14 +1,14 @@
 #pragma once
-// The journal: every command of a person, appended to a file as it happens. A thread of its own writes what was appended
-// at once (a killed program loses what came in the last milliseconds) and syncs it at most every 100 ms (a power cut loses
-// no more than that and the time the disk takes).
+// The journal: every command of a person, appended to a file as it happens. The journal's thread writes at once (a
+// killed program loses the last milliseconds) and syncs at most every 100 ms (a power cut loses no more than that and
+// the time the disk takes).
 //
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
-// While the disk refuses, nothing is lost and nobody waits: what was appended stays in memory, `failure` says why, and it
-// is tried again every second. One journal is written by one process: it holds a lock on the file, which ends with it.
+// While the disk refuses, nothing is lost and nobody waits: records stay in memory, `failure` says why, and writing is
+// retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
 //
-// One thread appends; any may ask.
+// One thread appends; any thread may query.
 
 #include <condition_variable>
 #include <deque>
@@ -21,7 +21,7 @@
 
 namespace shvr {
 
-/// Somebody else writes the journal, or has written it since it was read.
+/// Another process writes the journal, or has written it since it was read.
 class JournalTaken : public Error {
 public:
     using Error::Error;
@@ -29,27 +29,27 @@ public:
 
 class Journal {
 public:
-    /// Goes on after the prefix that `before` found; what comes after that is kept as JOURNAL.rest1, .rest2 and so on. Fails
-    /// where the file cannot be made or written, with JournalTaken where it is another's.
+    /// Continues after the prefix that `before` found; what follows it is kept as JOURNAL.rest1, .rest2 and so on.
+    /// Fails where the file cannot be created or written, with JournalTaken where another process has it.
     Journal(const std::filesystem::path& path, JournalScan before);
-    /// Tries to write what is left.
+    /// Tries to write what is still queued.
     ~Journal();
     Journal(const Journal&) = delete;
 
     /// Fails where the content is larger than MOST_RECORD_BYTES.
     RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
-    /// The number of the record that was appended last.
+    /// The number of the last record appended.
     RecordNumber last() const;
-    /// Waits until all that was appended is on the disk; fails with the reason why it is not.
+    /// Waits until everything appended is on disk; fails with the reason where that is not possible.
     void flush();
-    /// All records up to this one are on the disk.
+    /// All records up to this one are on disk.
     RecordNumber durable() const;
     /// Why nothing can be written at present; empty where it can.
     std::string failure() const;
-    /// Of the file, with what waits for it (uncompressed).
+    /// Size of the file, including what is queued (uncompressed).
     uint64_t bytes() const;
 
-    /// A durable record's.
+    /// The content of a durable record.
     std::vector<std::byte> read(RecordNumber number) const;
 
 private:
@@ -59,9 +59,9 @@ private:
         bool is_framed = false;
     };
     void write();
-    /// Those that wait, from the first that is not framed on, get their frames.
+    /// Frames the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
-    /// Empty where all went well.
+    /// Returns why it failed; empty where it did not.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
 

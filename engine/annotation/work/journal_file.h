@@ -1,12 +1,12 @@
 #pragma once
-// The journal's file: 16 bytes ("SHVRJRNL", a version, zeros), then records without end, each of
+// The journal's file: 16 bytes ("SHVRJRNL", a version, zeros), then any number of records, each of
 //
 //     kind 4 | flags 2 | label's length 2 | stored length 8 | length 8 | about 8 | checksum 8 | label | content
 //
-// little-endian. Flag 1: the content is a zstd frame. The checksum is XXH3-64 of all of the record but itself, seeded with
-// the checksum of the record before, so that records hold in their order or not at all. What a reader takes is the longest
-// prefix that holds. Kinds from 128 on are additions that a reader may pass over; an unknown kind below is a newer
-// program's, and refused. A record's number is its place in the file, from 1.
+// little-endian. Flag 1: the content is a zstd frame. The checksum is XXH3-64 of the whole record but itself, seeded
+// with the checksum of the record before, so that records are valid in their order or not at all. Readers take the
+// longest valid prefix. Kinds from 128 on are additions that readers may skip; an unknown kind below that is from a
+// newer program, and refused. A record's number is its place in the file, from 1.
 //
 // Any thread may call these.
 
@@ -26,10 +26,10 @@ enum class RecordKind : uint32_t {
     subject = 1,  ///< JournalSubject; the first record of every journal, and nowhere else
     state,        ///< the whole document after record `about`
     command,      ///< label, changes
-    extension,    ///< changes that go on with the command before
+    extension,    ///< changes that continue the command before
     undo,
     redo,
-    saving,  ///< from here on the saved files may be those before or those after
+    saving,  ///< from here on each saved file may be the old or the new one
     saved,   ///< SavedFiles
 };
 constexpr uint32_t FIRST_ADDITION = 128;
@@ -45,23 +45,23 @@ struct JournalRecord {
     uint64_t checksum = 0;
 };
 
-/// What a file holds of a journal: nothing, where there is no file.
+/// What could be read of a journal: nothing where there is no file.
 struct JournalScan {
     std::vector<JournalRecord> records;
-    uint64_t end = 0;         ///< of the prefix that holds
-    uint64_t file_bytes = 0;  ///< with what comes after it
+    uint64_t end = 0;         ///< of the valid prefix
+    uint64_t file_bytes = 0;  ///< including what follows
     uint64_t inode = 0;       ///< 0: there is no file
 
     /// Of the last record; 0 where there is none.
     uint64_t checksum() const { return records.empty() ? 0 : records.back().checksum; }
-    /// Keeps the first so many records.
+    /// Keeps only the first records.
     void cut(size_t count);
 };
 
-/// More than a machine of this size paints at once; a claim of more is refused before memory is taken.
+/// More than any single command paints; larger claims are refused before memory is allocated.
 constexpr uint64_t MOST_RECORD_BYTES = uint64_t{1} << 30;
 
-/// Fails where the file is no journal, or a newer program's, or cannot be read.
+/// Fails where the file is not a journal, is from a newer program, or cannot be read.
 JournalScan scan_journal(const std::filesystem::path& path);
 
 /// The content of a record. Fails where the file no longer holds it.
@@ -70,7 +70,7 @@ std::vector<std::byte> content_of(const JournalRecord& record, const FileDescrip
 
 /// The 16 bytes.
 std::vector<std::byte> journal_header();
-/// A record's bytes. `checksum`: of the record before; becomes this one's. Fills in what `record` does not know.
+/// A record's bytes. `checksum`: of the record before; becomes this record's. Completes `record`.
 std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> content, uint64_t& checksum);
 
 /// XXH3-64 of a file's bytes, or of all files of a folder with their names; nothing where there is none.

@@ -147,9 +147,9 @@ BrickChange read_brick(Reader& in)
     change.runs.resize(in.count(4));
     uint64_t free_from = 0;
     for (auto& run : change.runs) {
-        const uint64_t first = free_from + in.whole(MASK_BRICK_VOXELS);
-        const uint64_t last = first + in.whole(MASK_BRICK_VOXELS);
-        if (last >= MASK_BRICK_VOXELS) fail("a run ends at ", last, "; expected below ", MASK_BRICK_VOXELS);
+        const uint64_t first = free_from + in.whole(VOXELS_PER_BRICK);
+        const uint64_t last = first + in.whole(VOXELS_PER_BRICK);
+        if (last >= VOXELS_PER_BRICK) fail("a run ends at ", last, "; expected below ", VOXELS_PER_BRICK);
         run.first = uint16_t(first);
         run.last = uint16_t(last);
         read(in, run);
@@ -312,14 +312,14 @@ Change read_change(Reader& in)
     fail("a change is of kind ", int(tag), "; expected 1 to 6");
 }
 
-template <class Brick, class Run>
-void append_runs(std::vector<Run>& runs, const Brick& brick)
+/// The records that paint all that is there.
+template <class Value>
+void write_bricks(const ChangeWriter& change, const SparseBricks<Value>& bricks)
 {
-    for (size_t first = 0; first < brick.size();) {
-        size_t end = first + 1;
-        while (end < brick.size() && brick[end] == brick[first]) ++end;
-        if (brick[first] != 0) runs.push_back({uint16_t(first), uint16_t(end - 1), 0, brick[first]});
-        first = end;
+    for (const int64_t index : bricks.painted_bricks()) {
+        BrickChange<Value> record{index, {}};
+        append_painted_runs(record.runs, *bricks.brick(index), 0);
+        change(record);
     }
 }
 
@@ -391,16 +391,8 @@ std::vector<std::byte> bytes_of(const Document& document)
     out.whole(document.trace.next_node());
     out.whole(document.trace.next_internode());
     const ChangeWriter change(out);
-    for (const int64_t brick : document.mask.painted_bricks()) {
-        MaskBrickChange record{brick, {}};
-        append_runs(record.runs, *document.mask.brick(brick));
-        change(record);
-    }
-    for (const int64_t brick : document.density.painted_bricks()) {
-        DensityBrickChange record{brick, {}};
-        append_runs(record.runs, *document.density.brick(brick));
-        change(record);
-    }
+    write_bricks(change, document.mask);
+    write_bricks(change, document.density);
     const TraceGraph& trace = document.trace;
     for (const auto& [number, node] : trace.nodes()) change(TraceNodeChange{number, {}, node});
     for (const auto& [number, internode] : trace.internodes()) change(TraceInternodeChange{number, {}, internode});

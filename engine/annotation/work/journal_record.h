@@ -1,9 +1,9 @@
 #pragma once
-// What the journal holds, as bytes: numbers little-endian, whole ones in groups of 7 bits with the lowest first (LEB128),
-// doubles as their bits. Any thread may call these.
+// What the journal holds, as bytes: numbers little-endian, whole ones in groups of 7 bits with the lowest first
+// (LEB128), doubles as their bits. Any thread may call these.
 //
-// Reading trusts nothing: lengths are checked against the bytes that are there before memory is taken, and what comes out
-// may still not fit a document (Mask::misfit and its like say so).
+// Reading trusts nothing: lengths are checked against the bytes present before memory is allocated, and the result may
+// still not fit a document (Mask::why_it_does_not_fit and the same of other kinds).
 
 #include <cstddef>
 #include <optional>
@@ -17,11 +17,11 @@
 
 namespace shvr {
 
-/// What is annotated. Two scans of one size differ in `image`.
+/// Which volume is annotated. Two scans of the same size differ in `image`.
 struct JournalSubject {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    std::string image{};  ///< the volume's content hash; empty where nobody has gone through it
+    std::string image{};  ///< the volume's content hash; empty where it was never computed
     bool operator==(const JournalSubject&) const = default;
 };
 
@@ -34,14 +34,14 @@ struct SavedFiles {
 std::vector<std::byte> bytes_of(const JournalSubject& subject);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
-/// All of the document, as what leads to it from nothing, and the trace's numbers to come.
+/// The whole document, as the changes that make it from nothing, and the next numbers of the trace.
 std::vector<std::byte> bytes_of(const Document& document);
 
-/// Fail with what is wrong, without a file's name.
+/// Fail with what is wrong, without the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);
-/// `empty`: a document of the same volume without anything in it.
+/// `empty`: an empty document of the same volume.
 Document document_of(std::span<const std::byte> bytes, Document empty);
 
 }  // namespace shvr

@@ -1,13 +1,14 @@
 #include "engine/annotation/work/paint_preview.h"
-#include "engine/volume/grid.h"
 
 #include <algorithm>
+
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
 namespace {
 
-/// Calls `row(first, end)` for each piece of a row of voxels in a run, which may go over several rows of its brick.
+/// Calls `row(first voxel, count)` for each row, or part of one, in a run, which may span several rows of its brick.
 template <class Run, class Row>
 void for_each_row(const Run& run, const Size3& brick_begin, const Row& row)
 {
@@ -22,15 +23,17 @@ void for_each_row(const Run& run, const Size3& brick_begin, const Row& row)
 template <class Row>
 void for_each_row(std::span<const Change> changes, const Size3& volume_size, const Row& row)
 {
-    const Size3 counts = (volume_size + int64_t{gpu::BRICK_SIZE - 1}) / int64_t{gpu::BRICK_SIZE};
-    const auto visit = [&](int64_t brick, const auto& runs) {
-        const Size3 begin = int64_t{gpu::BRICK_SIZE} * position_of(brick, counts);
-        for (const auto& run : runs) for_each_row(run, begin, row);
+    const Size3 counts = brick_grid(volume_size);
+    const auto for_brick = [&](const auto& brick) {
+        const Size3 begin = BRICK_SIDE * position_of(brick.brick, counts);
+        for (const auto& run : brick.runs) for_each_row(run, begin, row);
     };
-    for (const Change& change : changes) {
-        if (const auto* mask = std::get_if<MaskBrickChange>(&change)) visit(mask->brick, mask->runs);
-        if (const auto* density = std::get_if<DensityBrickChange>(&change)) visit(density->brick, density->runs);
-    }
+    const ByKind voxels{
+        [&](const MaskBrickChange& mask) { for_brick(mask); },
+        [&](const DensityBrickChange& density) { for_brick(density); },
+        [](const TraceChange&) {},
+    };
+    for (const Change& change : changes) std::visit(voxels, change);
 }
 
 }  // namespace

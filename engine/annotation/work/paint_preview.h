@@ -1,17 +1,17 @@
 #pragma once
-// What a brush would change if its button were pressed now, as bits of the box around those voxels: the set that is drawn
-// before anything is painted. Pure; any thread.
+// The voxels that a brush would change if it painted now, as bits of the box around them; drawn before anything is
+// painted. Pure; any thread.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "engine/annotation/work/history.h"
+#include "engine/annotation/work/change.h"
 
 namespace shvr {
 
 struct PaintPreview {
-    VoxelBox box;  ///< the smallest that holds them; empty where there are none
+    VoxelBox box;  ///< the smallest around the voxels; empty where there are none
     std::vector<uint32_t>
         words;           ///< rows of words_per_row(), y next, z last; bit b of word w is x = lower.x + 32 w + b
     int64_t voxels = 0;  ///< how many there are; at most 256^3, as in a brush's region

@@ -1,6 +1,6 @@
 #pragma once
-// Scripts of `shvr annotate`: one JSON object a line, blank lines and lines starting with // are skipped. The same
-// structs are what the window sends, so that keys, menus, scripts and a stylus share one language.
+// Scripts of `shvr annotate`: one JSON object a line; blank lines and lines that start with // are skipped. The window
+// sends the same structs, so keys, menus, scripts and a stylus share one language.
 
 #include <filesystem>
 #include <map>

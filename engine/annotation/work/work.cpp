@@ -150,13 +150,13 @@ bool Work::files_are_as_saved() const
 {
     for (RecordNumber number = scan_.records.size(); number > 0; --number) {
         const RecordKind kind = scan_.records[number - 1].kind;
-        // A save that came to no end may have left either.
+        // An interrupted save may have left old files or new ones.
         if (kind == RecordKind::saving) return true;
         if (kind != RecordKind::saved) continue;
         try {
             return saved_files_of(content_of(number)) == digests();
         } catch (const Error&) {
-            return true;  // damage, which replaying says
+            return true;  // damage, which replaying reports
         }
     }
     return true;
@@ -170,7 +170,7 @@ SavedFiles Work::digests() const
 void Work::load_files()
 {
     if (is_there(files_.mask)) {
-        // A mask of another size is of another image as well, and the size says more.
+        // A mask of another size is of another image too, and the size is the better message.
         const std::vector<MaskBrickChange> changes = import_mask(files_.mask, space_of(files_.volume));
         check_mask_image(files_.mask, files_.volume_hash);
         for (const MaskBrickChange& change : changes) document_.mask.apply(change, Direction::forwards);
@@ -261,7 +261,7 @@ void Work::begin_journal()
     scanned_.reset();
     if (!is_new) return;
     journal_->append(RecordKind::subject, {}, bytes_of(JournalSubject{size_, type_, files_.volume_hash}));
-    // Without it, the journal would be nothing without the files.
+    // So that the journal can be read without the files.
     std::vector<std::byte> state = bytes_of(document_);
     state_bytes_ = state.size();
     journal_->append(RecordKind::state, {}, std::move(state), 1);
@@ -271,7 +271,7 @@ void Work::begin_journal()
 void Work::set_journal_aside()
 {
     {
-        // Not under the feet of who writes it.
+        // Never while another process writes it.
         const Journal nobody_else(files_.journal, scan_);
     }
     scanned_.reset();
@@ -293,10 +293,12 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
 
 void Work::touch(std::span<const Change> changes)
 {
-    for (const Change& change : changes) {
-        touched_.trace = touched_.trace || std::holds_alternative<TraceChange>(change);
-        touched_.density = touched_.density || std::holds_alternative<DensityBrickChange>(change);
-    }
+    const ByKind touch{
+        [](const MaskBrickChange&) {},  // the mask is written at every save
+        [&](const TraceChange&) { touched_.trace = true; },
+        [&](const DensityBrickChange&) { touched_.density = true; },
+    };
+    for (const Change& change : changes) std::visit(touch, change);
 }
 
 void Work::note_step()
@@ -305,15 +307,16 @@ void Work::note_step()
     history_.shrink(limits_.history_bytes, journal_ ? journal_->durable() : 0);
 }
 
-void Work::perform(Command command)
+const Command* Work::perform(Command command)
 {
-    if (command.changes.empty()) return;
+    if (command.changes.empty()) return nullptr;
     begin_journal();
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     touch(command.changes);
-    history_.perform(document_, std::move(command), number);
+    const Command* const performed = history_.perform(document_, std::move(command), number);
     ++unsaved_;
     note_step();
+    return performed;
 }
 
 void Work::extend(std::vector<Change> changes)
@@ -354,7 +357,7 @@ void Work::keep_state()
         if (state_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         std::vector<std::byte> state = state_.get();
         state_bytes_ = state.size();
-        // Larger, the journal does without.
+        // The journal does without larger ones.
         if (state.size() <= MOST_RECORD_BYTES) journal_->append(RecordKind::state, {}, std::move(state), state_about_);
         return;
     }
@@ -397,7 +400,7 @@ std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }
-    // A trace that was there and is empty now is saved as such; one that never was makes no file.
+    // A trace that has become empty is saved as such; one that was never there makes no file.
     const auto is_to_write = [](bool is_touched, bool has_any, const fs::path& path) {
         return is_there(path) ? is_touched : has_any;
     };

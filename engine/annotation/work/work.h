@@ -1,10 +1,10 @@
 #pragma once
 // A person's work: the document, its history, the journal that keeps both, and the files it is saved to.
 //
-// The journal is the truth between sessions. Opening replays it: the last whole state in it, and what came after; so the
-// history goes on where it ended, and what was never saved is there, too. Saved files (mask, trace, offsets) are what
-// other programs read; they are taken only where there is no journal, or where somebody else has changed them since, and
-// then the journal is set aside, not removed. The journal begins with the first command: who only looks leaves no file.
+// The journal is the truth between sessions. Opening replays it from its last complete state, so the history continues
+// where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs; they are
+// loaded only where there is no journal, or where another program has changed them since, and then the journal is set
+// aside, not removed. The journal begins with the first command: only looking leaves no file.
 //
 // One thread, the main one. Only writing the journal happens elsewhere (journal.h).
 
@@ -22,7 +22,7 @@
 namespace shvr {
 
 struct WorkFiles {
-    std::filesystem::path journal{};                   ///< empty: what is done is in memory alone
+    std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
     VolumeInfo volume{};                               ///< what is annotated
@@ -30,56 +30,55 @@ struct WorkFiles {
 
 class Work {
 public:
-    /// Nothing is done yet, and nothing will be kept.
+    /// An empty document, without files.
     Work(const Size3& size, VoxelType type);
     ~Work();
-    Work(const Work&) = delete;  // its history asks it for what the journal holds
+    Work(const Work&) = delete;  // its history holds a pointer to it
 
     enum class Start {
-        as_left,  ///< what the journal, or the saved files, hold
-        fresh,    ///< nothing; the journal there is set aside at the first command
+        as_left,  ///< with what the journal, or the saved files, hold
+        fresh,    ///< empty; an existing journal is set aside at the first command
     };
-    /// For a Work without commands. Returns a sentence for each thing worth knowing: work that was not saved, a damaged end
-    /// of the journal, files that others have changed. Fails where a file is of another volume, or is not what it should
-    /// be; then nothing was taken.
+    /// For a Work without commands. Returns messages for the user: unsaved work, a damaged end of the journal, files
+    /// that other programs have changed. Fails, loading nothing, where a file is of another volume or malformed.
     std::vector<std::string> open(const WorkFiles& files, Start start = Start::as_left);
 
     const Document& document() const { return document_; }
     const History& history() const { return history_; }
 
-    /// As History's; into the journal first. Fail, with nothing done, where the journal cannot be begun, is another's, or
-    /// does not take the command.
-    void perform(Command command);
+    /// As History's, but written to the journal first. Fail, with nothing done, where the journal cannot be started, is
+    /// locked by another process, or does not accept the command.
+    const Command* perform(Command command);
     void extend(std::vector<Change> changes);
     const Command* undo();
     const Command* redo();
-    /// No step of the history. What is selected must be there.
+    /// Not a step of the history. What is selected must exist.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each whole or not at all, and notes it in the journal; a label image gets the groups' `looks`. What has
-    /// not changed, of trace and offsets, is left as it is. Fails where one cannot be written (a second try may succeed), and
+    /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
+    /// and offsets are written only if they have changed. Fails where one cannot be written (a retry may succeed), and
     /// where there is something to save and no file named for it. Returns the files it wrote.
     std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {});
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
-    /// Commands, undone and redone ones included, since the last save.
+    /// Commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
     /// No command since has changed the trace.
     bool trace_is_saved() const { return !touched_.trace; }
-    /// Waits until all is in the journal, on the disk; fails with the reason why it is not.
+    /// Waits until the journal is on disk; fails with the reason where that is not possible.
     void flush();
 
     struct JournalState {
         uint64_t bytes = 0;
-        std::string failure;  ///< why nothing can be written at present; what is done waits in memory
+        std::string failure;  ///< why nothing can be written now; work waits in memory
     };
     JournalState journal() const;
 
     struct Limits {
-        /// Of commands kept in memory; older ones come back from the journal.
+        /// Of commands kept in memory; older ones are fetched from the journal.
         uint64_t history_bytes = uint64_t{256} << 20;
-        /// After so much, or twice the last state's size, or so many steps, the journal gets a state: opening then takes as
-        /// long as reading one, and states are at most half of a journal.
+        /// After this much (or twice the last state's size), or this many steps, the journal gets a state: opening then
+        /// takes as long as reading one, and states are at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };
@@ -88,7 +87,7 @@ public:
 private:
     Document empty_document() const;
     void check_subject() const;
-    /// Returns why it took fewer records than the scan has, which then has no more; empty where it took all.
+    /// Returns why it stopped early, and then drops the remaining records from the scan; empty where it took all.
     std::string replay();
     void replay_records();
     std::vector<std::byte> content_of(RecordNumber number) const;
@@ -109,11 +108,12 @@ private:
     WorkFiles files_;
     Document document_;
     History history_;
-    JournalScan scan_;                       ///< as it was read; what the journal goes on from
+    JournalScan scan_;                       ///< as it was read; the journal continues from it
     std::optional<FileDescriptor> scanned_;  ///< its file
-    bool is_to_set_aside_ = false;           ///< the journal that was read is not this work's
-    bool is_fresh_ = false;                  ///< ... by the wish of who opened it
-    std::map<std::filesystem::path, std::filesystem::file_time_type> loaded_;  ///< files, as they were taken
+    bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
+    bool is_fresh_ = false;                  ///< ... because the caller asked for a fresh start
+    std::map<std::filesystem::path, std::filesystem::file_time_type>
+        loaded_;  ///< files, and when they were written as they were loaded
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;
     struct Touched {

@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "engine/base/json.h"
 #include "engine/formats/raw/source_raw.h"
 
 namespace shvr {
@@ -17,9 +16,8 @@ struct SideCar {
     RawVoxels voxels{};
 };
 
-/// Our own. `document` is the content of `path`; unknown keys are refused.
-SideCar read_json_side_car(const std::filesystem::path& path, const nlohmann::json& document,
-                           const std::filesystem::path& raw);
+/// Our own: `document` describes the voxels of `raw`. Unknown keys are refused.
+SideCar read_json_side_car(const JsonDocument& document, const std::filesystem::path& raw);
 
 /// NSI's and Inviwo's text, or Dragonfly's XML. `raw` is empty where the side-car itself was opened, which then names
 /// its voxels. Nothing where the file is about something else.

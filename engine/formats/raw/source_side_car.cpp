@@ -6,8 +6,6 @@
 //   scan_512x512x300_16bit.raw the file's own name; the type may be missing where the file's size tells it
 // A .json or .dat that is opened itself leads to its voxels.
 
-#include <nlohmann/json.hpp>
-
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/formats/header_fields.h"
@@ -19,7 +17,6 @@ namespace shvr {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Source = std::unique_ptr<VolumeSource>;
 
 Source open_side_car(SideCar side_car)
@@ -40,17 +37,10 @@ fs::path with_suffix(fs::path path, const char* suffix)
 }
 
 /// Nothing where the document is about something else (a session, another program's settings).
-std::optional<Json> parse_json(const fs::path& path)
+std::optional<JsonDocument> parse_json(const fs::path& path)
 {
-    // Printing JSON takes stack for each level, so a message about very many would end the program.
-    constexpr int DEEPEST = 64;
-    const auto check_depth = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
-        if (depth > DEEPEST) fail(path.string(), ": is nested more than ", DEEPEST, " deep; expected size and type");
-        return true;
-    };
-    Json document = Json::parse(read_text(path, LONGEST_HEADER), check_depth, false);
-    if (document.is_discarded()) fail(path.string(), ": is not valid JSON; expected an object with size and type");
-    if (!document.is_object() || document.contains("shvr_session")) return {};
+    JsonDocument document = read_json(path, LONGEST_HEADER, {.depth = 64, .expected = "size and type"});
+    if (!document.root().is_object() || document.root()["shvr_session"].exists()) return {};
     return document;
 }
 
@@ -82,7 +72,7 @@ Source open_bare(const fs::path& raw)
 {
     for (const fs::path& path : {with_extension(raw, ".json"), with_suffix(raw, ".json")}) {
         if (!is_file(path)) continue;
-        if (const auto document = parse_json(path)) return open_side_car(read_json_side_car(path, *document, raw));
+        if (const auto document = parse_json(path)) return open_side_car(read_json_side_car(*document, raw));
     }
     const fs::path nhdr = with_extension(raw, ".nhdr");
     for (const char* field : {"data file", "datafile"}) {
@@ -103,11 +93,11 @@ Source open_raw_with_side_car(const fs::path& path, const OpenOptions& /*options
 {
     const std::string extension = lower_case(path.extension().string());
     if (extension == ".json") {
-        const std::optional<Json> document = parse_json(path);
+        const std::optional<JsonDocument> document = parse_json(path);
         if (!document) return nullptr;
         const fs::path named = with_extension(path, "");  // scan.raw.json
         const fs::path raw = named.has_extension() && is_file(named) ? named : with_extension(path, ".raw");
-        return open_side_car(read_json_side_car(path, *document, raw));
+        return open_side_car(read_json_side_car(*document, raw));
     }
     if (extension == ".dat") {
         if (auto side_car = read_dat_side_car(path, {})) return open_side_car(std::move(*side_car));

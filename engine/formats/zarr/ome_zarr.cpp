@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
-
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -14,7 +13,6 @@
 namespace shvr {
 namespace {
 
-using Json = nlohmann::json;
 using Path = std::filesystem::path;
 
 /// Units as we write them, as the specification names them, and in metres.
@@ -27,8 +25,8 @@ constexpr Unit UNITS[] = {{"nm", "nanometer", 1e-9},  {"um", "micrometer", 1e-6}
                           {"cm", "centimeter", 1e-2}, {"m", "meter", 1.0},        {"angstrom", "angstrom", 1e-10},
                           {"inch", "inch", 0.0254}};
 
-constexpr size_t MOST_DATASETS = 64;
-constexpr size_t MOST_CHANNELS = 4096;
+constexpr size_t MAX_DATASETS = 64;
+constexpr size_t MAX_CHANNELS = 4096;
 
 struct Axis {
     std::string name;
@@ -42,85 +40,68 @@ std::string kind_of(const std::string& name)
     return name == "c" ? "channel" : "space";
 }
 
-Axis read_axis(const Path& path, const Json& value)
+Axis read_axis(const JsonNode& node)
 {
     constexpr const char* EXPECTED = "a name such as \"z\", or an object with one";
+    const std::array<std::string_view, 3> kinds{"space", "channel", "time"};
     Axis axis;
-    const Json* name = &value;  // version 0.3 gives names alone
-    if (value.is_object()) name = &required(path, value, "name", EXPECTED);
-    if (!name->is_string()) refuse_json(path, "multiscales.axes", value, EXPECTED);
-    axis.name = lower_case(name->get<std::string>());
+    if (!node.is_object() && !node.is_text()) node.refuse(EXPECTED);
+    const JsonNode name = node.is_object() ? node["name"] : node;  // version 0.3 gives names alone
+    axis.name = lower_case(name.any_text(EXPECTED));
     axis.kind = kind_of(axis.name);
-    if (!value.is_object()) return axis;
-    if (const auto kind = value.find("type"); kind != value.end()) {
-        if (*kind != "space" && *kind != "channel" && *kind != "time") {
-            refuse_json(path, "multiscales.axes.type", *kind, "\"space\", \"channel\" or \"time\"");
-        }
-        axis.kind = kind->get<std::string>();
-    }
-    if (const auto unit = value.find("unit"); unit != value.end() && unit->is_string()) {
-        axis.unit = plain_unit(unit->get<std::string>());
-    }
+    if (const JsonNode kind = node["type"]; kind.exists()) axis.kind = kinds[kind.choice(kinds)];
+    if (const JsonNode unit = node["unit"]; unit.is_text()) axis.unit = plain_unit(unit.any_text());
     return axis;
 }
 
-std::vector<Axis> read_axes(const Path& path, const Json& multiscale)
+std::vector<Axis> read_axes(const JsonNode& node)
 {
-    const auto found = multiscale.find("axes");
-    if (found == multiscale.end()) {  // versions 0.1 and 0.2
+    if (!node.exists())  // versions 0.1 and 0.2
         return {{"t", "time", {}}, {"c", "channel", {}}, {"z", "space", {}}, {"y", "space", {}}, {"x", "space", {}}};
-    }
     constexpr const char* EXPECTED = "a list of z, y, x and perhaps t and c";
-    if (!found->is_array() || found->size() > 5) refuse_json(path, "multiscales.axes", *found, EXPECTED);
+    if (!node.is_array() || node.count() > 5) node.refuse(EXPECTED);
     std::vector<Axis> axes;
-    for (const Json& value : *found) {
-        axes.push_back(read_axis(path, value));
-        for (size_t other = 0; other + 1 < axes.size(); ++other) {
-            if (axes[other].name == axes.back().name) refuse_json(path, "multiscales.axes", *found, EXPECTED);
-        }
+    for (const JsonNode& element : node.elements()) {
+        Axis axis = read_axis(element);
+        if (std::ranges::find(axes, axis.name, &Axis::name) != axes.end()) node.refuse(EXPECTED);
+        axes.push_back(std::move(axis));
     }
     return axes;
 }
 
-void place_axes(const Path& path, const Json& multiscale, const std::vector<Axis>& axes, OmeImage& image)
+void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& image)
 {
     image.axes = axes.size();
-    const auto refuse = [&](const std::string& expected) {
-        refuse_json(path, "multiscales.axes", multiscale.value("axes", Json()), expected);
-    };
     std::array<bool, 3> is_there{};
     for (size_t axis = 0; axis < axes.size(); ++axis) {
         std::optional<size_t>* const other = axes[axis].kind == "channel" ? &image.channel
                                              : axes[axis].kind == "time"  ? &image.time
                                                                           : nullptr;
         if (other != nullptr) {
-            if (other->has_value()) refuse("at most one axis of channels and one of time");
+            if (other->has_value()) node.refuse("at most one axis of channels and one of time");
             *other = axis;
             continue;
         }
         const size_t along = std::string("xyz").find(axes[axis].name);
-        if (axes[axis].name.size() != 1 || along > 2) refuse("axes of space called x, y and z");
+        if (axes[axis].name.size() != 1 || along > 2) node.refuse("axes of space called x, y and z");
         image.xyz[along] = axis;
         is_there[along] = true;
     }
-    if (is_there[0] && is_there[1] && !is_there[2]) refuse("a z axis too: pictures of two dimensions are no volumes");
-    if (!is_there[0] || !is_there[1] || !is_there[2]) refuse("axes of space called x, y and z");
+    if (is_there[0] && is_there[1] && !is_there[2])
+        node.refuse("a z axis too: pictures of two dimensions are no volumes");
+    if (!is_there[0] || !is_there[1] || !is_there[2]) node.refuse("axes of space called x, y and z");
 }
 
 /// One number for every axis, all finite; where they scale, above 0.
-std::vector<double> read_numbers(const Path& path, const std::string& key, const Json& value, size_t axes,
-                                 bool is_scale)
+std::vector<double> read_numbers(const JsonNode& node, size_t axes, bool is_scale)
 {
     const std::string expected =
         sentence("a finite number", is_scale ? " above 0" : "", " for each of the ", axes, " axes");
-    if (!value.is_array() || value.size() != axes) refuse_json(path, key, value, expected);
+    if (node.count() != axes) node.refuse(expected);
+    NumberRange range = any_number();
+    if (is_scale) range = {std::numeric_limits<double>::denorm_min(), range.upper, "a finite number above 0"};
     std::vector<double> numbers;
-    for (const Json& number : value) {
-        if (!number.is_number()) refuse_json(path, key, value, expected);
-        numbers.push_back(number.get<double>());
-        if (!std::isfinite(numbers.back()) || (is_scale && !(numbers.back() > 0.0)))
-            refuse_json(path, key, value, expected);
-    }
+    for (const JsonNode& number : node.elements()) numbers.push_back(number.number(range));
     return numbers;
 }
 
@@ -144,39 +125,32 @@ struct Transformation {
     }
 };
 
-void apply_transformations(const Path& path, const std::string& owner, const Json& object, size_t axes,
-                           Transformation& transformation)
+/// Of a dataset, or of all of them.
+void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
-    const auto found = object.find("coordinateTransformations");
-    if (found == object.end()) return;
-    const std::string key = owner + ".coordinateTransformations";
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";
-    if (!found->is_array() || found->size() > 8) refuse_json(path, key, *found, EXPECTED);
-    for (const Json& step : *found) {
-        const std::string type = step.is_object() ? step.value("type", Json()).dump() : "";
-        if (type == "\"scale\"" && step.contains("scale")) {
-            transformation.scale_by(read_numbers(path, key + ".scale", step["scale"], axes, true));
-        } else if (type == "\"translation\"" && step.contains("translation")) {
-            transformation.move_by(read_numbers(path, key + ".translation", step["translation"], axes, false));
-        } else if (type != "\"identity\"") {
-            refuse_json(path, key, step, EXPECTED);
-        }
+    const JsonNode steps = owner["coordinateTransformations"];
+    if (!steps.exists()) return;
+    if (!steps.is_array() || steps.count() > 8) steps.refuse(EXPECTED);
+    for (const JsonNode& step : steps.elements()) {
+        const JsonNode type = step["type"], scale = step["scale"], translation = step["translation"];
+        if (type.is("scale") && scale.exists())
+            transformation.scale_by(read_numbers(scale, axes, true));
+        else if (type.is("translation") && translation.exists())
+            transformation.move_by(read_numbers(translation, axes, false));
+        else if (!type.is("identity"))
+            step.refuse(EXPECTED);
     }
 }
 
 /// Names of folders below the image, nothing else: a path that climbs out of it is an attack or a mistake.
-std::string read_level_path(const Path& path, const Json& dataset)
+std::string read_level_path(const JsonNode& node)
 {
-    constexpr const char* KEY = "multiscales.datasets.path";
     constexpr const char* EXPECTED = "the relative path of an array inside the image's folder";
-    const Json& value = required(path, dataset, "path", EXPECTED);
-    if (!value.is_string()) refuse_json(path, KEY, value, EXPECTED);
-    const auto text = value.get<std::string>();
+    const std::string text = node.text(EXPECTED);
     const Path relative(text);
     const bool climbs = std::ranges::find(relative, Path("..")) != relative.end();
-    if (text.empty() || relative.is_absolute() || climbs || text.find('\0') != std::string::npos) {
-        refuse_json(path, KEY, value, EXPECTED);
-    }
+    if (relative.is_absolute() || climbs || text.find('\0') != std::string::npos) node.refuse(EXPECTED);
     return text;
 }
 
@@ -210,20 +184,14 @@ glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImag
     return factors;
 }
 
-void read_levels(const Path& path, const Json& multiscale, const std::vector<Axis>& axes, OmeImage& image)
+void read_levels(const Path& path, const JsonNode& multiscale, const std::vector<Axis>& axes, OmeImage& image)
 {
     const glm::dvec3 factors = unit_factors(path, axes, image);
-    const std::string expected = sentence("a list of 1 to ", MOST_DATASETS, " objects with a path");
-    const Json& datasets = required(path, multiscale, "datasets", expected);
-    if (!datasets.is_array() || datasets.empty() || datasets.size() > MOST_DATASETS) {
-        refuse_json(path, "multiscales.datasets", datasets, expected);
-    }
-    for (const Json& dataset : datasets) {
-        if (!dataset.is_object()) refuse_json(path, "multiscales.datasets", dataset, expected);
-        OmeImage::Level level{.path = read_level_path(path, dataset)};
+    for (const JsonNode& dataset : multiscale["datasets"].elements(1, MAX_DATASETS)) {
+        OmeImage::Level level{.path = read_level_path(dataset["path"])};
         Transformation transformation;
-        apply_transformations(path, "multiscales.datasets", dataset, image.axes, transformation);
-        apply_transformations(path, "multiscales", multiscale, image.axes, transformation);
+        apply_transformations(dataset, image.axes, transformation);
+        apply_transformations(multiscale, image.axes, transformation);
         const auto xyz_of = [&](const std::vector<double>& numbers) {
             return factors * glm::dvec3(numbers[image.xyz[0]], numbers[image.xyz[1]], numbers[image.xyz[2]]);
         };
@@ -233,42 +201,34 @@ void read_levels(const Path& path, const Json& multiscale, const std::vector<Axi
     }
 }
 
-void read_channels(const Json& attributes, OmeImage& image)
+void read_channels(const JsonNode& channels, OmeImage& image)
 {
-    const auto omero = attributes.find("omero");
-    if (omero == attributes.end() || !omero->is_object()) return;
-    const auto channels = omero->find("channels");
-    if (channels == omero->end() || !channels->is_array() || channels->size() > MOST_CHANNELS) return;
-    for (const Json& channel : *channels) {
-        const auto label = channel.is_object() ? channel.find("label") : channel.end();
-        const bool has_label = channel.is_object() && label != channel.end() && label->is_string();
-        image.channels.push_back(has_label ? label->get<std::string>() : std::string());
+    if (!channels.is_array() || channels.count() > MAX_CHANNELS) return;
+    for (const JsonNode& channel : channels.elements()) {
+        const JsonNode label = channel["label"];
+        image.channels.push_back(label.is_text() ? label.any_text() : std::string());
     }
 }
 
 }  // namespace
 
-OmeImage read_ome_image(const Path& path, const Json& attributes)
+OmeImage read_ome_image(const Path& path, const JsonNode& attributes)
 {
-    constexpr const char* EXPECTED = "a list of objects with datasets";
-    const Json& multiscales = required(path, attributes, "multiscales", EXPECTED);
-    if (!multiscales.is_array() || multiscales.empty() || !multiscales[0].is_object()) {
-        refuse_json(path, "multiscales", multiscales, EXPECTED);
-    }
-    const Json& multiscale = multiscales[0];
-    const auto version = multiscale.find("version");
-    const bool is_known =
-        version == multiscale.end() || *version == "0.1" || *version == "0.2" || *version == "0.3" || *version == "0.4";
-    if (!is_known) refuse_json(path, "multiscales.version", *version, "\"0.1\" to \"0.4\"");
+    const JsonNode multiscales = attributes["multiscales"];
+    if (multiscales.count() == 0 || !multiscales.elements()[0].is_object())
+        multiscales.refuse("a list of objects with datasets");
+    const JsonNode multiscale = multiscales.elements()[0];
+    const std::array<std::string_view, 4> versions{"0.1", "0.2", "0.3", "0.4"};
+    if (const JsonNode version = multiscale["version"]; version.exists()) version.choice(versions);
 
     OmeImage image;
-    if (multiscales.size() > 1) {
-        image.warnings.push_back(sentence("the image is there in ", multiscales.size(), " forms; the first is taken"));
-    }
-    const std::vector<Axis> axes = read_axes(path, multiscale);
-    place_axes(path, multiscale, axes, image);
+    if (multiscales.count() > 1)
+        image.warnings.push_back(sentence("the image is there in ", multiscales.count(), " forms; the first is taken"));
+    const JsonNode axes_node = multiscale["axes"];
+    const std::vector<Axis> axes = read_axes(axes_node);
+    place_axes(axes_node, axes, image);
     read_levels(path, multiscale, axes, image);
-    read_channels(attributes, image);
+    read_channels(attributes["omero"]["channels"], image);
     return image;
 }
 

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include <glm/glm.hpp>
-#include <nlohmann/json_fwd.hpp>
+
+#include "engine/base/json.h"
 
 namespace shvr {
 
@@ -32,7 +33,7 @@ struct OmeImage {
 
 /// `attributes` is the content of `path`, a .zattrs, and has a "multiscales". Fails where that is not as the
 /// specification says, or has no z.
-OmeImage read_ome_image(const std::filesystem::path& path, const nlohmann::json& attributes);
+OmeImage read_ome_image(const std::filesystem::path& path, const JsonNode& attributes);
 
 /// The specification's name of a unit ("um": "micrometer"), and of what has none itself.
 std::string ome_unit(const std::string& unit);

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <map>
-
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/formats/zarr/zarr_json.h"
@@ -12,53 +11,28 @@ namespace shvr {
 
 namespace {
 
-using Json = nlohmann::json;
-
-std::optional<int64_t> label_of(const Json& entry)
+std::optional<std::array<uint8_t, 4>> rgba_of(const JsonNode& node)
 {
-    if (!entry.is_object()) return std::nullopt;
-    const auto value = entry.find("label-value");
-    if (value == entry.end() || !value->is_number_integer()) return std::nullopt;
-    // What does not fit into int64_t is unsigned.
-    if (value->is_number_unsigned() && value->get<uint64_t>() > uint64_t{INT64_MAX}) return std::nullopt;
-    return value->get<int64_t>();
-}
-
-std::optional<std::array<uint8_t, 4>> rgba_of(const Json& rgba)
-{
-    const auto is_channel = [](const Json& c) { return c.is_number_integer() && c >= Json(0) && c <= Json(255); };
-    if (!rgba.is_array() || rgba.size() != 4 || !std::ranges::all_of(rgba, is_channel)) return std::nullopt;
     std::array<uint8_t, 4> channels{};
-    for (size_t i = 0; i < 4; ++i) channels[i] = rgba[i].get<uint8_t>();
+    const std::vector<JsonNode> elements = node.elements(4, 4);
+    for (size_t i = 0; i < 4; ++i) channels[i] = uint8_t(elements[i].whole(0, 255));
     return channels;
 }
 
-class Reader {
-public:
-    Reader(std::filesystem::path path, LabelLooks& result) : path_(std::move(path)), result_(result) {}
-
-    /// `take` returns whether the entry is one.
-    template <class Take>
-    void go_through(const Json& label, const char* key, const char* expected, const Take& take)
-    {
-        const auto list = label.find(key);
-        if (list == label.end()) return;
-        if (!list->is_array()) return warn(key, *list, "a list");
-        size_t left_out = 0;
-        for (const Json& entry : *list)
-            if (!take(entry) && left_out++ == 0)
-                warn(sentence(key, "[", &entry - &list->front(), "]"), entry, expected);
-    }
-
-private:
-    void warn(const std::string& key, const Json& value, const char* expected)
-    {
-        result_.warnings.push_back(sentence(path_.string(), ": image-label.", key, " is ", shown(value), "; expected ",
-                                            expected, "; it is left out"));
-    }
-    std::filesystem::path path_;
-    LabelLooks& result_;
-};
+/// `take` fails where the entry is not as `expected`; the first of those is reported.
+template <class Take>
+void go_through(const JsonNode& list, const char* expected, std::vector<std::string>& warnings, const Take& take)
+{
+    const auto leave_out = [&](const std::string& refusal) { warnings.push_back(refusal + "; it is left out"); };
+    if (!list.exists()) return;
+    if (!list.is_array()) return leave_out(list.refusal("a list"));
+    bool has_warned = false;
+    for (const JsonNode& entry : list.elements()) try {
+            take(entry);
+        } catch (const Error&) {
+            if (!std::exchange(has_warned, true)) leave_out(entry.refusal(expected));
+        }
+}
 
 }  // namespace
 
@@ -68,31 +42,24 @@ LabelLooks read_label_looks(const std::filesystem::path& folder)
     const std::filesystem::path path = folder / ".zattrs";
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) return result;
-    const Json attributes = read_json_object(path, LARGEST_ZARR_ATTRIBUTES);
-    const auto label = attributes.find("image-label");
-    if (label == attributes.end() || !label->is_object()) return result;
+    const JsonDocument attributes = read_zarr_json(path, LARGEST_ZARR_ATTRIBUTES);
+    const JsonNode label = attributes.root()["image-label"];
+    if (!label.is_object()) return result;
+    const auto value_of = [](const JsonNode& entry) { return entry["label-value"].whole(INT64_MIN, INT64_MAX); };
     std::map<int64_t, LabelLook> looks;
-    Reader reader(path, result);
-    reader.go_through(*label, "colors", "a label-value and an rgba of four whole numbers from 0 to 255",
-                      [&](const Json& entry) {
-                          const std::optional<int64_t> value = label_of(entry);
-                          if (!value) return false;
-                          const auto found = entry.find("rgba");
-                          if (found == entry.end()) return true;  // the reader is to choose
-                          const auto rgba = rgba_of(*found);
-                          if (rgba) looks.try_emplace(*value, LabelLook{*value, rgba, {}});
-                          return rgba.has_value();
-                      });
+    go_through(label["colors"], "a label-value and an rgba of four whole numbers from 0 to 255", result.warnings,
+               [&](const JsonNode& entry) {
+                   const int64_t value = value_of(entry);
+                   const JsonNode rgba = entry["rgba"];  // without one, the reader is to choose
+                   if (rgba.exists()) looks.try_emplace(value, LabelLook{value, rgba_of(rgba), {}});
+               });
     std::map<int64_t, std::string> names;
-    reader.go_through(*label, "properties", "a label-value, and a name that is a text", [&](const Json& entry) {
-        const std::optional<int64_t> value = label_of(entry);
-        if (!value) return false;
-        const auto name = entry.find("name");
-        if (name == entry.end()) return true;  // properties of other kinds
-        if (!name->is_string()) return false;
-        names.try_emplace(*value, name->get<std::string>());
-        return true;
-    });
+    go_through(label["properties"], "a label-value, and a name that is a text", result.warnings,
+               [&](const JsonNode& entry) {
+                   const int64_t value = value_of(entry);
+                   const JsonNode name = entry["name"];  // without one, properties of other kinds
+                   if (name.exists()) names.try_emplace(value, name.any_text());
+               });
     for (auto& [value, name] : names) {
         LabelLook& look = looks[value];
         look.value = value;

@@ -12,6 +12,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/formats/zarr/zarr_json.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 namespace {
@@ -35,100 +36,13 @@ OrderedJson list_of(const glm::dvec3& vector)
     return {vector.x, vector.y, vector.z};
 }
 
-/// The values of one object, each checked as it is taken.
-class ProjectReader {
-public:
-    ProjectReader(const Path& path, const nlohmann::json& object) : path_(path), object_(object) {}
+constexpr int64_t LARGEST_COUNT = std::numeric_limits<int64_t>::max();
 
-    double number(const char* key) const { return number(value(key, "a finite number"), key); }
-    int64_t whole(const char* key, int64_t lower, int64_t upper) const
-    {
-        return whole(value(key, "a whole number"), key, lower, upper);
-    }
-    std::string text(const char* key) const
-    {
-        const nlohmann::json& found = value(key, "a text");
-        if (!found.is_string()) refuse_json(path_, key, found, "a text");
-        return found.get<std::string>();
-    }
-    glm::dvec3 vector(const char* key) const { return vector(value(key, "three numbers"), key); }
-    glm::dmat3 matrix(const char* key) const
-    {
-        const nlohmann::json& rows = list(key, 3);
-        return {vector(rows[0], key), vector(rows[1], key), vector(rows[2], key)};
-    }
-    Size3 size(const char* key) const
-    {
-        const nlohmann::json& sides = list(key, 3);
-        constexpr int64_t MOST = int64_t{1} << 20;
-        return {whole(sides[0], key, 1, MOST), whole(sides[1], key, 1, MOST), whole(sides[2], key, 1, MOST)};
-    }
-    std::vector<int64_t> counts(const char* key, size_t length) const
-    {
-        std::vector<int64_t> counts;
-        for (const nlohmann::json& count : list(key, length)) {
-            counts.push_back(whole(count, key, 0, std::numeric_limits<int64_t>::max()));
-        }
-        return counts;
-    }
-    std::vector<std::string> texts(const char* key) const
-    {
-        std::vector<std::string> texts;
-        const nlohmann::json& found = value(key, "a list of texts");
-        if (!found.is_array()) refuse_json(path_, key, found, "a list of texts");
-        for (const nlohmann::json& text : found) {
-            if (!text.is_string()) refuse_json(path_, key, found, "a list of texts");
-            texts.push_back(text.get<std::string>());
-        }
-        return texts;
-    }
-    [[noreturn]] void refuse(const char* key, const std::string& expected) const
-    {
-        refuse_json(path_, key, value(key, expected.c_str()), expected);
-    }
-    bool has(const char* key) const { return object_.contains(key); }
-    ProjectReader object(const char* key) const
-    {
-        const nlohmann::json& found = value(key, "an object");
-        if (!found.is_object()) refuse_json(path_, key, found, "an object");
-        return {path_, found};
-    }
-
-private:
-    const nlohmann::json& value(const char* key, const char* expected) const
-    {
-        return required(path_, object_, key, expected);
-    }
-    const nlohmann::json& list(const char* key, size_t length) const
-    {
-        const std::string expected = sentence("a list of ", length);
-        const nlohmann::json& found = value(key, expected.c_str());
-        if (!found.is_array() || found.size() != length) refuse_json(path_, key, found, expected);
-        return found;
-    }
-    double number(const nlohmann::json& found, const char* key) const
-    {
-        if (!found.is_number() || !std::isfinite(found.get<double>())) {
-            refuse_json(path_, key, found, "a finite number");
-        }
-        return found.get<double>();
-    }
-    int64_t whole(const nlohmann::json& found, const char* key, int64_t lower, int64_t upper) const
-    {
-        const bool fits = found.is_number_integer() && !(found.is_number_unsigned() && found.get<int64_t>() < 0) &&
-                          found.get<int64_t>() >= lower && found.get<int64_t>() <= upper;
-        if (!fits) refuse_json(path_, key, found, sentence("a whole number from ", lower, " to ", upper));
-        return found.get<int64_t>();
-    }
-    glm::dvec3 vector(const nlohmann::json& found, const char* key) const
-    {
-        if (!found.is_array() || found.size() != 3) refuse_json(path_, key, found, "three numbers");
-        return {number(found[0], key), number(found[1], key), number(found[2], key)};
-    }
-
-    const Path& path_;
-    const nlohmann::json& object_;
-};
+glm::dmat3 read_matrix(const JsonNode& node)
+{
+    const std::vector<JsonNode> rows = node.elements(3, 3);
+    return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
+}
 
 bool are_axes(const glm::dmat3& directions)
 {
@@ -139,19 +53,19 @@ bool are_axes(const glm::dmat3& directions)
     return glm::determinant(directions) > 0.0;
 }
 
-VolumeStatistics read_statistics(const ProjectReader& reader)
+VolumeStatistics read_statistics(const JsonNode& node)
 {
-    VolumeStatistics statistics{.minimum = reader.number("min"),
-                                .maximum = reader.number("max"),
-                                .mean = reader.number("mean"),
-                                .not_finite = reader.whole("not_finite", 0, std::numeric_limits<int64_t>::max()),
-                                .histogram = reader.counts("histogram", 256)};
-    if (!(statistics.minimum <= statistics.maximum)) reader.refuse("max", "at least min");
-    if (reader.has("bulk")) {
-        const ProjectReader bulk = reader.object("bulk");
-        statistics.bulk = {bulk.number("min"), bulk.number("max")};
-        if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk.refuse("max", "at least min");
-        statistics.beyond_bulk = bulk.whole("beyond", 0, std::numeric_limits<int64_t>::max());
+    VolumeStatistics statistics{.minimum = node["min"].number(any_number()),
+                                .maximum = node["max"].number(any_number()),
+                                .mean = node["mean"].number(any_number()),
+                                .not_finite = node["not_finite"].whole(0, LARGEST_COUNT)};
+    for (const JsonNode& bin : node["histogram"].elements(256, 256))
+        statistics.histogram.push_back(bin.whole(0, LARGEST_COUNT));
+    if (!(statistics.minimum <= statistics.maximum)) node["max"].refuse("at least min");
+    if (const JsonNode bulk = node["bulk"]; bulk.exists()) {
+        statistics.bulk = {bulk["min"].number(any_number()), bulk["max"].number(any_number())};
+        if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk["max"].refuse("at least min");
+        statistics.beyond_bulk = bulk["beyond"].whole(0, LARGEST_COUNT);
     }
     return statistics;
 }
@@ -239,32 +153,26 @@ std::string to_text(const ProjectRecord& record)
 
 ProjectRecord read_project_record(const Path& file)
 {
-    const nlohmann::json document = read_json_object(file, LARGEST_RECORD);
-    const ProjectReader reader(file, document);
-    reader.whole("shvr_volume", VERSION, VERSION);
+    const JsonDocument document = read_zarr_json(file, LARGEST_RECORD);
+    const JsonNode root = document.root();
+    root["shvr_volume"].whole(VERSION, VERSION);
     ProjectRecord record;
-    record.source = reader.text("source");
-    record.preparation = reader.text("preparation");
-    record.content_hash = reader.text("content_hash");
-    record.levels = static_cast<int>(reader.whole("levels", 1, 32));
+    record.source = root["source"].any_text();
+    record.preparation = root["preparation"].any_text();
+    record.content_hash = root["content_hash"].any_text();
+    record.levels = static_cast<int>(root["levels"].whole(1, 32));
     VolumeInfo& info = record.info;
-    info.size = reader.size("size");
-    const std::optional<VoxelType> type = voxel_type_of(reader.text("type"));
-    if (!type) refuse_json(file, "type", document["type"], VOXEL_TYPE_NAMES);
-    info.type = *type;
-    info.spacing = reader.vector("spacing");
-    if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) {
-        refuse_json(file, "spacing", document["spacing"], "three numbers above 0");
-    }
-    info.unit = printable(reader.text("unit"));
-    info.directions = reader.matrix("directions");
-    if (!are_axes(info.directions)) {
-        refuse_json(file, "directions", document["directions"], "three right-handed vectors of length 1");
-    }
-    info.origin = reader.vector("origin");
-    info.frame = printable(reader.text("frame"));
-    for (const std::string& warning : reader.texts("warnings")) info.warnings.push_back(printable(warning));
-    record.statistics = read_statistics(reader.object("statistics"));
+    info.size = root["size"].size(LARGEST_SIDE);
+    info.type = root["type"].parsed([](const std::string& name) { return voxel_type_of(name); }, VOXEL_TYPE_NAMES);
+    info.spacing = root["spacing"].vector(any_number());
+    if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) root["spacing"].refuse("three numbers above 0");
+    info.unit = printable(root["unit"].any_text());
+    info.directions = read_matrix(root["directions"]);
+    if (!are_axes(info.directions)) root["directions"].refuse("three right-handed vectors of length 1");
+    info.origin = root["origin"].vector(any_number());
+    info.frame = printable(root["frame"].any_text());
+    for (const JsonNode& warning : root["warnings"].elements()) info.warnings.push_back(printable(warning.any_text()));
+    record.statistics = read_statistics(root["statistics"]);
     return record;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // What a project folder holds of its volume besides the image, which is an OME-Zarr that other programs read. All of it
-// can be computed anew from the image; where a file is damaged, the image still opens.
+// can be recomputed from the image, which still opens if one of these files is damaged.
 //
 //   PROJECT/shvr/volume.json      where the volume came from, how it lies in space, statistics, a hash of its content
 //   PROJECT/shvr/ranges-LEVEL     smallest and largest value under every brick

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstring>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/base/error.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/readers.h"
@@ -25,7 +23,6 @@ namespace shvr {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
 constexpr int MOST_LEVELS = 24;
@@ -246,7 +243,7 @@ std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& imag
 
 // ---- What kind of folder it is --------------------------------------------------------------------------------------
 
-std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& attributes, const OpenOptions& options)
+std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const JsonNode& attributes, const OpenOptions& options)
 {
     const OmeImage image = read_ome_image(folder / ".zattrs", attributes);
     std::vector<std::string> left_out;
@@ -259,7 +256,7 @@ std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const Json& att
     info.origin = image.levels[0].translation.value_or(glm::dvec3(0.0));
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
-    if (attributes.contains("image-label"))
+    if (attributes["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
@@ -273,7 +270,10 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
     bool is_volume = axes >= 3;
     for (size_t axis = 0; axis + 3 < axes; ++axis) is_volume = is_volume && metadata.shape[axis] == 1;
     if (!is_volume) {
-        refuse_json(folder / ".zarray", "shape", metadata.shape, "three axes z, y, x, those before them 1 voxel long");
+        std::string shape;
+        for (const int64_t side : metadata.shape) shape += sentence(shape.empty() ? "" : ",", side);
+        fail((folder / ".zarray").string(), ": key shape is [", shape,
+             "]; expected three axes z, y, x, those before them 1 voxel long");
     }
     image.xyz = {axes - 1, axes - 2, axes - 3};
     VolumeInfo info{.name = name_of_folder(folder), .format = "ome-zarr", .size = size_along(metadata, image.xyz)};
@@ -288,20 +288,21 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
 }
 
 /// A group that is no image itself may hold some: bioformats2raw puts them into 0, 1, ...
-std::unique_ptr<VolumeSource> open_group(const fs::path& folder, const Json& attributes, const OpenOptions& options)
+std::unique_ptr<VolumeSource> open_group(const fs::path& folder, const JsonNode& attributes, const OpenOptions& options)
 {
-    if (attributes.contains("plate") || attributes.contains("well")) {
+    if (attributes["plate"].exists() || attributes["well"].exists()) {
         fail(folder.string(), ": is a plate of many images; expected one of them, as in ",
-             (folder / (attributes.contains("plate") ? "A/1/0" : "0")).string());
+             (folder / (attributes["plate"].exists() ? "A/1/0" : "0")).string());
     }
     if (!is_there(folder / "0" / ".zattrs")) {
         fail((folder / ".zattrs").string(),
-             ": multiscales is missing; expected an OME-Zarr image, or one of its arrays");
+             ": key multiscales is missing; expected an OME-Zarr image, or one of its arrays");
     }
     if (is_there(folder / "1" / ".zattrs")) {
         fail(folder.string(), ": holds several images; expected one of them, as in ", (folder / "0").string());
     }
-    return open_image(folder / "0", read_json_object(folder / "0" / ".zattrs", LARGEST_ZARR_ATTRIBUTES), options);
+    const JsonDocument inner = read_zarr_json(folder / "0" / ".zattrs", LARGEST_ZARR_ATTRIBUTES);
+    return open_image(folder / "0", inner.root(), options);
 }
 
 }  // namespace
@@ -317,9 +318,10 @@ std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOpti
         fail((path / "zarr.json").string(), ": is Zarr version 3, which is not supported yet; expected version 2, as ",
              "OME-Zarr 0.4 has it");
     }
-    const Json attributes =
-        has_attributes ? read_json_object(path / ".zattrs", LARGEST_ZARR_ATTRIBUTES) : Json(Json::object());
-    if (attributes.contains("multiscales")) return open_image(path, attributes, options);
+    const JsonDocument document = has_attributes ? read_zarr_json(path / ".zattrs", LARGEST_ZARR_ATTRIBUTES)
+                                                 : JsonDocument("{}", (path / ".zattrs").string());
+    const JsonNode attributes = document.root();
+    if (attributes["multiscales"].exists()) return open_image(path, attributes, options);
     return open_group(path, attributes, options);
 }
 

@@ -18,7 +18,7 @@ using Path = std::filesystem::path;
 
 static_assert(std::endian::native == std::endian::little, "byte order '<' is taken as it is");
 
-constexpr size_t MOST_AXES = 16;
+constexpr size_t MAX_AXES = 16;
 
 struct DataType {
     const char* code;  ///< without byte order
@@ -28,37 +28,20 @@ constexpr DataType DATA_TYPES[] = {{"u1", VoxelType::uint8},   {"i1", VoxelType:
                                    {"i2", VoxelType::int16},   {"u4", VoxelType::uint32}, {"i4", VoxelType::int32},
                                    {"f4", VoxelType::float32}, {"f8", VoxelType::float64}};
 
-struct CompressorName {
-    const char* id;
-    ZarrCompressor::Kind kind;
-};
-constexpr CompressorName COMPRESSORS[] = {{"blosc", ZarrCompressor::Kind::blosc},
-                                          {"zstd", ZarrCompressor::Kind::zstd},
-                                          {"zlib", ZarrCompressor::Kind::zlib},
-                                          {"gzip", ZarrCompressor::Kind::gzip}};
+using Kind = ZarrCompressor::Kind;
+constexpr Spelling<Kind> COMPRESSORS[] = {
+    {Kind::blosc, "blosc"}, {Kind::zstd, "zstd"}, {Kind::zlib, "zlib"}, {Kind::gzip, "gzip"}};
 
-std::vector<int64_t> sides(const Path& path, const Json& document, const char* key)
+std::vector<int64_t> read_sides(const JsonNode& node)
 {
-    const std::string expected = sentence("1 to ", MOST_AXES, " whole numbers from 1 to 2^62");
-    const Json& value = required(path, document, key, expected);
-    if (!value.is_array() || value.empty() || value.size() > MOST_AXES) refuse_json(path, key, value, expected);
     std::vector<int64_t> sides;
-    for (const Json& side : value) {
-        if (!side.is_number_unsigned() || side.get<uint64_t>() < 1 || side.get<uint64_t>() > uint64_t{1} << 62) {
-            refuse_json(path, key, value, expected);
-        }
-        sides.push_back(side.get<int64_t>());
-    }
+    for (const JsonNode& side : node.elements(1, MAX_AXES)) sides.push_back(side.whole(1, int64_t{1} << 62));
     return sides;
 }
 
-void read_data_type(const Path& path, const Json& document, ZarrMetadata& metadata)
+void read_data_type(const JsonNode& node, ZarrMetadata& metadata)
 {
-    constexpr const char* EXPECTED =
-        "a number type such as \"|u1\", \"<u2\", \">i2\" or \"<f4\": integers of 8, 16 or 32 bits, floats of 32 or 64";
-    const Json& value = required(path, document, "dtype", EXPECTED);
-    if (!value.is_string()) refuse_json(path, "dtype", value, EXPECTED);
-    const auto& text = value.get_ref<const std::string&>();
+    const std::string text = node.is_text() ? node.any_text() : "";
     for (const DataType& known : DATA_TYPES) {
         if (text.size() != 3 || text.substr(1) != known.code) continue;
         metadata.type = known.type;
@@ -66,7 +49,8 @@ void read_data_type(const Path& path, const Json& document, ZarrMetadata& metada
         const bool is_order = text[0] == '<' || text[0] == '>' || (text[0] == '|' && bytes_of(known.type) == 1);
         if (is_order) return;
     }
-    refuse_json(path, "dtype", value, EXPECTED);
+    node.refuse(
+        "a number type such as \"|u1\", \"<u2\", \">i2\" or \"<f4\": integers of 8, 16 or 32 bits, floats of 32 or 64");
 }
 
 template <class T>
@@ -76,78 +60,62 @@ void put(T value, ZarrMetadata& metadata)
 }
 
 template <class T>
-void put_whole(const Path& path, const Json& value, ZarrMetadata& metadata)
+void put_whole(const JsonNode& fill, ZarrMetadata& metadata)
 {
     using Limits = std::numeric_limits<T>;
-    const std::string expected =
-        sentence("a whole number from ", int64_t{Limits::min()}, " to ", int64_t{Limits::max()}, ", or null");
-    if (!value.is_number()) refuse_json(path, "fill_value", value, expected);
-    const auto number = value.get<double>();  // exact: no type here has more than 32 bits
-    const bool fits =
-        number == std::floor(number) && number >= double{Limits::min()} && number <= double{Limits::max()};
-    if (!fits) refuse_json(path, "fill_value", value, expected);
-    put(static_cast<T>(number), metadata);
+    put(static_cast<T>(fill.whole(int64_t{Limits::min()}, int64_t{Limits::max()})), metadata);
 }
 
-double float_fill(const Path& path, const Json& value)
+double float_fill(const JsonNode& fill)
 {
-    if (value.is_number()) return value.get<double>();
-    if (value == "NaN") return std::numeric_limits<double>::quiet_NaN();
-    if (value == "Infinity") return std::numeric_limits<double>::infinity();
-    if (value == "-Infinity") return -std::numeric_limits<double>::infinity();
-    refuse_json(path, "fill_value", value, "a number, \"NaN\", \"Infinity\", \"-Infinity\" or null");
+    if (fill.is("NaN")) return std::numeric_limits<double>::quiet_NaN();
+    if (fill.is("Infinity")) return std::numeric_limits<double>::infinity();
+    if (fill.is("-Infinity")) return -std::numeric_limits<double>::infinity();
+    if (!fill.is_number()) fill.refuse("a number, \"NaN\", \"Infinity\", \"-Infinity\" or null");
+    return fill.number(any_number());
 }
 
-void read_fill_value(const Path& path, const Json& document, ZarrMetadata& metadata)
+void read_fill_value(const JsonNode& fill, ZarrMetadata& metadata)
 {
-    const auto found = document.find("fill_value");
     // null leaves such voxels undefined; 0 is what other readers give.
-    if (found == document.end() || found->is_null()) return;
+    if (!fill.exists() || fill.is_null()) return;
     switch (metadata.type) {
-        case VoxelType::uint8: return put_whole<uint8_t>(path, *found, metadata);
-        case VoxelType::int8: return put_whole<int8_t>(path, *found, metadata);
-        case VoxelType::uint16: return put_whole<uint16_t>(path, *found, metadata);
-        case VoxelType::int16: return put_whole<int16_t>(path, *found, metadata);
-        case VoxelType::uint32: return put_whole<uint32_t>(path, *found, metadata);
-        case VoxelType::int32: return put_whole<int32_t>(path, *found, metadata);
+        case VoxelType::uint8: return put_whole<uint8_t>(fill, metadata);
+        case VoxelType::int8: return put_whole<int8_t>(fill, metadata);
+        case VoxelType::uint16: return put_whole<uint16_t>(fill, metadata);
+        case VoxelType::int16: return put_whole<int16_t>(fill, metadata);
+        case VoxelType::uint32: return put_whole<uint32_t>(fill, metadata);
+        case VoxelType::int32: return put_whole<int32_t>(fill, metadata);
         case VoxelType::float32: {
-            const double fill = float_fill(path, *found);
-            if (std::isfinite(fill) && std::abs(fill) > double{std::numeric_limits<float>::max()}) {
-                refuse_json(path, "fill_value", *found, "a number that 32-bit floats hold");
-            }
-            return put(static_cast<float>(fill), metadata);
+            const double value = float_fill(fill);
+            if (std::isfinite(value) && std::abs(value) > double{std::numeric_limits<float>::max()})
+                fill.refuse("a number that 32-bit floats hold");
+            return put(static_cast<float>(value), metadata);
         }
-        case VoxelType::float64: return put(float_fill(path, *found), metadata);
+        case VoxelType::float64: return put(float_fill(fill), metadata);
     }
 }
 
-ZarrCompressor::Kind compressor_kind(const Path& path, const Json& document)
+Kind read_compressor(const JsonNode& node)
 {
-    constexpr const char* EXPECTED = "null, or a compressor whose id is blosc, zstd, zlib or gzip";
-    const Json& value = required(path, document, "compressor", EXPECTED);
-    if (value.is_null()) return ZarrCompressor::Kind::none;
-    const auto id = value.is_object() ? value.find("id") : value.end();
-    if (!value.is_object() || id == value.end()) refuse_json(path, "compressor", value, EXPECTED);
-    for (const CompressorName& known : COMPRESSORS) {
-        if (*id == known.id) return known.kind;
-    }
-    refuse_json(path, "compressor.id", *id, "blosc, zstd, zlib or gzip");
+    if (node.is_null()) return Kind::none;
+    if (!node["id"].exists()) node.refuse("null, or a compressor whose id is blosc, zstd, zlib or gzip");
+    const std::vector<std::string_view> names = names_of(std::span<const Spelling<Kind>>(COMPRESSORS));
+    return COMPRESSORS[node["id"].choice(names)].value;
 }
 
-void refuse_filters(const Path& path, const Json& document)
+void refuse_filters(const JsonNode& filters)
 {
-    const auto filters = document.find("filters");
-    if (filters == document.end() || filters->is_null() || (filters->is_array() && filters->empty())) return;
-    refuse_json(path, "filters", *filters, "none: filters are not supported");
+    if (filters.exists() && !filters.is_null() && !(filters.is_array() && filters.count() == 0))
+        filters.refuse("none: filters are not supported");
 }
 
-void check_chunk_bytes(const Path& path, const ZarrMetadata& metadata)
+void check_chunk_bytes(const JsonNode& node, const ZarrMetadata& metadata)
 {
     auto bytes = static_cast<int64_t>(bytes_of(metadata.type));
     for (const int64_t side : metadata.chunks) {
         if (!__builtin_mul_overflow(bytes, side, &bytes) && bytes <= LARGEST_CHUNK_BYTES) continue;
-        refuse_json(path, "chunks", metadata.chunks,
-                    sentence("chunks of at most ", LARGEST_CHUNK_BYTES >> 20, " MiB, which are decoded as a whole"));
+        node.refuse(sentence("chunks of at most ", LARGEST_CHUNK_BYTES >> 20, " MiB, which are decoded as a whole"));
     }
 }
 
@@ -203,31 +171,23 @@ size_t ZarrMetadata::chunk_bytes() const
 
 ZarrMetadata read_zarr_metadata(const Path& array)
 {
-    const Path path = array / ".zarray";
-    const Json document = read_json_object(path, LARGEST_ZARR_METADATA);
-    const Json& version = required(path, document, "zarr_format", "2");
-    if (version != 2) refuse_json(path, "zarr_format", version, "2");
-
+    const JsonDocument document = read_zarr_json(array / ".zarray", LARGEST_ZARR_METADATA);
+    const JsonNode root = document.root();
+    root["zarr_format"].whole(2, 2);
     ZarrMetadata metadata;
-    metadata.shape = sides(path, document, "shape");
-    metadata.chunks = sides(path, document, "chunks");
-    if (metadata.chunks.size() != metadata.shape.size()) {
-        refuse_json(path, "chunks", metadata.chunks, sentence("as many numbers as shape has, ", metadata.shape.size()));
-    }
-    read_data_type(path, document, metadata);
-    check_chunk_bytes(path, metadata);
-    const Json& order = required(path, document, "order", "\"C\" or \"F\"");
-    if (order != "C" && order != "F") refuse_json(path, "order", order, "\"C\" or \"F\"");
-    metadata.is_fortran = order == "F";
-    if (const auto separator = document.find("dimension_separator"); separator != document.end()) {
-        if (*separator != "." && *separator != "/") {
-            refuse_json(path, "dimension_separator", *separator, "\".\" or \"/\"");
-        }
-        metadata.separator = separator->get_ref<const std::string&>()[0];
-    }
-    read_fill_value(path, document, metadata);
-    metadata.compressor.kind = compressor_kind(path, document);
-    refuse_filters(path, document);
+    metadata.shape = read_sides(root["shape"]);
+    metadata.chunks = read_sides(root["chunks"]);
+    if (metadata.chunks.size() != metadata.shape.size())
+        root["chunks"].refuse(sentence("as many numbers as shape has, ", metadata.shape.size()));
+    read_data_type(root["dtype"], metadata);
+    check_chunk_bytes(root["chunks"], metadata);
+    const std::array<std::string_view, 2> orders{"C", "F"}, separators{".", "/"};
+    metadata.is_fortran = root["order"].choice(orders) == 1;
+    if (const JsonNode separator = root["dimension_separator"]; separator.exists())
+        metadata.separator = separators[separator.choice(separators)][0];
+    read_fill_value(root["fill_value"], metadata);
+    metadata.compressor.kind = read_compressor(root["compressor"]);
+    refuse_filters(root["filters"]);
     return metadata;
 }
 

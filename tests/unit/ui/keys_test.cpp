@@ -24,7 +24,6 @@ struct World {
     std::vector<TransferPreset> presets;
     PaintOp brush;
     TraceGraph trace;
-    TraceSummary trace_summary;
     Model model{.session = session,
                 .volume = volume,
                 .statistics = statistics,
@@ -32,7 +31,6 @@ struct World {
                 .presets = presets,
                 .brush = brush,
                 .trace = trace,
-                .trace_summary = trace_summary,
                 .pass_times = {}};
 };
 

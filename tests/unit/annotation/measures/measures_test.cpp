@@ -8,22 +8,14 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/annotation/trace/trace_forms.h"
 #include "engine/volume/unit.h"
+#include "tests/support/traces.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;
 
 namespace {
-
-TraceGraph trace_of(const std::vector<TraceNode>& nodes, const std::vector<TraceInternode>& internodes)
-{
-    TraceReader reader("test");
-    for (const TraceNode& node : nodes) reader.add_node("test", node);
-    for (const TraceInternode& internode : internodes) reader.add_internode("test", internode);
-    return std::move(reader.trace);
-}
 
 /// A mask of the voxels where `group_at` says so.
 Mask mask_of(const Size3& size, const std::function<int(int64_t, int64_t, int64_t)>& group_at)

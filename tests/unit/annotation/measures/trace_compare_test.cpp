@@ -7,26 +7,18 @@
 #include <doctest/doctest.h>
 
 #include "engine/annotation/measures/trace_score.h"
+#include "tests/support/traces.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
 
 using Places = std::vector<glm::dvec3>;
 
-class Drawing {
+class Drawing : public GrowingTrace {
 public:
-    uint32_t node(const glm::dvec3& at, double radius = 1.0)
-    {
-        const auto number = uint32_t(trace.next_node());
-        trace.apply(TraceNodeChange{number, {}, TraceNode{at, radius, 1}}, Direction::forwards);
-        return number;
-    }
-    void link(uint32_t a, uint32_t b)
-    {
-        trace.apply(TraceInternodeChange{uint32_t(trace.next_internode()), {}, TraceInternode{a, b, 1}},
-                    Direction::forwards);
-    }
+    uint32_t node(const glm::dvec3& at, double radius = 1.0) { return GrowingTrace::node(at, radius); }
     /// Nodes at these places, one after the other, and from `from`; returns the last.
     uint32_t line(const Places& places, double radius = 1.0, std::optional<uint32_t> from = {})
     {
@@ -37,7 +29,6 @@ public:
         }
         return from.value();
     }
-    TraceGraph trace;
 };
 
 TraceGraph line_of(const Places& places, double radius = 1.0)

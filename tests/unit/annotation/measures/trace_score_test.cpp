@@ -7,6 +7,7 @@
 
 #include "engine/annotation/measures/trace_course.h"
 #include "engine/annotation/trace/trace_forms.h"
+#include "tests/support/traces.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -15,21 +16,11 @@ using namespace shvr::test;
 namespace {
 
 /// Draws chains of nodes between places, as far apart as `step`, all of one radius.
-class Drawing {
+class Drawing : public GrowingTrace {
 public:
     explicit Drawing(double radius = 1.0, double step = 2.0) : radius_(radius), step_(step) {}
 
-    uint32_t node(const glm::dvec3& at)
-    {
-        const auto number = uint32_t(trace.next_node());
-        trace.apply(TraceNodeChange{number, {}, TraceNode{at, radius_, 1}}, Direction::forwards);
-        return number;
-    }
-    void link(uint32_t a, uint32_t b)
-    {
-        trace.apply(TraceInternodeChange{uint32_t(trace.next_internode()), {}, TraceInternode{a, b, 1}},
-                    Direction::forwards);
-    }
+    uint32_t node(const glm::dvec3& at) { return GrowingTrace::node(at, radius_); }
     /// From a node to a new one at `to`, which it returns, or to `end`.
     uint32_t chain(uint32_t from, const glm::dvec3& to, std::optional<uint32_t> end = {})
     {
@@ -45,8 +36,6 @@ public:
         return last;
     }
     void chain_between(uint32_t from, uint32_t to) { chain(from, trace.node(to).position, to); }
-
-    TraceGraph trace;
 
 private:
     double radius_, step_;

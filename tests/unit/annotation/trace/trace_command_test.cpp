@@ -10,7 +10,9 @@
 
 #include "engine/annotation/trace/trace_segments.h"
 #include "engine/base/error.h"
-#include "engine/live/trace_look.h"
+#include "engine/device/trace_surfaces.h"
+#include "engine/live/trace_marks.h"
+#include "tests/support/random_annotation.h"
 
 using namespace shvr;
 
@@ -19,7 +21,7 @@ namespace {
 const TraceDefaults DEFAULTS{.spacing = {2.0, 3.0, 4.0}, .radius_voxels = 5.0, .group = 7};
 
 /// A document that takes operations.
-struct Work {
+struct Tracing {
     Document document{.mask = Mask(Size3(64)), .trace = {}};
     History history;
 
@@ -39,7 +41,7 @@ SelectOp nearest(const glm::dvec3& voxel, std::optional<double> within = {})
     return {.near = voxel, .number = {}, .is_internode = false, .within_voxels = within};
 }
 
-std::string refusal(const Work& work, const TraceOp& op)
+std::string refusal(const Tracing& work, const TraceOp& op)
 {
     try {
         static_cast<void>(work.effect(op));
@@ -53,7 +55,7 @@ std::string refusal(const Work& work, const TraceOp& op)
 
 TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's size and group where none is given")
 {
-    Work work;
+    Tracing work;
     work.perform(work.node_at({10, 10, 10}));
     CHECK(work.trace().node(0) == TraceNode{{20, 30, 40}, 10.0, 7});
     work.perform(NodeOp{.at = {11, 10, 10}, .radius_voxels = 1.5, .group = 3});
@@ -64,7 +66,7 @@ TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's si
 
 TEST_CASE("selecting is no step of the history, and what is too far away is not taken")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
     const size_t steps = work.history.undoable();
     CHECK(work.effect(nearest({19, 10, 10})).changes.empty());
@@ -87,7 +89,7 @@ TEST_CASE("selecting is no step of the history, and what is too far away is not 
 
 TEST_CASE("link, move, size, group and delete are one step each, and undone they leave what was")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const TraceOp edits[] = {LinkOp{.near = glm::dvec3(9, 10, 10), .node = {}, .within_voxels = 5.0},
                              MoveOp{{31, 12, 10}},
@@ -113,11 +115,11 @@ TEST_CASE("link, move, size, group and delete are one step each, and undone they
 
 TEST_CASE("a summary counts segments and adds lengths up by group")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     work.perform(nearest({20, 10, 10}));
     work.perform(NodeOp{.at = {20, 20, 10}, .radius_voxels = 1.0, .group = 2});
-    const TraceSummary summary = summary_of(work.trace());
+    const TraceSummary summary = work.trace().summary();
     CHECK(summary.nodes == 4);
     CHECK(summary.internodes == 3);
     CHECK(summary.segments == 3);
@@ -154,11 +156,11 @@ TEST_CASE("a summary of any trace has the segments that there are")
         }
         for (uint32_t i = below(links + 1); i < links; ++i) link(numbers[below(nodes)], numbers[below(nodes)]);
         const std::vector<TraceSegment> segments = segments_of(trace);
-        const TraceSummary summary = summary_of(trace);
+        const TraceSummary summary = trace.summary();
         CHECK(summary.segments == segments.size());
         double length = 0.0;
         for (const auto& [number, internode] : trace.internodes()) length += trace.length_of(internode);
-        CHECK(summary.length == length);
+        CHECK(summary.length == doctest::Approx(length).epsilon(1e-12));
         size_t loops = 0;
         for (const TraceSegment& segment : segments)
             loops += segment.is_loop() && trace.internodes_of(segment.nodes.front()).size() == 2;
@@ -167,9 +169,62 @@ TEST_CASE("a summary of any trace has the segments that there are")
     CHECK(most_loops > 1);
 }
 
+TEST_CASE("a summary kept through random commands, undone and redone, is that of the trace as it is")
+{
+    std::mt19937 random(17);  // seed 17
+    size_t most_loops = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        CAPTURE(trial);
+        Document document = test::unannotated();
+        History history;
+        for (int step = 0; step < 200; ++step) {
+            CAPTURE(step);
+            if (random() % 4 > 0)
+                history.perform(document, test::random_tracing(document, random));
+            else if (random() % 3 > 0)
+                history.undo(document);
+            else
+                history.redo(document);
+            const TraceGraph& trace = document.trace;
+            const TraceSummary summary = trace.summary();
+            REQUIRE(summary.nodes == trace.nodes().size());
+            REQUIRE(summary.internodes == trace.internodes().size());
+            const std::vector<TraceSegment> segments = segments_of(trace);
+            REQUIRE(summary.segments == segments.size());
+            double length = 0.0;
+            std::map<uint8_t, double> by_group;
+            for (const auto& [number, internode] : trace.internodes()) {
+                length += trace.length_of(internode);
+                by_group[internode.group] += trace.length_of(internode);
+            }
+            REQUIRE(summary.length == doctest::Approx(length).epsilon(1e-12));
+            REQUIRE(summary.group_length.size() == by_group.size());
+            for (const auto& [group, of_group] : by_group)
+                REQUIRE(summary.group_length.at(group) == doctest::Approx(of_group).epsilon(1e-12));
+            const auto loops = size_t(std::ranges::count_if(segments, [&](const TraceSegment& segment) {
+                return segment.is_loop() && trace.internodes_of(segment.nodes.front()).size() == 2;
+            }));
+            most_loops = std::max(most_loops, loops);
+        }
+    }
+    CHECK(most_loops > 0);
+}
+
+TEST_CASE("what is added far away and taken back leaves no trace in a length")
+{
+    Tracing work;
+    for (const double x : {10.0, 10.1, 30.7}) work.perform(work.node_at({x, 10, 10}));
+    const TraceSummary before = work.trace().summary();
+    work.perform(work.node_at({1e11, 10, 10}));
+    CHECK(work.trace().summary().length > 1e11);
+    work.history.undo(work.document);
+    CHECK(work.trace().summary().length == before.length);
+    CHECK(work.trace().summary().group_length == before.group_length);
+}
+
 TEST_CASE("what is drawn again holds what was there and what is there")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const auto reach_of_last = [&](const TraceOp& op) {
         const TraceEffect made = work.effect(op);
@@ -193,7 +248,7 @@ TEST_CASE("what is drawn again holds what was there and what is there")
 
 TEST_CASE("the selected node is marked yellow where it is or where it is dragged, and the nearby one purple")
 {
-    Work work;
+    Tracing work;
     for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
     const TraceMarks marks = trace_marks(work.trace(), 0, 1.0);
     REQUIRE(marks.balls.size() == 2);

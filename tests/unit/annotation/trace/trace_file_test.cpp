@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/annotation/trace/trace_forms.h"
+#include "tests/support/traces.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -17,14 +18,6 @@ using namespace shvr::test;
 namespace {
 
 const TraceSpace SPACE{{40, 30, 20}, {0.5, 0.25, 1.5}, "um"};
-
-TraceGraph trace_of(const std::vector<TraceNode>& nodes, const std::vector<TraceInternode>& internodes)
-{
-    TraceReader reader("test");
-    for (const TraceNode& node : nodes) reader.add_node("test", node);
-    for (const TraceInternode& internode : internodes) reader.add_internode("test", internode);
-    return std::move(reader.trace);
-}
 
 /// Two trees, or with `loops` also a loop, with numbers that need all their digits.
 TraceGraph random_trace(uint32_t seed, bool loops)

@@ -20,15 +20,7 @@ namespace fs = std::filesystem;
 
 class Desk : public TemporaryFolder {
 public:
-    WorkFiles files() const
-    {
-        return {.journal = path / "a.journal",
-                .mask = path / "a.mask",
-                .trace = path / "a.graphml",
-                .density = path / "a.offset",
-                .volume_hash = "xxh3-128:00112233445566778899aabbccddeeff",
-                .volume = annotated_volume()};
-    }
+    WorkFiles files() const { return files_in(path); }
     /// A work as it was left; what opening said goes to `said`.
     std::unique_ptr<Work> open(Work::Start start = Work::Start::as_left) const
     {

@@ -286,7 +286,8 @@ TEST_CASE("zarr: hostile metadata is refused by field, at once")
     refusals("compressor", {"zlib", {{"level", 1}}, {{"id", "bz2"}}, {{"id", 7}}});
     refusals("filters", {Json::array({{{"id", "delta"}}}), "delta"});
     CHECK(contains(Copy("delta_filter").refusal(), "filters is [{\"astype\":\"<i2\""));
-    CHECK(contains(Copy("lz4_alone").refusal(), "compressor.id is \"lz4\"; expected blosc, zstd, zlib or gzip"));
+    CHECK(contains(Copy("lz4_alone").refusal(),
+                   "compressor.id is \"lz4\"; expected one of \"blosc\", \"zstd\", \"zlib\", \"gzip\""));
     for (const char* key : {"shape", "chunks", "dtype", "order", "compressor", "zarr_format"}) {
         const Copy lacking("dots");
         lacking.change(".zarray", [&](Json& document) { document.erase(key); });
@@ -309,17 +310,17 @@ TEST_CASE("zarr: metadata that are no metadata are refused at once, without the 
         CHECK(effort.is_below(AT_ONCE_BYTES));
         return said;
     };
-    CHECK(contains(refusal(""), ".zarray: is not valid JSON; expected an object"));
-    CHECK(contains(refusal("[]"), ".zarray: is []; expected an object"));
-    CHECK(contains(refusal(std::string(1 << 20, '[')), ".zarray: is nested more than 64 deep"));
-    CHECK(contains(refusal(std::string(1 << 19, '[') + std::string(1 << 19, ']')), "nested more than 64 deep"));
+    CHECK(contains(refusal(""), ".zarray: is not JSON: "));
+    CHECK(contains(refusal("[]"), ".zarray: the document is []; expected an object"));
+    CHECK(contains(refusal(std::string(1 << 20, '[')), ".zarray: JSON nests deeper than 64 levels"));
+    CHECK(contains(refusal(std::string(1 << 19, '[') + std::string(1 << 19, ']')), "JSON nests deeper than 64 levels"));
     CHECK(contains(refusal(std::string((1 << 20) + 1, ' ')), "holds 1048577 bytes; expected at most 1048576"));
     std::string many = "{\"zarr_format\":2,\"shape\":[1";
     while (many.size() < 1000000) many += ",1";
-    CHECK(contains(refusal(many + "]}"), "shape is a list of "));
+    CHECK(contains(refusal(many + "]}"), "key shape is [1,1,1"));
     const std::string whole = text_of(DATA / "dots/.zarray");
     for (size_t length = 0; length + 1 < whole.size(); ++length) {
-        REQUIRE(contains(refusal(std::string_view(whole).substr(0, length)), "is not valid JSON"));
+        REQUIRE(contains(refusal(std::string_view(whole).substr(0, length)), "is not JSON: "));
     }
 }
 
@@ -483,7 +484,7 @@ TEST_CASE("ome-zarr: channels and points in time are chosen by name or number, a
 TEST_CASE("ome-zarr: what is no image of version 0.1 to 0.4 is refused in words")
 {
     CHECK(contains(Copy("version_3").refusal(), "version_3/zarr.json: is Zarr version 3"));
-    CHECK(contains(Copy("image_05").refusal(), "multiscales.version is \"0.5\"; expected \"0.1\" to \"0.4\""));
+    CHECK(contains(Copy("image_05").refusal(), "multiscales.0.version is \"0.5\"; expected one of \"0.1\", \"0.2\""));
     CHECK(contains(Copy("image_2d").refusal(), "expected a z axis too: pictures of two dimensions are no volumes"));
     const Copy group("series");
     fs::rename(group.root / "0", group.root / "other");
@@ -511,7 +512,7 @@ TEST_CASE("ome-zarr: hostile attributes are refused by field, at once")
     };
     for (const Json& path :
          {Json("../image_04/0"), Json("/etc"), Json(""), Json(7), Json("a/../../0"), Json(std::string("0\0x", 3))}) {
-        CHECK(contains(with_dataset("path", path), "multiscales.datasets.path is "));
+        CHECK(contains(with_dataset("path", path), "multiscales.0.datasets.0.path is "));
     }
     CHECK(contains(with_dataset("path", "nowhere"), "nowhere/.zarray: cannot be opened: No such file"));
     const auto scale = [](const Json& numbers) { return Json::array({{{"type", "scale"}, {"scale", numbers}}}); };
@@ -521,7 +522,7 @@ TEST_CASE("ome-zarr: hostile attributes are refused by field, at once")
     }
     for (const Json& steps : {Json("scale"), Json::array({"scale"}), Json::array({{{"type", "scale"}}}),
                               Json::array({{{"type", "rotation"}}}), Json(std::vector<int>(9, 1))}) {
-        CHECK(contains(with_dataset("coordinateTransformations", steps), "coordinateTransformations is "));
+        CHECK(contains(with_dataset("coordinateTransformations", steps), "datasets.0.coordinateTransformations"));
     }
     const auto with = [&](const char* key, const Json& value) {
         return refusal([&](Json& multiscale) { multiscale[key] = value; });
@@ -529,10 +530,10 @@ TEST_CASE("ome-zarr: hostile attributes are refused by field, at once")
     for (const Json& axes : {Json({"z", "y"}), Json({"z", "y", "x", "x"}), Json({"z", "y", "q"}), Json("zyx"), Json(7),
                              Json({"t", "c", "z", "y", "x", "w"}), Json({1, 2, 3}), Json({"y", "x"}),
                              Json::array({{{"name", "z"}, {"type", "wave"}}})}) {
-        CHECK(contains(with("axes", axes), "multiscales.axes"));
+        CHECK(contains(with("axes", axes), "multiscales.0.axes"));
     }
     for (const Json& datasets : {Json(), Json::array(), Json({1, 2}), Json::object()}) {
-        CHECK(contains(with("datasets", datasets), "multiscales.datasets is "));
+        CHECK(contains(with("datasets", datasets), "multiscales.0.datasets"));
     }
     CHECK(contains(refusal([](Json& multiscale) { multiscale.erase("datasets"); }), "datasets is missing"));
     const Copy other("image_03");

@@ -1,4 +1,4 @@
-#include "engine/live/trace_look.h"
+#include "engine/device/trace_surfaces.h"
 
 #include <algorithm>
 #include <array>
@@ -72,17 +72,8 @@ std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& gro
     return surfaces;
 }
 
-void show_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
-                   const Groups& groups)
-{
-    std::vector<KeyedSurface> all = keyed(surfaces);
-    const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, renderer.volume().info().spacing);
-    all.insert(all.end(), of_trace.begin(), of_trace.end());
-    renderer.set_keyed_surfaces(std::move(all));
-}
-
-void show_changed_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& surfaces, const TraceGraph& trace,
-                           const Groups& groups, std::span<const Change> changes)
+std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const Groups& groups,
+                                                const glm::dvec3& spacing, std::span<const Change> changes)
 {
     std::set<uint32_t> nodes, internodes;
     for (const Change& change : changes) {
@@ -95,23 +86,22 @@ void show_changed_surfaces(Renderer& renderer, const std::vector<SurfaceLook>& s
         } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
             internodes.insert(internode->internode);
         } else if (std::holds_alternative<TraceSizeChange>(*of_trace)) {
-            return show_surfaces(renderer, surfaces, trace, groups);
+            return std::nullopt;
         }
     }
-    TraceLook look(trace, groups, renderer.volume().info().spacing);
-    std::vector<uint64_t> keys;
-    std::vector<KeyedSurface> now;
-    const auto add = [&](SurfaceKind kind, const std::set<uint32_t>& changed, const auto& numbered) {
-        for (const uint32_t number : changed) {
-            keys.push_back(surface_key(kind, number));
+    TraceLook look(trace, groups, spacing);
+    ChangedSurfaces changed;
+    const auto add = [&](SurfaceKind kind, const std::set<uint32_t>& numbers, const auto& numbered) {
+        for (const uint32_t number : numbers) {
+            changed.keys.push_back(surface_key(kind, number));
             const auto found = numbered.find(number);
             if (found == numbered.end()) continue;
-            if (const auto surface = look.of(number, found->second)) now.push_back(*surface);
+            if (const auto surface = look.of(number, found->second)) changed.now.push_back(*surface);
         }
     };
     add(SurfaceKind::node, nodes, trace.nodes());
     add(SurfaceKind::internode, internodes, trace.internodes());
-    if (!renderer.replace_surfaces(keys, now)) show_surfaces(renderer, surfaces, trace, groups);
+    return changed;
 }
 
 namespace {
@@ -171,31 +161,6 @@ VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, c
         }
     }
     return reach.box(spacing);
-}
-
-TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
-                       const std::optional<glm::dvec3>& moved_to)
-{
-    TraceMarks marks;
-    const auto add_ball = [&](const glm::dvec3& at, double radius, const glm::dvec3& color) {
-        if (marks.balls.size() < MOST_MARKS) marks.balls.push_back({at, std::max(radius, least_radius), color});
-    };
-    const TraceSelection& selected = trace.selection();
-    if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
-    for (const uint32_t number : selected.internodes) {
-        if (marks.lines.size() == MOST_MARKS) break;
-        const TraceInternode& internode = trace.internode(number);
-        marks.lines.push_back({trace.node(internode.a).position, trace.node(internode.b).position, SELECTED_COLOR});
-    }
-    const bool is_moved = moved_to && selected.node();
-    for (const uint32_t node : selected.nodes) {
-        add_ball(is_moved ? *moved_to : trace.node(node).position, trace.node(node).radius, SELECTED_COLOR);
-        if (!is_moved) continue;
-        for (const uint32_t number : trace.internodes_of(node))
-            marks.lines.push_back(
-                {*moved_to, trace.node(trace.internode(number).other(node)).position, SELECTED_COLOR});
-    }
-    return marks;
 }
 
 }  // namespace shvr

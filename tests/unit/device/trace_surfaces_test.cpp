@@ -1,6 +1,6 @@
 // A trace as balls and rods.
 
-#include "engine/live/trace_look.h"
+#include "engine/device/trace_surfaces.h"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,150 @@
+#pragma once
+// One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: what the mask (mask.h) and density
+// offsets (density.h) are made of. A brick whose values are all 0 does not exist. Values change through records of exact
+// before and after and through nothing else; undo is the same record applied backwards.
+//
+// A brick never changes once it is there: changing its voxels replaces it. So a copy of all bricks costs their table and
+// shares them, and callers may keep a brick for as long as they like. One thread owns the bricks and lends them as const;
+// a copy may go to another thread.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/annotation/direction.h"
+#include "engine/volume/grid.h"
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+inline constexpr size_t VOXELS_PER_BRICK = size_t(BRICK_SIDE * BRICK_SIDE * BRICK_SIDE);
+
+/// Consecutive voxels of one brick (x fastest) that go from one value to another; `before != after`.
+template <class Value>
+struct BrickRun {
+    uint16_t first = 0;
+    uint16_t last = 0;  ///< inclusive
+    Value before = 0;
+    Value after = 0;
+    bool operator==(const BrickRun&) const = default;
+};
+
+/// What changed in one brick. Runs ascend and do not overlap.
+template <class Value>
+struct BrickChange {
+    int64_t brick = 0;  ///< linear index in the grid of bricks, x fastest
+    std::vector<BrickRun<Value>> runs;
+    bool operator==(const BrickChange&) const = default;
+    int64_t voxels() const;
+};
+
+/// Appends voxels `first` to `last` (inclusive), which follow those of `runs`; extends the last run where possible and
+/// leaves out voxels that keep their value.
+template <class Value>
+void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, Value before, Value after)
+{
+    if (before == after) return;
+    if (!runs.empty() && runs.back().last + size_t{1} == first && runs.back().before == before &&
+        runs.back().after == after)
+        runs.back().last = uint16_t(last);
+    else
+        runs.push_back({uint16_t(first), uint16_t(last), before, after});
+}
+
+/// Appends the runs that give voxels of an empty brick, from voxel `first` on, the values of `row`.
+template <class Value>
+void append_painted_runs(std::vector<BrickRun<Value>>& runs, std::span<const std::type_identity_t<Value>> row,
+                         size_t first)
+{
+    for (size_t x = 0; x < row.size();) {
+        size_t end = x + 1;
+        while (end < row.size() && row[end] == row[x]) ++end;
+        append_run(runs, first + x, first + end - 1, Value{0}, row[x]);
+        x = end;
+    }
+}
+
+/// Index of a voxel of the volume among the voxels of its brick.
+inline size_t index_in_brick(const Size3& voxel)
+{
+    return size_t(index_of(voxel % BRICK_SIDE, Size3(BRICK_SIDE)));
+}
+
+template <class Value>
+class SparseBricks {
+public:
+    using Brick = std::array<Value, VOXELS_PER_BRICK>;  ///< x fastest
+
+    /// Of a volume without voxels.
+    SparseBricks() = default;
+    explicit SparseBricks(const Size3& size) : size_(size), counts_(brick_grid(size)) {}
+
+    Size3 size() const { return size_; }
+    Size3 brick_counts() const { return counts_; }
+    glm::ivec3 position_of(int64_t brick) const { return shvr::position_of(brick, counts_); }
+    /// The voxels of a brick, cut at the volume's border.
+    VoxelBox box_of(int64_t brick) const;
+
+    /// Null where all of the brick's values are 0.
+    const std::shared_ptr<const Brick>& brick(int64_t index) const;
+    /// Bricks with a value other than 0, ascending.
+    std::vector<int64_t> painted_bricks() const;
+    /// The voxels of a change lie in this box of the volume.
+    VoxelBox reach_of(const BrickChange<Value>& change) const;
+
+protected:
+    /// The value of a voxel of the volume (SHVR_CHECK).
+    Value value_at(const Size3& voxel) const;
+
+    /// What error messages call a value: "group 3".
+    using Named = std::function<std::string(Value)>;
+    /// Whether voxels may come to hold a value; empty: any.
+    using Allowed = std::function<bool(Value)>;
+    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must hold what the record
+    /// says they hold before the change. Empty where it fits.
+    std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
+                                    const Allowed& allowed = {}) const;
+    /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.
+    template <class Replaced>
+    void replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced);
+    /// Adds a brick where there is none (SHVR_CHECK) and returns how many of its voxels are not 0; those beyond the
+    /// volume's border become 0.
+    int64_t put(int64_t index, Brick values);
+
+private:
+    bool holds_brick(int64_t brick) const { return brick >= 0 && brick < counts_.x * counts_.y * counts_.z; }
+    void store(int64_t index, std::shared_ptr<const Brick> brick);
+
+    Size3 size_{0};
+    Size3 counts_{0};
+    std::map<int64_t, std::shared_ptr<const Brick>> bricks_;
+};
+
+template <class Value>
+template <class Replaced>
+void SparseBricks<Value>::replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced)
+{
+    const std::shared_ptr<const Brick>& held = brick(change.brick);
+    const auto changed = held ? std::make_shared<Brick>(*held) : std::make_shared<Brick>();
+    const bool forwards = direction == Direction::forwards;
+    for (const BrickRun<Value>& run : change.runs) {
+        const Value from = forwards ? run.before : run.after, to = forwards ? run.after : run.before;
+        std::fill(changed->begin() + run.first, changed->begin() + run.last + 1, to);
+        replaced(from, to, int64_t{run.last} - run.first + 1);
+    }
+    store(change.brick, changed);
+}
+
+extern template struct BrickChange<uint8_t>;
+extern template struct BrickChange<uint32_t>;
+extern template class SparseBricks<uint8_t>;
+extern template class SparseBricks<uint32_t>;
+
+}  // namespace shvr

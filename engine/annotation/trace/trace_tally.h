@@ -1,0 +1,56 @@
+#pragma once
+// What a trace adds up to, kept while it changes: lengths by group, and how many segments there are. A change costs as much
+// as the internodes of its nodes; one that splits or joins segments, about as much as the shorter of the two.
+//
+// Not thread safe: part of a TraceGraph.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+namespace shvr {
+
+struct TraceNode;
+struct TraceInternode;
+class TraceGraph;
+
+/// What a panel shows of a trace.
+struct TraceSummary {
+    size_t nodes = 0, internodes = 0;
+    size_t segments = 0;                     ///< as many as segments_of finds
+    double length = 0.0;                     ///< of all internodes, in the volume's unit
+    std::map<uint8_t, double> group_length;  ///< by the internodes' groups
+};
+
+class TraceTally {
+public:
+    /// Called before and after a change of the position of `node`.
+    void before_move(const TraceGraph& trace, uint32_t node);
+    void after_move(const TraceGraph& trace, uint32_t node);
+    /// Called before and after an internode is added or removed. `is_there`: the trace has it then.
+    void before_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
+    void after_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
+    void change_group(const TraceGraph& trace, const TraceInternode& from, const TraceInternode& to);
+
+    TraceSummary summary_of(const TraceGraph& trace) const;
+
+private:
+    /// A sum with twice the digits of a double, so that what is added and taken away again leaves nothing behind.
+    struct LongSum {
+        double high = 0.0, low = 0.0;
+        void add(double value);
+        double value() const { return high + low; }
+    };
+    struct Group {
+        size_t internodes = 0;
+        LongSum length;
+    };
+    void add_length(const TraceGraph& trace, const TraceInternode& internode);
+    void remove_length(const TraceGraph& trace, const TraceInternode& internode);
+
+    std::map<uint8_t, Group> groups_;  ///< those that have internodes
+    size_t inner_nodes_ = 0;           ///< with exactly two internodes: a segment goes through them
+    size_t closed_segments_ = 0;       ///< loops of such nodes alone
+};
+
+}  // namespace shvr

@@ -1,0 +1,87 @@
+#include "engine/annotation/work/change.h"
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+namespace {
+
+/// The part of the document that a kind of change is about.
+Mask& part_for(Document& document, const MaskBrickChange&)
+{
+    return document.mask;
+}
+DensityField& part_for(Document& document, const DensityBrickChange&)
+{
+    return document.density;
+}
+TraceGraph& part_for(Document& document, const TraceChange&)
+{
+    return document.trace;
+}
+
+Direction opposite(Direction direction)
+{
+    return direction == Direction::forwards ? Direction::backwards : Direction::forwards;
+}
+
+/// The i-th change to be applied.
+const Change& in_order(std::span<const Change> changes, size_t i, Direction direction)
+{
+    return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
+}
+
+}  // namespace
+
+void apply(Document& document, const Change& change, Direction direction)
+{
+    std::visit([&](const auto& record) { part_for(document, record).apply(record, direction); }, change);
+}
+
+void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
+{
+    for (size_t i = 0; i < changes.size(); ++i) {
+        const Change& change = in_order(changes, i, direction);
+        const std::string reason = std::visit(
+            [&](const auto& record) { return part_for(document, record).why_it_does_not_fit(record, direction); },
+            change);
+        if (reason.empty()) {
+            apply(document, change, direction);
+            continue;
+        }
+        while (i > 0) apply(document, in_order(changes, --i, direction), opposite(direction));
+        fail(reason);
+    }
+}
+
+uint64_t memory_of(std::span<const Change> changes)
+{
+    uint64_t bytes = changes.size_bytes();
+    const ByKind more{
+        [](const MaskBrickChange& mask) { return mask.runs.size() * sizeof(MaskRun); },
+        [](const DensityBrickChange& density) { return density.runs.size() * sizeof(DensityRun); },
+        [](const TraceChange&) { return size_t{0}; },
+    };
+    for (const Change& change : changes) bytes += std::visit(more, change);
+    return bytes;
+}
+
+Touched touched_by(const Document& document, std::span<const Change> changes)
+{
+    Touched touched;
+    const ByKind touch{
+        [&](const MaskBrickChange& mask) {
+            touched.voxels += mask.voxels();
+            touched.mask_bricks.push_back(mask.brick);
+        },
+        [&](const DensityBrickChange& density) {
+            touched.voxels += density.voxels();
+            touched.raised.push_back(document.density.reach_of(density));
+        },
+        [&](const TraceChange&) { touched.trace = true; },
+    };
+    for (const Change& change : changes) std::visit(touch, change);
+    return touched;
+}
+
+}  // namespace shvr

@@ -1,0 +1,94 @@
+#include "engine/bricks/brick_slots.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+BrickSlots::BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)> need)
+    : need_(std::move(need)), slots_(count)
+{
+    for (uint32_t slot = count; slot-- > 1;) free_.push_back(slot);
+}
+
+std::optional<uint32_t> BrickSlots::find(const BrickKey& key) const
+{
+    const auto found = placed_.find(key);
+    return found == placed_.end() ? std::nullopt : std::optional(found->second);
+}
+
+size_t BrickSlots::room() const
+{
+    size_t room = free_.size();
+    for (const auto& [key, slot] : placed_) room += !slots_[slot].is_pinned && need_(key) == BrickNeed::none;
+    return room;
+}
+
+void BrickSlots::use(const BrickKey& key)
+{
+    if (const auto found = placed_.find(key); found != placed_.end()) slots_[found->second].used = now_;
+}
+
+/// Of equally old ones the lowest slot goes first, so that equal histories have equal outcomes.
+void BrickSlots::list_evictable(BrickNeed below)
+{
+    evictable_.clear();
+    for (const auto& [key, slot] : placed_)
+        if (!slots_[slot].is_pinned && need_(key) < below) evictable_.push_back({slots_[slot].used, slot});
+    std::ranges::sort(evictable_, std::greater());
+}
+
+std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
+{
+    // One that was used since it was listed no longer has its place in the list.
+    if (!evictable_.empty() && slots_[evictable_.back().slot].used != evictable_.back().used)
+        evictable_is_stale_ = true;
+    if (std::exchange(evictable_is_stale_, false)) list_evictable(BrickNeed::picture);
+    if (evictable_.empty() && below > BrickNeed::picture) {
+        list_evictable(below);
+        evictable_is_stale_ = true;  // it holds what the picture needs
+    }
+    if (evictable_.empty()) return std::nullopt;
+    const uint32_t slot = evictable_.back().slot;
+    evictable_.pop_back();
+    return slot;
+}
+
+std::optional<BrickSlots::Placed> BrickSlots::place(const BrickKey& key, BrickNeed need, bool is_pinned)
+{
+    SHVR_CHECK(!contains(key), "a brick is placed once");
+    Placed placed;
+    if (free_.empty()) {
+        const std::optional<uint32_t> slot = next_evictable(need);
+        if (!slot) return std::nullopt;
+        placed = {*slot, slots_[*slot].key};
+        clear(*slot);
+    } else {
+        placed.slot = free_.back();
+        free_.pop_back();
+    }
+    slots_[placed.slot] = {.key = key, .used = now_, .is_pinned = is_pinned};
+    placed_[key] = placed.slot;
+    if (!is_pinned && need_(key) == BrickNeed::none) evictable_is_stale_ = true;
+    return placed;
+}
+
+void BrickSlots::remove(const BrickKey& key)
+{
+    const std::optional<uint32_t> slot = find(key);
+    SHVR_CHECK(slot.has_value(), "only what has a slot is removed");
+    clear(*slot);
+    free_.push_back(*slot);
+    evictable_is_stale_ = true;
+}
+
+void BrickSlots::clear(uint32_t slot)
+{
+    placed_.erase(*slots_[slot].key);
+    slots_[slot] = {};
+    ++evictions_;
+}
+
+}  // namespace shvr

@@ -1,0 +1,274 @@
+#include "engine/device/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/device/paged_volume.h"
+#include "engine/device/resident_volume.h"
+#include "engine/device/trace_surfaces.h"
+#include "engine/volume/grid.h"
+#include "engine/volume/pyramid_source.h"
+
+namespace shvr {
+
+namespace {
+
+// Shares of the device memory that is left when a volume is loaded.
+/// A resident volume may take nearly all: pictures in parts, mask and tables need little beside it.
+constexpr uint64_t RESIDENT_SIXTEENTHS = 15;
+/// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, whose size is not known yet.
+constexpr uint64_t PAGED_FIFTHS = 3;
+/// Beside ambient occlusion, which then takes about as much as they do.
+constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
+/// More bricks than any view of a common screen needs: 27 000 of them.
+constexpr uint64_t MAX_ATLAS_BYTES = uint64_t{2} << 30;
+/// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
+constexpr uint64_t HOST_SHARES = 4;
+
+/// Offsets show as far as interpolation and gradients reach.
+constexpr int64_t RAISED_REACH = 2;
+/// Of more boxes only what holds them all is kept, for each cause: nobody may be there to take them.
+constexpr size_t MAX_CHANGED = 4096;
+
+bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
+{
+    if (sampling == Sampling::hardware && !traits.linear_r16)
+        fail("render.sampling is hardware; device ", traits.name,
+             " cannot filter R16_UNORM, expected automatic or exact");
+    // A CPU filters slower than it loads and computes; a GPU's sampler is nearly free.
+    return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
+}
+
+bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options)
+{
+    const uint64_t bytes = ResidentVolume::bytes_for(source.info());
+    return (options.with_occlusion ? 2 * bytes : bytes) <= memory.device_bytes_left() / 16 * RESIDENT_SIXTEENTHS;
+}
+
+bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options)
+{
+    if (options.paging != Paging::automatic) return options.paging == Paging::always;
+    return source.levels() > 1 || !fits_resident(memory, source, options);
+}
+
+}  // namespace
+
+Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
+             const VolumeStatistics& statistics, const Options& options)
+    : memory_(memory),
+      statistics_(statistics),
+      mask_(executor, memory, pages(memory, *source, options)),
+      occlusion_(memory),
+      surfaces_(memory),
+      tables_(memory)
+{
+    const IntensityWindow window = window_for(source->info().type, statistics);
+    const bool filtered = filters(traits(), options.sampling);
+    if (!pages(memory, *source, options)) {
+        offsets_ = std::make_shared<OffsetSource>(std::move(source));
+        volume_ = std::make_unique<ResidentVolume>(executor, memory, offsets_, window, filtered, options.threads);
+        return;
+    }
+    const uint64_t fifths = options.with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
+    const PagedVolume::Options paged{
+        .filtered = filtered,
+        .threads = options.threads,
+        .host_bytes = options.host_bytes / HOST_SHARES,
+        .device_bytes = std::min(MAX_ATLAS_BYTES, memory.device_bytes_left() / 5 * fifths)};
+    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes));
+    volume_ = std::make_unique<PagedVolume>(executor, memory, offsets_, window, paged);
+}
+
+bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
+{
+    static_cast<void>(filters(memory.device().traits(), options.sampling));
+    return !pages(memory, source, options) && fits_resident(memory, source, options);
+}
+
+// ---- What has changed -----------------------------------------------------------------------------------------------
+
+void Scene::show(const Document& document)
+{
+    if (const std::vector<int64_t> painted = document.mask.painted_bricks(); !painted.empty())
+        update_mask(document.mask, painted);
+    std::vector<VoxelBox> raised;
+    for (const int64_t brick : document.density.painted_bricks())
+        raised.push_back(document.density.box_of(brick));
+    if (!raised.empty()) update_density(document.density, raised);
+}
+
+void Scene::show(const Document& document, std::span<const Change> changes, const std::optional<VoxelBox>& within)
+{
+    const Touched touched = touched_by(document, changes);
+    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
+    if (!touched.raised.empty()) update_density(document.density, touched.raised);
+    show_trace(document.trace, changes);
+}
+
+void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
+{
+    mask_.update(mask, bricks);
+    volume_->note_painted(mask, bricks);
+    for (const int64_t brick : bricks) {
+        VoxelBox voxels = voxels_of({0, position_of(brick, mask.brick_counts())}, info().size);
+        occlusion_.changed(voxels);
+        if (within) voxels = {glm::max(voxels.lower, within->lower), glm::min(voxels.upper, within->upper)};
+        note_changed(voxels, Cause::edit);
+    }
+}
+
+void Scene::update_density(const DensityField& field, std::span<const VoxelBox> changed)
+{
+    SHVR_CHECK(field.size() == info().size && field.type() == info().type, "the offsets are of another volume");
+    std::vector<int64_t> bricks;
+    for (const VoxelBox& box : changed) {
+        const RegionBricks around = bricks_around(box);
+        for (uint32_t z = 0; z < around.counts.z; ++z)
+            for (uint32_t y = 0; y < around.counts.y; ++y)
+                for (uint32_t x = 0; x < around.counts.x; ++x)
+                    bricks.push_back(
+                        index_of(glm::i64vec3(around.begin + glm::uvec3(x, y, z)), glm::i64vec3(field.brick_counts())));
+    }
+    std::ranges::sort(bricks);
+    bricks.erase(std::ranges::unique(bricks).begin(), bricks.end());
+    std::vector<OffsetSource::Brick> offsets;
+    for (const int64_t brick : bricks) offsets.push_back({field.position_of(brick), field.brick(brick)});
+    offsets_->set(offsets);
+
+    volume_->renew(changed);
+    for (const VoxelBox& box : changed) {
+        occlusion_.changed(box, gpu::BRICK_APRON);
+        note_changed({glm::max(box.lower - RAISED_REACH, Size3(0)), glm::min(box.upper + RAISED_REACH, info().size)},
+                     Cause::edit);
+    }
+}
+
+void Scene::show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups)
+{
+    std::vector<KeyedSurface> all = keyed(surfaces);
+    const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, info().spacing);
+    all.insert(all.end(), of_trace.begin(), of_trace.end());
+    surfaces_.set(SurfaceForest(std::move(all), info()));
+    trace_look_ = TraceLook{std::move(surfaces), groups};
+}
+
+void Scene::show_trace(const TraceGraph& trace, std::span<const Change> changes)
+{
+    const bool is_traced =
+        std::ranges::any_of(changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
+    if (!is_traced || !trace_look_) return;
+    const std::optional<ChangedSurfaces> changed =
+        changed_surfaces(trace, trace_look_->groups, info().spacing, changes);
+    if (!changed || !replace_surfaces(changed->keys, changed->now))
+        show_surfaces(trace_look_->surfaces, trace, Groups(trace_look_->groups));
+    note_changed(trace_reach(trace, changes, info().spacing), Cause::edit);
+}
+
+void Scene::set_keyed_surfaces(std::vector<KeyedSurface> surfaces)
+{
+    surfaces_.set(SurfaceForest(std::move(surfaces), info()));
+    trace_look_.reset();
+}
+
+bool Scene::replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces)
+{
+    return surfaces_.replace(keys, surfaces, info());
+}
+
+void Scene::advance(bool wait)
+{
+    for (const VoxelBox& voxels : volume_->advance(wait)) note_changed(voxels, Cause::bricks);
+}
+
+void Scene::note_changed(const VoxelBox& voxels, Cause cause)
+{
+    if (glm::any(glm::greaterThanEqual(voxels.lower, voxels.upper))) return;
+    changed_.push_back({voxels, cause});
+    if (changed_.size() < MAX_CHANGED) return;
+    std::array<std::optional<VoxelBox>, 3> all;
+    for (const Changed& changed : std::exchange(changed_, {})) {
+        std::optional<VoxelBox>& of_cause = all[size_t(changed.cause)];
+        of_cause = of_cause ? united(*of_cause, changed.voxels) : changed.voxels;
+    }
+    for (size_t of = 0; of < all.size(); ++of)
+        if (all[of]) changed_.push_back({*all[of], Cause(of)});
+}
+
+std::vector<Scene::Changed> Scene::take_changed()
+{
+    return std::exchange(changed_, {});
+}
+
+// ---- How it looks ---------------------------------------------------------------------------------------------------
+
+Visibility Scene::visibility_of(const Look& look)
+{
+    return tables_.visibility_of(look, volume_->window());
+}
+
+double Scene::gradient_fade_codes(const Light& light) const
+{
+    const auto [lower, upper] = statistics_.range();
+    return light.gradient_fade * ((upper - lower) * volume_->window().codes_per_unit);
+}
+
+Occlusion::Look Scene::occlusion_look(const Look& look)
+{
+    const OcclusionSettings& settings = look.light.occlusion;
+    Occlusion::Look wanted{.function = look.transfer_function,
+                           .visibility = visibility_of(look),
+                           .cut = look.cut,
+                           .radius = settings.radius,
+                           .rays = settings.rays,
+                           .full_sphere = settings.full_sphere,
+                           .gradient_fade = gradient_fade_codes(look.light)};
+    for (uint32_t group = 1; group < 256; ++group) {
+        const ColorGroup of_group = group_of(look.groups, uint8_t(group));
+        wanted.groups[group] = of_group.visible ? of_group.opacity : 0.0;
+    }
+    return wanted;
+}
+
+bool Scene::has_occlusion(const Look& look)
+{
+    if (!shows_occlusion(look.light)) {
+        occlusion_has_no_room_ = false;
+        return false;
+    }
+    if (occlusion_has_no_room_) return false;
+    if (occlusion_.exists_for(*volume_)) return true;
+    try {
+        occlusion_.look(occlusion_look(look), *volume_, mask_);
+    } catch (const Error& error) {
+        occlusion_.clear();
+        occlusion_has_no_room_ = true;
+        messages_.push_back(std::string("ambient occlusion is left out; ") + error.what());
+    }
+    return !occlusion_has_no_room_;
+}
+
+void Scene::want_occlusion(const Look& look)
+{
+    const Occlusion::Look wanted = occlusion_look(look);
+    occlusion_.look(wanted, *volume_, mask_);
+    volume_->want_around(occlusion_.reach());
+    volume_->look_by(wanted.visibility);
+}
+
+void Scene::add_occlusion(FrameGraph& graph, const Camera& camera, const Occlusion::Most& most)
+{
+    const std::optional<MaskBinding> mask = mask_.import(graph);
+    const VolumeBinding volume = volume_->prepare(graph, mask_, mask, false);
+    for (const VoxelBox& voxels : occlusion_.next(graph, volume, mask, camera.eye / info().spacing, most))
+        note_changed(voxels, Cause::light);
+}
+
+std::vector<std::string> Scene::take_messages()
+{
+    std::vector<std::string> messages = std::exchange(messages_, {});
+    for (std::string& message : volume_->take_messages()) messages.push_back(std::move(message));
+    return messages;
+}
+
+}  // namespace shvr

@@ -1,0 +1,32 @@
+#include "engine/live/trace_marks.h"
+
+#include <algorithm>
+
+namespace shvr {
+
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+                       const std::optional<glm::dvec3>& moved_to)
+{
+    TraceMarks marks;
+    const auto add_ball = [&](const glm::dvec3& at, double radius, const glm::dvec3& color) {
+        if (marks.balls.size() < MOST_MARKS) marks.balls.push_back({at, std::max(radius, least_radius), color});
+    };
+    const TraceSelection& selected = trace.selection();
+    if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
+    for (const uint32_t number : selected.internodes) {
+        if (marks.lines.size() == MOST_MARKS) break;
+        const TraceInternode& internode = trace.internode(number);
+        marks.lines.push_back({trace.node(internode.a).position, trace.node(internode.b).position, SELECTED_COLOR});
+    }
+    const bool is_moved = moved_to && selected.node();
+    for (const uint32_t node : selected.nodes) {
+        add_ball(is_moved ? *moved_to : trace.node(node).position, trace.node(node).radius, SELECTED_COLOR);
+        if (!is_moved) continue;
+        for (const uint32_t number : trace.internodes_of(node))
+            marks.lines.push_back(
+                {*moved_to, trace.node(trace.internode(number).other(node)).position, SELECTED_COLOR});
+    }
+    return marks;
+}
+
+}  // namespace shvr

@@ -1,0 +1,25 @@
+#pragma once
+// What is highlighted in a trace. Pure.
+
+#include <optional>
+#include <vector>
+
+#include "engine/annotation/trace/tracing.h"
+#include "engine/look/overlay.h"
+
+namespace shvr {
+
+/// The nodes and internodes that stand out: what is selected, and the node that a person would take. Segments of more than
+/// MOST_MARKS internodes are marked in part.
+struct TraceMarks {
+    std::vector<OverlayScene::Ball> balls;
+    std::vector<OverlayScene::Line> lines;
+};
+inline constexpr size_t MOST_MARKS = 2000;
+inline constexpr glm::dvec3 SELECTED_COLOR{1.0, 0.83, 0.02};  ///< yellow, linear light
+inline constexpr glm::dvec3 NEARBY_COLOR{0.45, 0.05, 0.9};    ///< purple
+/// `moved_to`: where the selected node is being dragged.
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+                       const std::optional<glm::dvec3>& moved_to = {});
+
+}  // namespace shvr

@@ -1,0 +1,173 @@
+#include "engine/picture/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/passes/anaglyph.h"
+#include "engine/picture/ray_params.h"
+
+namespace shvr {
+
+namespace {
+
+/// Pixels of one dispatch: bounds what a single submission costs on a slow device.
+constexpr glm::uvec2 TILE{128, 128};
+/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep rays that go the same way together; a CPU
+/// runs a row of pixels as one vector.
+constexpr uint32_t GROUP_WIDTH_OF_GPU = 8, GROUP_WIDTH_OF_CPU = 16;
+/// Of a preview that lies behind something else, and in slices of what is below.
+constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
+
+/// What the eyes of a shot share.
+struct Prepared {
+    VolumeBinding volume;
+    RaycastInput input;  ///< but for surfaces
+    std::optional<SurfaceList> listed;
+};
+
+/// The first half of the list at the top of frame.h.
+Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
+                 bool feedback)
+{
+    const double step_voxels = look_at(scene, look, shot, part);
+    Prepared prepared;
+    RaycastInput& input = prepared.input;
+    input.mask = scene.mask().import(graph);
+    prepared.volume = scene.volume().prepare(graph, scene.mask(), input.mask, feedback);
+    if (!shot.is_slice && scene.has_occlusion(look)) {
+        const OcclusionSettings& settings = look.light.occlusion;
+        input.occlusion = RaycastOcclusion{scene.occlusion().bring_up_to_date(graph).values,
+                                           {float(settings.strength), float(settings.curve)}};
+    }
+    input.table = scene.tables().upload_function(graph, look, step_voxels);
+    if (input.mask) input.groups = scene.tables().upload_groups(graph, look, step_voxels);
+    if (!shot.is_slice) prepared.listed = scene.surfaces().upload(graph);
+    input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
+    input.shaded = look.light.shaded && !shot.is_slice;
+    input.slice = shot.is_slice;
+    input.preintegrated = look.render.preintegration && !shot.is_slice;
+    input.group_width = scene.traits().is_cpu ? GROUP_WIDTH_OF_CPU : GROUP_WIDTH_OF_GPU;
+    input.tile = TILE;
+    if (shot.is_slice) set_slice(input.params, look, scene);
+    if (part.probe && !shot.is_slice) set_shell(input, *part.probe, scene);
+    return prepared;
+}
+
+/// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.
+std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Prepared& prepared,
+                                      const RaycastInput& input, const Camera& camera, const PicturePart& part)
+{
+    const bool has_ball = part.probe && part.probe->ball_share > 0.0;
+    if (input.slice || (!prepared.listed && !has_ball)) return std::nullopt;
+    SurfacesInput wanted{
+        .params = input.params,
+        .scene = scene.surfaces().params(ray_planes(camera, part.pixels, scene.info()), part.pixels, scene.info()),
+        .listed = prepared.listed,
+        .probe = has_ball,
+        .group_width = input.group_width,
+        .tile = input.tile};
+    if (has_ball) set_ball(wanted.scene, *part.probe, scene.info());
+    return surfaces(graph, wanted);
+}
+
+/// What one eye sees. What there is of a preview comes before the rays, so that they end at it, and over the picture that
+/// they make.
+Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
+                  const PicturePart& part, Resource target)
+{
+    input.surfaces = draw_surfaces(graph, scene, prepared, input, camera, part);
+    if (!part.probe || !part.probe->preview || part.probe->preview->voxels == 0)
+        return raycast(graph, prepared.volume, input, target);
+    const PreviewSeen made = preview(graph, {.params = input.params,
+                                             .preview = preview_params(*part.probe, camera, part.pixels, scene.info()),
+                                             .words = part.probe->preview->words,
+                                             .surfaces = input.surfaces,
+                                             .slice = input.slice,
+                                             .group_width = input.group_width});
+    input.surfaces = made.surfaces;
+    const Resource picture = raycast(graph, prepared.volume, input, target);
+    return preview_over(graph, made.seen, picture,
+                        {.target = input.params.target,
+                         .size = part.end - part.begin,
+                         .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
+}
+
+}  // namespace
+
+Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
+           Resource target, bool count_work)
+{
+    Prepared prepared = prepare(graph, scene, look, shot, part, true);
+    prepared.input.count_work = count_work;
+    Drawn drawn;
+    if (!shot.right_eye) {
+        drawn.target = draw_eye(graph, scene, prepared, prepared.input, shot.camera, part, target);
+    } else {
+        const glm::uvec2 size = part.end - part.begin;
+        const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
+        RaycastInput left = prepared.input, right = prepared.input;
+        left.params.target = right.params.target = glm::uvec2(0);
+        set_rays(right.params, look, *shot.right_eye, scene.info(), part.pixels);
+        const Resource by_left =
+            draw_eye(graph, scene, prepared, left, shot.camera, part, graph.create("left eye", desc));
+        const Resource by_right =
+            draw_eye(graph, scene, prepared, right, *shot.right_eye, part, graph.create("right eye", desc));
+        drawn.target = anaglyph(graph, by_left, by_right, target, size, part.target);
+    }
+    drawn.feedback = scene.volume().request_feedback(graph, prepared.volume);
+    return drawn;
+}
+
+Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
+{
+    Prepared prepared = prepare(graph, scene, look, shot, part, false);
+    RaycastInput input = prepared.input;
+    input.surfaces = draw_surfaces(graph, scene, prepared, input, shot.camera, part);
+    input.pick = true;
+    input.shaded = false;
+    input.params.opacity_limit = std::min(input.params.opacity_limit, 0.5f);
+    return raycast(graph, prepared.volume, input,
+                   graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1))));
+}
+
+double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
+{
+    const int finest = scene.volume().look({.camera = shot.camera,
+                                            .other_eye = shot.right_eye,
+                                            .pixels = part.detail_pixels.x > 0 ? part.detail_pixels : part.pixels,
+                                            .detail = look.render.detail,
+                                            .cut = shot.is_slice ? CutBox{} : look.cut,
+                                            .shows_all = shot.is_slice,
+                                            .shown = part.always_shown},
+                                           scene.visibility_of(look));
+    return std::ldexp(look.render.step_voxels, finest);
+}
+
+std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look)
+{
+    return scene.volume().next_preparation(scene.visibility_of(look), scene.mask());
+}
+
+std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look)
+{
+    return scene.volume().next_refinement(scene.visibility_of(look), scene.mask());
+}
+
+std::optional<FrameGraph> next_occlusion(Scene& scene, const Look& look, const Camera& camera,
+                                         const Occlusion::Most& most)
+{
+    if (!scene.has_occlusion(look)) {
+        scene.occlusion().clear();
+        scene.volume().want_around({});
+        return std::nullopt;
+    }
+    if (!scene.volume().has_view()) return std::nullopt;
+    scene.want_occlusion(look);
+    if (!scene.occlusion().is_due()) return std::nullopt;
+    FrameGraph graph;
+    scene.add_occlusion(graph, camera, most);
+    return graph;
+}
+
+}  // namespace shvr

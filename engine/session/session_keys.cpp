@@ -1,0 +1,351 @@
+// The keys of a session file, but for those of what a picture looks like (session_keys_look.cpp) and of cameras
+// (session_keys_camera.cpp).
+
+#include "engine/session/session_keys.h"
+
+#include <charconv>
+#include <limits>
+
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/base/text.h"
+#include "engine/volume/grid.h"
+
+namespace shvr {
+
+// ---- What the forms of values share ---------------------------------------------------------------------------------
+
+void Fields::flag(std::string_view name, bool& value, const About& about)
+{
+    std::optional<bool> flag = value;
+    any_flag(name, flag, about);
+    value = flag.value_or(value);
+}
+
+void Fields::number(std::string_view name, double& value, const NumberRange& range, const About& about)
+{
+    std::optional<double> number = value;
+    this->number(name, number, range, about);
+    value = number.value_or(value);
+}
+
+void Fields::vector(std::string_view name, glm::dvec3& value, const NumberRange& range, const About& about)
+{
+    std::optional<glm::dvec3> vector = value;
+    this->vector(name, vector, range, about);
+    value = vector.value_or(value);
+}
+
+void Fields::color(std::string_view name, std::optional<glm::dvec3>& value, const About& about)
+{
+    std::optional<glm::dvec4> color;
+    if (value) color = glm::dvec4(*value, 1.0);
+    this->color(name, color, false, about);
+    if (color) value = glm::dvec3(*color);
+}
+
+void Fields::color(std::string_view name, glm::dvec3& value, const About& about)
+{
+    std::optional<glm::dvec3> color = value;
+    this->color(name, color, about);
+    value = color.value_or(value);
+}
+
+namespace {
+
+// ---- volume ---------------------------------------------------------------------------------------------------------
+
+const About PROCEDURAL{.meaning = "instead of `path`: a function", .standard = "none"};
+const About PATH{.meaning = "the file", .allowed = "path", .standard = "required for files", .is_required = true};
+const About RAW{
+    .meaning =
+        "for bare voxels: `\"256x256x108:int16:little:0\"`, size, type, byte order and bytes to leave out; the last "
+        "two "
+        "may be "
+        "left out. `volume.path` may then be the first of numbered files with a slice each, or their folder",
+    .allowed = "text",
+    .standard = "none"};
+
+void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
+{
+    f.vector("spacing", spacing, above_zero(1e-12, 1e12),
+             {.meaning = "with `raw` or `procedural`", .allowed = "physical units per voxel, above 0"});
+    f.text("unit", unit, {.meaning = "with `raw` or `procedural`", .allowed = "text"});
+    f.check("unit", !has_controls(unit), "the name of a unit");
+}
+
+void procedural_fields(Fields& f, ProceduralSpec& spec)
+{
+    const std::vector<std::string> kinds = procedural_kinds();
+    f.choice("procedural", spec.kind, {kinds.begin(), kinds.end()}, PROCEDURAL);
+    std::vector<int64_t> size{spec.size.x, spec.size.y, spec.size.z};
+    f.wholes("size", size, 1, LARGEST_SIDE, {"with `procedural`", "voxels"});
+    spec.size = {size[0], size[1], size[2]};
+    f.whole("seed", spec.seed, 0, std::numeric_limits<uint32_t>::max(), {"with `procedural`"});
+    std::vector<std::string_view> types;
+    for (const VoxelType type : VOXEL_TYPES) types.push_back(name_of(type));
+    std::string type = name_of(spec.type);
+    f.choice("type", type, types, {"with `procedural`"});
+    spec.type = voxel_type_of(type).value_or(spec.type);
+    spacing_fields(f, spec.spacing, spec.unit);
+}
+
+std::string text_of(const RawLayout& layout)
+{
+    const char* const order = !layout.big_endian ? "" : *layout.big_endian ? ":big" : ":little";
+    return sentence(layout.size.x, "x", layout.size.y, "x", layout.size.z, ":", name_of(layout.type), order, ":",
+                    layout.offset_bytes);
+}
+
+void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>& layout)
+{
+    f.path("path", path, PATH);
+    const auto read = [&](const JsonNode& node) {
+        layout = node.checked([text = node.text()] { return parse_raw_layout(text); });
+    };
+    f.other(
+        "raw", read, [&] { return layout ? std::optional('"' + text_of(*layout) + '"') : std::nullopt; }, RAW);
+    if (!layout) layout.emplace();
+    spacing_fields(f, layout->spacing, layout->unit);
+}
+
+/// Of three forms: a function, bare voxels, or a file in a known format.
+void volume_fields(Fields& f, Session& session)
+{
+    if (f.has("procedural", session.procedural.has_value())) {
+        if (!session.procedural) session.procedural.emplace();
+        return procedural_fields(f, *session.procedural);
+    }
+    if (f.has("raw", session.raw_layout.has_value())) return raw_fields(f, session.volume_path, session.raw_layout);
+    f.path("path", session.volume_path, PATH);
+    f.mention("raw", RAW);
+    f.mention("procedural", PROCEDURAL);
+    f.text(
+        "channel", session.open_options.channel,
+        {.meaning =
+             "of a file with several: `\"red\"`, `\"green\"`, `\"blue\"`, `\"alpha\"`, a name in the file, or a number "
+             "from 1",
+         .allowed = "text",
+         .standard = "none: such a file is refused"});
+    f.text("frame", session.open_options.frame,
+           {.meaning = "of a file with several points in time: a number from 1",
+            .allowed = "text",
+            .standard = "none: such a file is refused"});
+}
+
+// ---- transfer_function, groups, probe, surfaces, annotation ---------------------------------------------------------
+
+void transfer_fields(Fields& f, Session& session)
+{
+    const About points_about{
+        .meaning =
+            "control points; opacity and colour are linear in between and 0 outside; points at one "
+            "intensity make a step",
+        .allowed = "array",
+        .standard = "without `transfer_function` one is made from the histogram, with a warning",
+        .is_required = true};
+    const About preset_about{
+        .meaning = "instead of `points`: one of `assets/transfer_functions`, laid over the volume's intensities",
+        .allowed = "`\"bundles\"`, `\"haze\"`, `\"heat\"`, `\"layers\"`, `\"surface\"`",
+        .standard = "none"};
+    if (f.has("preset", !session.transfer_preset.empty())) {
+        f.mention("points", points_about);
+        f.check("preset", !f.has("points", false), "either points or a preset");
+        return f.text("preset", session.transfer_preset, preset_about);
+    }
+    const std::span<const ControlPoint> before = session.transfer_function.points();
+    std::vector<ControlPoint> points(before.begin(), before.end());
+    f.list("points", points, SIZE_MAX, points_about);
+    if (!std::ranges::equal(points, before)) session.transfer_function = TransferFunction(std::move(points));
+    f.mention("preset", preset_about);
+}
+
+void group_fields(Fields& f, GroupSettings& group)
+{
+    f.flag("visible", group.visible, {"false: neither its voxels nor those of groups below it are drawn"});
+    f.text("name", group.name, {.meaning = "what a person calls it", .allowed = "text", .standard = "`\"group N\"`"});
+    std::optional<int64_t> parent = group.parent == 0 ? std::nullopt : std::optional<int64_t>(group.parent);
+    f.any_whole("parent", parent, 0, 255,
+                {.meaning = "the group that it belongs to, or 0; what is not set for N is the parent's",
+                 .allowed = "0 ... 255, no cycle",
+                 .standard = "0"});
+    group.parent = uint8_t(parent.value_or(0));
+    f.color("color", group.color, {.meaning = "colour", .standard = "the parent's, or one of ten"});
+    f.number("opacity", group.opacity, SHARE,
+             {.meaning = "opacity", .unit = "per reference length", .standard = "the parent's, or 1"});
+}
+
+std::optional<uint8_t> group_number(const std::string& name)
+{
+    uint8_t group = 0;
+    const auto result = std::from_chars(name.data(), name.data() + name.size(), group);
+    const bool is_whole = result.ec == std::errc() && result.ptr == name.data() + name.size();
+    if (!is_whole || group == 0 || name[0] == '0') return {};
+    return group;
+}
+
+void density_fields(Fields& f, DensityBrush& density)
+{
+    const auto read = [&](const JsonNode& node) {
+        density.offset.reset();
+        if (node.is("automatic")) return;
+        if (!node.is_number()) node.refuse("a number or \"automatic\"");
+        density.offset = node.number(INTENSITY);
+    };
+    const auto written = [&] { return density.offset ? digits_of(*density.offset) : std::string("\"automatic\""); };
+    f.other("offset", read, written,
+            {.meaning = "by how much; `\"automatic\"`: as makes the paint threshold visible",
+             .allowed = "the file's intensities, or `\"automatic\"`",
+             .standard = "`\"automatic\"`"});
+    f.choice("falloff", density.falloff, {"whether less of it towards the brush's edge"});
+}
+
+void annotation_fields(Fields& f, Session& session)
+{
+    f.path("mask", session.mask_path,
+           {.meaning = "the mask's file, which need not exist yet: bare bytes (`.mask`), `.nrrd`, `.tif`, or an "
+                       "OME-Zarr label image "
+                       "(`.zarr`), whose names and colours are those of groups that `groups` does not list",
+            .allowed = "path",
+            .standard = "none"});
+    f.path("trace", session.trace_path,
+           {.meaning = "the trace's file, which need not exist yet: `.graphml`, which keeps everything, `.txt`, `.swc` "
+                       "or `.rsml`",
+            .allowed = "path",
+            .standard = "beside the mask, with its name and `.graphml`"});
+    if (session.trace_path.empty() && !session.mask_path.empty())
+        session.trace_path = std::filesystem::path(session.mask_path).replace_extension(".graphml");
+    f.check("trace", session.trace_path.empty() || is_trace_file(session.trace_path),
+            "a path that ends in .graphml, .txt, .swc or .rsml");
+    f.path("density", session.density_path,
+           {.meaning =
+                "the file of density offsets, which need not exist yet: bare numbers (`.offset`), `.nrrd` or `.tif`",
+            .allowed = "path",
+            .standard = "none"});
+}
+
+}  // namespace
+
+void fields(Fields& f, Groups& groups)
+{
+    std::vector<std::string> names;
+    for (const auto& [number, group] : groups) names.push_back(std::to_string(number));
+    const auto visit = [&](Fields& entry, const std::string& name) {
+        const std::optional<uint8_t> number = group_number(name);
+        entry.check("", number.has_value(), "a group number from 1 to 255 as its name");
+        GroupSettings unnumbered;
+        group_fields(entry, number ? groups[*number] : unnumbered);
+    };
+    f.entries("groups", names, "N", visit,
+              {.meaning = "colour group N, 1 ... 255, which replaces the transfer function where a voxel is painted",
+               .allowed = "object",
+               .standard = "one of ten colours in turn"});
+    if (const std::optional<uint8_t> group = group_in_cycle(groups))
+        f.check(sentence("groups.", int{*group}, ".parent"), false, "a group that is not the group itself or below it");
+}
+
+void fields(Fields& f, ProbeSettings& probe)
+{
+    BrushSettings& brush = probe.brush;
+    constexpr const char* INTENSITIES = "the file's intensities";
+    f.number("radius_voxels", brush.radius_voxels, above_zero(1e-3, 127.0),
+             {.meaning = "of the probe and its brush, along x", .allowed = "voxels, above 0 ... 127"});
+    f.whole("group", brush.group, 0, 255, {"the group it paints; 0 erases"});
+    f.choice("brush", brush.brush, {"which voxels of its region it paints"});
+    f.choice("region", brush.region, {"the region's shape"});
+    f.whole("connectivity", brush.connectivity, 6, 26,
+            {.meaning = "neighbours of a voxel, for flood and speckle", .allowed = "6 or 26"});
+    f.check("connectivity", brush.connectivity == 6 || brush.connectivity == 26, "6 or 26");
+    f.vector("voxel", probe.voxel, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
+             {.meaning = "where the probe is", .unit = "voxels", .standard = "the volume's middle"});
+    f.number("paint_threshold", brush.threshold, INTENSITY,
+             {.meaning = "voxels at or above it are painted",
+              .allowed = INTENSITIES,
+              .standard = "the middle of what the transfer function shows"});
+    f.number("haptic_threshold", probe.haptic_threshold, INTENSITY,
+             {.meaning = "voxels at or above it are felt", .allowed = INTENSITIES, .standard = "the paint threshold"});
+    f.flag("shown", probe.shown, {"`shvr render` draws it as a ball in its group's colour; the window always does"});
+    f.flag("shell", probe.shell,
+           {"an iso-surface at the paint threshold in the probe's region: what density painting would lift over it"});
+    f.number("shell_opacity", probe.shell_opacity, SHARE, {"of one crossing of it"});
+    f.flag("preview", probe.preview,
+           {"the voxels that painting would change now, in pictures and slices; striped where it would erase"});
+    const About density{
+        .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
+        .allowed = "object",
+        .standard = "none"};
+    if (f.has("density", brush.density.has_value())) {
+        if (!brush.density) brush.density.emplace();
+        f.section(
+            "density", [&](Fields& inner) { density_fields(inner, *brush.density); }, density);
+    } else {
+        f.mention("density", density);
+    }
+    f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: offsets alone"});
+    f.check("paints_group", brush.paints_group || brush.density, "true, where there is no probe.density");
+}
+
+void fields(Fields& f, SurfaceLook& surface)
+{
+    const NumberRange size = above_zero(1e-12, 1e15);
+    const bool is_ball = surface.to == surface.from, is_even = surface.radius_to == surface.radius_from;
+    std::optional<glm::dvec3> to = is_ball ? std::nullopt : std::optional(surface.to);
+    std::optional<double> radius = is_even ? std::optional(surface.radius_from) : std::nullopt;
+    std::optional<glm::dvec2> radii =
+        is_even ? std::nullopt : std::optional(glm::dvec2(surface.radius_from, surface.radius_to));
+    f.vector("from", surface.from, COORDINATE,
+             {.meaning = "one end of a rod, or where a ball is", .allowed = "physical units", .is_required = true});
+    f.vector("to", to, COORDINATE,
+             {.meaning = "its other end", .allowed = "physical units", .standard = "`from`: a ball"});
+    surface.to = to.value_or(surface.from);
+    const bool has_radii = f.has("radii", !is_even);
+    f.check("radius", !has_radii || !f.has("radius", false), "either radius or radii");
+    const About one{.meaning = "of both ends",
+                    .allowed = "physical units, above 0",
+                    .standard = "required, or `radii`",
+                    .is_required = true};
+    const About two{.meaning = "of the ends, `[from, to]`",
+                    .allowed = "physical units, above 0",
+                    .standard = "required, or `radius`"};
+    if (has_radii) {
+        f.mention("radius", one);
+        f.numbers("radii", radii, size, two);
+        if (radii) std::tie(surface.radius_from, surface.radius_to) = std::tie(radii->x, radii->y);
+    } else {
+        f.number("radius", radius, size, one);
+        f.mention("radii", two);
+        if (radius) surface.radius_from = surface.radius_to = *radius;
+    }
+    f.color("color", surface.color, {"colour"});
+}
+
+void fields(Fields& f, Session& session)
+{
+    int64_t version = 1;
+    f.whole("shvr_session", version, 1, 1, {.meaning = "version of this format", .allowed = "1", .is_required = true});
+    f.section("volume", [&](Fields& volume) { volume_fields(volume, session); },
+              {.meaning = "one of the three forms below", .allowed = "object", .is_required = true});
+    camera_fields(f, session);
+    f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
+    fields(f, session.groups);
+    f.section("light", session.light);
+    f.section("blend", session.blend);
+    f.section("render", session.render);
+    f.section("view", session.view);
+    f.section("interaction", session.interaction);
+    f.section("cut", session.cut);
+    f.section("probe", session.probe);
+    const About surfaces{.meaning = "opaque balls and rods that rays stop at, whatever is cut away of the volume",
+                         .allowed = "array of at most 100000",
+                         .standard = "none"};
+    if (f.has("surfaces", !session.surfaces.empty()))
+        f.list("surfaces", session.surfaces, MAX_SESSION_SURFACES, surfaces);
+    else
+        f.mention("surfaces", surfaces);
+    const bool has_files = !session.mask_path.empty() || !session.trace_path.empty() || !session.density_path.empty();
+    if (f.has("annotation", has_files))
+        f.section("annotation", [&](Fields& annotation) { annotation_fields(annotation, session); });
+    else
+        f.mention("annotation", {});
+}
+
+}  // namespace shvr

@@ -1,0 +1,127 @@
+// The keys of cameras in a session file.
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/session/session_keys.h"
+
+namespace shvr {
+namespace {
+
+std::vector<std::string_view> views_of(const std::vector<std::string>& texts)
+{
+    return {texts.begin(), texts.end()};
+}
+
+}  // namespace
+
+bool is_camera_object(const std::string& name_or_json)
+{
+    const size_t begin = name_or_json.find_first_not_of(" \t\r\n");
+    return begin != std::string::npos && name_or_json[begin] == '{';
+}
+
+void fields(Fields& f, SideView& view)
+{
+    const std::vector<std::string> sides = camera_sides();
+    f.choice("side", view.side, views_of(sides),
+             {.meaning = "the eye on the -y side (front), +y (back), -x (left) or +x (right), all with z up, +z (top) "
+                         "or -z (bottom) "
+                         "with y up; the volume's bounding sphere fits a square picture with 5 % to spare",
+              .standard = "instead of the keys above"});
+    f.number("zoom", view.zoom, above_zero(1e-3, 1e3), {"with `side`: the eye's distance is divided by it"});
+    f.number("turn_degrees", view.turn_degrees, {-360.0, 360.0},
+             {"with `side`: the eye moves round the volume to the viewer's right", "degrees"});
+    f.number("tilt_degrees", view.tilt_degrees, {-90.0, 90.0},
+             {"with `side`: then it rises, at 90 to look straight down", "degrees"});
+}
+
+void fields(Fields& f, Camera& camera)
+{
+    constexpr const char* UNITS = "physical units";
+    f.choice("projection", camera.projection, {"how the view widens with distance"});
+    f.vector("eye", camera.eye, COORDINATE, {.meaning = "where the eye is", .allowed = UNITS, .is_required = true});
+    f.vector("target", camera.target, COORDINATE,
+             {.meaning = "what it looks at", .allowed = UNITS, .is_required = true});
+    f.vector("up", camera.up, COORDINATE,
+             {.meaning = "what is up in the picture; not parallel to the view", .allowed = "any length but 0"});
+    if (camera.projection == Camera::Projection::perspective)
+        f.number("fov_y_degrees", camera.fov_y_degrees,
+                 {1e-12, std::nextafter(180.0, 0.0), "a number of degrees above 0 and below 180"},
+                 {.meaning = "perspective: full vertical angle", .allowed = "degrees, above 0, below 180"});
+    else
+        f.number(
+            "height", camera.height, above_zero(1e-12, 1e15),
+            {.meaning = "orthographic: height of the view", .allowed = "physical units, above 0", .is_required = true});
+    f.number("near", camera.near_distance, {0.0, 1e15},
+             {.meaning = "near clip plane, its distance from the eye along the view; nothing behind the eye is seen",
+              .allowed = "physical units, 0 or more"});
+    f.number("far", camera.far_distance, {0.0, 1e15},
+             {.meaning = "far clip plane; 0: none", .allowed = "physical units, 0 or more"});
+    const About about{
+        .meaning = "off-axis: the middle of the picture lies so far to the right of the line from eye to target",
+        .unit = "heights of the view",
+        .standard = "0"};
+    std::optional<double> shift = camera.shift_right == 0.0 ? std::nullopt : std::optional(camera.shift_right);
+    f.number("shift_right", shift, {-1e3, 1e3}, about);
+    camera.shift_right = shift.value_or(0.0);
+    f.checked([&] { check_camera(camera); });
+}
+
+void fields(Fields& f, CameraSpec& camera)
+{
+    const bool is_side = f.has("side", std::holds_alternative<SideView>(camera));
+    if (is_side != std::holds_alternative<SideView>(camera)) {
+        if (is_side)
+            camera = SideView{};
+        else
+            camera = Camera{};
+    }
+    if (!is_side) f.mention("side", {});
+    std::visit([&](auto& form) { fields(f, form); }, camera);
+}
+
+void camera_fields(Fields& f, Session& session)
+{
+    bool is_given = false, is_object = false;
+    const auto read = [&](const JsonNode& node) {
+        is_given = true;
+        is_object = node.is_object();
+        if (is_object) read_camera(node);
+        session.camera_name = is_object ? node.dump() : node.is_text() ? node.any_text() : "";
+    };
+    const auto written = [&]() -> std::optional<std::string> {
+        const std::string& name = session.camera_name;
+        if (name.empty()) return {};
+        return is_camera_object(name) ? name : nlohmann::json(name).dump();
+    };
+    f.other("camera", read, written,
+            {.meaning = "the camera to use: the name of one of `cameras`, a side, or a camera object",
+             .allowed = "name or object",
+             .standard = "`\"front\"`"});
+
+    std::vector<std::string> names;
+    for (const auto& [name, camera] : session.cameras) names.push_back(name);
+    const auto visit = [&](Fields& entry, const std::string& name) {
+        entry.check("", !name.empty() && !is_camera_object(name),
+                    "a camera whose name is not empty and does not begin with {");
+        fields(entry, session.cameras[name]);
+    };
+    f.entries("cameras", names, "NAME", visit,
+              {.meaning = "a camera, in one of the three forms below; a side's name may be given a meaning of its own",
+               .allowed = "object",
+               .standard = "none"});
+
+    if (!is_given || is_object) return;
+    const std::vector<std::string> sides = camera_sides();
+    std::set<std::string> known(sides.begin(), sides.end());
+    for (const auto& [name, camera] : session.cameras) known.insert(name);
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "one of \"" : ", \"") + name + "\"";
+    f.check("camera", known.contains(session.camera_name), list);
+}
+
+}  // namespace shvr

@@ -1,0 +1,147 @@
+// The keys of a session file that say what a picture looks like.
+
+#include <limits>
+
+#include "engine/session/session_keys.h"
+
+namespace shvr {
+namespace {
+
+constexpr const char* INTENSITIES = "the file's intensities";
+
+}  // namespace
+
+void fields(Fields& f, ControlPoint& point)
+{
+    constexpr double LARGEST = std::numeric_limits<float>::max();
+    f.number("intensity", point.intensity, {-LARGEST, LARGEST},
+             {.meaning = "where the point lies", .allowed = INTENSITIES, .is_required = true});
+    f.color("color", point.color, {"colour"});
+    f.number("opacity", point.opacity, SHARE,
+             {.meaning = "opacity", .unit = "per reference length", .is_required = true});
+}
+
+void fields(Fields& f, OcclusionSettings& occlusion)
+{
+    f.number("strength", occlusion.strength, SHARE,
+             {"local ambient occlusion: how far the ambient light goes where less of it arrives; 0: off"});
+    f.number("radius", occlusion.radius, above_zero(1e-3, 60.0),
+             {"how far away things keep ambient light off", "reference lengths"});
+    f.whole("rays", occlusion.rays, 1, 1024, {"directions that light is looked for in, for each voxel"});
+    f.flag("full_sphere", occlusion.full_sphere,
+           {"look behind surfaces, too; otherwise only before them, where there is one"});
+    f.number("curve", occlusion.curve, above_zero(0.1, 10.0),
+             {"the share of light that arrives is raised to this power: above 1 darker"});
+    f.flag("automatic", occlusion.automatic, {"the window renews it at once; false: when it is asked to (F8)"});
+}
+
+void fields(Fields& f, Light& light)
+{
+    f.flag("shaded", light.shaded,
+           {"false: the volume's colours as they are, no gradient is taken; surfaces and probe are always shaded"});
+    f.number("ambient", light.ambient, {0.0, 10.0}, {"share of the colour that is always seen"});
+    f.number("diffuse", light.diffuse, {0.0, 10.0}, {"share that depends on the surface's direction"});
+    f.number("specular", light.specular, {0.0, 10.0}, {"strength of the highlight"});
+    f.number("shininess", light.shininess, {0.0, 1000.0}, {"exponent of the highlight"});
+    f.vector("direction", light.direction, {-1e6, 1e6},
+             {.meaning = "towards the light, along the camera's right, up and back; 0, 0, 0 means 0.3, 0.5, 1",
+              .allowed = "any length from 1e-6"});
+    f.check("direction", light.direction == glm::dvec3(0.0) || glm::length(light.direction) >= 1e-6,
+            "a direction at least 1e-06 long, or 0, 0, 0 for the usual one");
+    f.number("gradient_fade", light.gradient_fade, SHARE,
+             {"gradients well below this are no surface", "share of the intensity range per voxel"});
+    f.section("occlusion", light.occlusion);
+}
+
+void fields(Fields& f, DistanceBlend& blend)
+{
+    f.number("size", blend.size, {0.0, 1000.0},
+             {"distance blending: how much of another colour there is at the far end of what is drawn; 0: none"});
+    f.number("rate", blend.rate, {0.0, 1000.0}, {"how it gets there: depth^rate; 0: the same everywhere"});
+    f.color("color", blend.color, {.meaning = "that colour", .standard = "the background's"});
+}
+
+void fields(Fields& f, RenderSettings& render)
+{
+    std::vector<int64_t> size{render.size.x, render.size.y};
+    f.wholes("size", size, 1, 65536, {"width and height of the picture", "pixels"});
+    render.size = {size[0], size[1]};
+    f.number("step_voxels", render.step_voxels, above_zero(1e-4, 1024.0),
+             {"distance between samples", "reference lengths"});
+    f.number("opacity_limit", render.opacity_limit, above_zero(1e-6, 1.0),
+             {"a ray stops once its opacity reaches this"});
+    std::optional<glm::dvec4> background = render.background;
+    f.color("background", background, true, {"colour behind the volume, with straight alpha"});
+    render.background = background.value_or(render.background);
+    f.choice("sampling", render.sampling,
+             {"how voxels are interpolated: in the kernel (exact), by the texture unit (hardware), or whichever the "
+              "device does well"});
+    f.choice("paging", render.paging,
+             {"whether bricks are paged on the device; never: a volume that does not fit is refused; automatic: where "
+              "the file has levels or does not fit"});
+    f.number("detail", render.detail, {0.0, 16.0},
+             {"how fine the bricks are where there are levels to choose from; 0: the finest always",
+              "voxels per pixel at least"});
+    f.flag("skip_empty_space", render.skip_empty_space,
+           {"leap over bricks and cells in which nothing is visible; the picture is the same"});
+    f.flag(
+        "preintegration", render.preintegration,
+        {"look at both ends of a step and at all densities between them, for transfer functions with narrow peaks or "
+         "steep edges; steps of at most 1"});
+    f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
+            sentence("false, as render.step_voxels is ", render.step_voxels, ", above 1"));
+}
+
+void fields(Fields& f, StereoSettings& stereo)
+{
+    f.choice("output", stereo.output, {"where the eyes' pictures go; an anaglyph is for red and cyan glasses"});
+    f.number("eye_distance", stereo.eye_distance, SHARE,
+             {"between the eyes; both see the same at the target's distance", "distances from eye to target"});
+    f.flag("toe_in", stereo.toe_in,
+           {"the eyes turn towards the target, which leaves points higher for one eye than for the other; false: "
+            "off-axis"});
+}
+
+void fields(Fields& f, SliceSettings& slices)
+{
+    f.number("paint_share", slices.paint_share, SHARE, {"how much of a painted voxel's colour is its group's"});
+    f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"of the slices, about the probe; 1: the whole volume fits"});
+    const char* const standard = "the end of the volume's range";
+    f.number(
+        "black", slices.black, INTENSITY,
+        {.meaning = "intensity that slices draw black; below `white`", .allowed = INTENSITIES, .standard = standard});
+    f.number("white", slices.white, INTENSITY,
+             {.meaning = "intensity that slices draw white", .allowed = INTENSITIES, .standard = standard});
+    f.check("black", !slices.black || !slices.white || *slices.black < *slices.white,
+            "an intensity below view.slices.white");
+}
+
+void fields(Fields& f, ViewSettings& view)
+{
+    f.choice("arrangement", view.arrangement,
+             {"the panes of a picture: a pane for each eye (stereo), the camera and three maps with its frustum "
+              "(overview), or the camera and the planes through the probe across z, y and x (slices)"});
+    f.section("stereo", view.stereo);
+    f.section("slices", view.slices);
+    f.number("overview_zoom", view.overview_zoom, above_zero(1e-3, 1e3), {"of the three maps"});
+}
+
+void fields(Fields& f, InteractionSettings& interaction)
+{
+    f.number("resolution", interaction.resolution, {0.1, 1.0},
+             {"while something moves the window draws at most so many pixels for one of the screen, along each axis, "
+              "and fewer where that takes too long"});
+    f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"at most"});
+    f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
+            {"of large screenshots: pixels for one of the window, along each axis"});
+}
+
+void fields(Fields& f, CutBox& cut)
+{
+    const NumberRange voxel{0.0, double(LARGEST_SIDE)};
+    f.vector("lower", cut.lower, voxel, {"lower corner of the part of the volume that is drawn", "voxels"});
+    f.vector("upper", cut.upper, voxel, {"its upper corner", "voxels"});
+    f.check("", !glm::any(glm::greaterThan(cut.lower, cut.upper)), "a lower corner that is not above the upper one");
+}
+
+}  // namespace shvr
