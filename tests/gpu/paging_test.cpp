@@ -259,7 +259,7 @@ TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, a
         for (int i = 0; annotator.stroke_is_running(); ++i) {
             REQUIRE(i < 10'000);
             static_cast<void>(annotator.advance());
-            static_cast<void>(device.renderer.paged()->advance(true));
+            static_cast<void>(device.renderer.volume().advance(true));
         }
     };
     CHECK_THROWS_WITH(finish(), doctest::Contains("torn"));

@@ -58,7 +58,7 @@ private:
         FrameGraph graph;
         SurfacesInput input{.params = {},
                             .scene = scene.params(ray_planes(camera, PIXELS, info), PIXELS, info),
-                            .listed = scene.import(graph),
+                            .listed = scene.upload(graph),
                             .tile = {128, 128}};
         input.params.pixel_end = PIXELS;
         input.params.light = {0.0f, 0.0f, 1.0f};
