@@ -14,13 +14,16 @@
 
 namespace shvr {
 
+inline constexpr uint32_t PAINT_BUTTON = 1u << 0;
+inline constexpr uint32_t MOVE_BUTTON = 1u << 1;  ///< moves the volume
+
 struct DeviceState {
     uint64_t time_ns = 0;         ///< when the device was there, by its own steady clock: only differences count
     uint32_t sequence = 0;        ///< of this state, counting up; a gap means lost states
     uint32_t force_sequence = 0;  ///< of the force in effect then
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
-    uint32_t buttons = 0;  ///< bit 0: paint, bit 1: move the volume
+    uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
     uint32_t jump = 0;     ///< when it changes the device was put there at once (simulated ones): no glitch
     bool calibrated = true;
 };

@@ -38,7 +38,7 @@ struct ForceSettings {
 enum ForceFlag : uint32_t {
     FORCE_NO_DEVICE = 1,  ///< lost, silent or not calibrated
     FORCE_NO_REGION = 2,  ///< no relevance around the probe, or too old: fades out
-    FORCE_FAULT = 4,      ///< a state that is no place, or a force that is no number; until the memory is replaced
+    FORCE_FAULT = 4,      ///< a non-finite position or force; until the memory is replaced
     FORCE_CLAMPED = 8,    ///< at the device's peak
     FORCE_ENGAGING = 16,  ///< fading in
 };

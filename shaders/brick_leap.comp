@@ -1,5 +1,5 @@
-// One brick per workgroup: which of its cells can show something, how far the nearest of those is, and which are painted
-// (pages.h).
+// One brick per workgroup: which of its cells can show something, how far the nearest of those is, and which are
+// painted (pages.h).
 // MASKED: a cell is occupied, too, where a voxel of a visible group is.
 // variants: MASKED
 #version 460
@@ -54,7 +54,8 @@ void main()
     uint painted = 0u;   // bit per cell of the column
     for (uint z = 0u; z < BRICK_CELLS; ++z) {
         const uvec3 cell = uvec3(column, z);
-        bool occupied = params.skipping == 0u || transfer_function_shows(imageLoad(cell_ranges, ivec3(origin + cell)).x);
+        bool occupied = params.skipping == 0u ||
+                        transfer_function_shows(imageLoad(cell_ranges, ivec3(origin + cell)).x);
 #ifdef MASKED
         const CellPaint paint = paint_of(job, cell);
         occupied = occupied || paint.shows;

@@ -46,8 +46,8 @@ SHARED_FUNCTION uvec3 mask_slot_origin(uint packed_slot)
     return BRICK_SIZE * unpack_slot(packed_slot);
 }
 
-/// Where the search for a painted brick begins in a hashed table (Teschner and others 2003), and the uints of its entries:
-/// x | y << 16, z, slot.
+/// Where the search for a painted brick begins in a hashed table (Teschner and others 2003), and the uints of its
+/// entries: x | y << 16, z, slot.
 SHARED_FUNCTION uint mask_hash(uvec3 brick)
 {
     return brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u;

@@ -1,5 +1,5 @@
-// Linear light, premultiplied, to 8-bit sRGB over an opaque colour, at its own size or enlarged. One texel per thread; at its
-// own size within one level of 255 of what engine/base/image.cpp writes to a file.
+// Linear light, premultiplied, to 8-bit sRGB over an opaque colour, at its own size or enlarged. One texel per thread;
+// at its own size within one level of 255 of what engine/base/image.cpp writes to a file.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,8 +1,9 @@
-// The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether there is paint, and which brick is there.
+// The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether there is paint, and which brick is
+// there.
 //
-// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is of a group; samples in all other
-// cells need not look at the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
-// Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without a sample.
+// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is of a group; samples in all
+// other cells need not look at the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell
+// within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without a sample.
 #ifndef SHVR_LEAP_H
 #define SHVR_LEAP_H
 #include "bricks.h"

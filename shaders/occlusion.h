@@ -1,14 +1,14 @@
-// Local ambient occlusion: how much light reaches a voxel from the space around it, as far as a radius (Hernell, Ljung and
-// Ynnerman 2007). Lengths are in units of the brick's level: 2^level reference lengths.
+// Local ambient occlusion: how much light reaches a voxel from the space around it, as far as a radius (Hernell, Ljung
+// and Ynnerman 2007). Lengths are in units of the brick's level: 2^level reference lengths.
 //
-// "Cells" are what light meets on its way, two copies of every brick: the means of 2^3 and 4^3 voxels. A cell's code says how
-// opaque the way through it is, of 2 or 4 units: opacity = (code / 255)^2. The square root spends the codes where opacities
-// are small. The mean is one of opacities of that way, not of extinction: half of a cell behind a surface stops half of the
-// light, however dense it is.
+// "Cells" are what light meets on its way, two copies of every brick: the means of 2^3 and 4^3 voxels. A cell's code
+// says how opaque the way through it is, of 2 or 4 units: opacity = (code / 255)^2. The square root spends the codes
+// where opacities are small. The mean is one of opacities of that way, not of extinction: half of a cell behind a
+// surface stops half of the light, however dense it is.
 //
-// "Near" is what light meets at once, in steps of half a voxel: where surfaces are steep, whole voxels are too coarse for
-// rays that pass close by. It is made of densities and their slopes when a brick's turn comes, with what lies around the
-// brick, and then forgotten; so are copies of the cells around it, for rays to run in one piece of memory.
+// "Near" is what light meets at once, in steps of half a voxel: where surfaces are steep, whole voxels are too coarse
+// for rays that pass close by. It is made of densities and their slopes when a brick's turn comes, with what lies
+// around the brick, and then forgotten; so are copies of the cells around it, for rays to run in one piece of memory.
 //
 // "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included.
 #ifndef SHVR_OCCLUSION_H
@@ -71,8 +71,8 @@ struct OcclusionGatherParams {
     float exponent;                ///< from the way through a cell to the stretch of its taps
 };
 
-/// What stops light in a voxel's eight halves a side: 8 bits for the greatest opacity of them, as in cells, and 3 bits for
-/// each of them, in sevenths of it. Even media and empty ones are exact.
+/// What stops light in a voxel's eight halves a side: 8 bits for the greatest opacity of them, as in cells, and 3 bits
+/// for each of them, in sevenths of it. Even media and empty ones are exact.
 SHARED_FUNCTION float near_opacity(uint packed, uint octant)
 {
     const float greatest = float(packed & 255u);

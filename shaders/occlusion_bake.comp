@@ -1,7 +1,7 @@
-// How much light reaches every voxel of a brick that may be seen (occlusion.h): the mean over rays of the share of the radius
-// that light comes along. Value of a ray = (1 / radius) sum over stretches of length * light that is left in the middle of it.
-// Only voxels in occupied cells are made: the ranges of cells overlap by a voxel, so a sample that shows anything reads no
-// others. PAGED: cells are those of bricks that come and go.
+// How much light reaches every voxel of a brick that may be seen (occlusion.h): the mean over rays of the share of the
+// radius that light comes along. Value of a ray = (1 / radius) sum over stretches of length * light that is left in the
+// middle of it. Only voxels in occupied cells are made: the ranges of cells overlap by a voxel, so a sample that shows
+// anything reads no others. PAGED: cells are those of paged bricks.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -98,7 +98,8 @@ float along(const OcclusionBakeParams params, const Ray ray, ivec3 voxel)
     return light.y;
 }
 
-// To the voxel, and to where other bricks keep a copy of it. An apron that no brick of this level writes repeats its edge.
+// To the voxel, and to where other bricks keep a copy of it. An apron that no brick of this level writes repeats its
+// edge.
 void store(const OcclusionBakeParams params, const OcclusionJob job, ivec3 voxel, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
@@ -131,7 +132,8 @@ void main()
     const uint turns = cell_count;
     for (uint turn = 0u; turn < turns; ++turn) {
         const uint cell = cells[turn];
-        const ivec3 voxel = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) + ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
+        const ivec3 voxel = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) +
+                            ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
         const uint rays = any_cell_is_occupied(params, job, voxel, voxel) ? params.rays : 0u;
 
         const ivec3 texel = ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;

@@ -1,4 +1,4 @@
-// What the kernel of ambient occlusion's values is told (occlusion.h).
+// Parameters of the kernel that makes ambient occlusion's values (occlusion.h).
 #ifndef SHVR_OCCLUSION_BAKE_H
 #define SHVR_OCCLUSION_BAKE_H
 #include "occlusion.h"

@@ -1,5 +1,5 @@
-// What rays of a brick meet, brought together from the bricks around it (occlusion.h): halves of voxels, made of densities and
-// their slopes, and copies of the cells.
+// What rays of a brick meet, brought together from the bricks around it (occlusion.h): halves of voxels, made of
+// densities and their slopes, and copies of the cells.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -83,21 +83,23 @@ uvec4 stretched(uint code, float exponent)
     return uvec4(uint(255.0 * sqrt(1.0 - left) + 0.5));
 }
 
-// Copies of the cells of one size around the brick. One loop instead of three: on SIMD devices each of them runs once more
-// than it has to, for all of what is in it.
+// Copies of the cells of one size around the brick. One loop instead of three: on SIMD devices each of them runs once
+// more than it has to, for all of what is in it.
 void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
     const uint side = (BRICK_SIZE >> shift) + 2u * params.aprons[size];
     const float inverse_side = 1.0 / float(side);
     const ivec3 behind = ivec3(0, 0, side * gl_WorkGroupID.x);
-    for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < side * side * side; i += 64u * OCCLUSION_SPLIT) {
+    for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < side * side * side;
+         i += 64u * OCCLUSION_SPLIT) {
         // Exact for these numbers, and divisions of integers are slow.
         const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);
         const int above = int(entry >> OCCLUSION_LEVEL_SHIFT);
-        const ivec3 from = int(BRICK_SIZE >> shift) * ivec3(unpack_slot(entry)) + (in_brick_of(job, voxel, above) >> shift);
+        const ivec3 from = int(BRICK_SIZE >> shift) * ivec3(unpack_slot(entry)) +
+                           (in_brick_of(job, voxel, above) >> shift);
         const float exponent = ldexp(params.exponent, -above);
         if (size == 0u)
             imageStore(around_2, texel + behind, stretched(imageLoad(cells_2, from).x, exponent));

@@ -1,14 +1,15 @@
-// Bricks that come and go: how a ray finds the finest brick that is there.
+// Paged bricks: how a ray finds the finest brick that is there.
 //
-// The directory is a dense grid of cells of 2^cell_shift voxels a side, followed by blocks of eight children. An entry is
+// The directory is a dense grid of cells of 2^cell_shift voxels a side, followed by blocks of eight children. An entry
+// is
 //   distance << 28 | level << 24 | payload
 // Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
-// payload is the first of eight entries, x fastest, for the halves of this cell. Otherwise the payload is the slot (pack_slot)
-// of a brick of that level that holds the cell, perhaps a coarser one than wanted: the nearest there is.
+// payload is the first of eight entries, x fastest, for the halves of this cell. Otherwise the payload is the slot
+// (pack_slot) of a brick of that level that holds the cell, perhaps a coarser one than wanted: the nearest there is.
 //
-// Within a brick, `cell_leap` tells of its 8^3 cells: distance << 1 | painted. One may leap as far as the distance, Chebyshev,
-// to the nearest cell that something visible may be in, as far as the brick reaches; where painted is 0, no voxel of the
-// cell is of a group.
+// Within a brick, `cell_leap` tells of its 8^3 cells: distance << 1 | painted. One may leap as far as the distance,
+// Chebyshev, to the nearest cell that something visible may be in, as far as the brick reaches; where painted is 0, no
+// voxel of the cell is of a group.
 #ifndef SHVR_PAGES_H
 #define SHVR_PAGES_H
 #include "leap.h"

@@ -1,6 +1,6 @@
-// The first voxel that a brush would change on each pixel's ray, as a solid cube: its lit colour and the length along the
-// ray, for the ray caster to end at where it lies before other surfaces (surfaces.comp). `seen` says where it does. In
-// slices it is the voxel half-way along the ray, and colours are as they are. One thread a pixel.
+// The first voxel that a brush would change on each pixel's ray, as a solid cube: its lit colour and the length along
+// the ray, for the ray caster to end at where it lies before other surfaces (surfaces.comp). `seen` says where it does.
+// In slices it is the voxel half-way along the ray, and colours are as they are. One thread a pixel.
 //   SURFACED   there are other surfaces
 // variants: SURFACED
 //
@@ -78,7 +78,8 @@ void main()
     const float begin = max(max(low.x, low.y), max(low.z, 0.0));
     const float end = min(min(high.x, high.y), min(high.z, length_to_far));
 
-    // Every variable that outlives a turn is carried from turn to turn: devices may run a loop until the last lane is done.
+    // Every variable that outlives a turn is carried from turn to turn: devices may run a loop until the last lane is
+    // done.
     const ivec3 direction_sign = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(safe, vec3(0.0))));
     const vec3 apart = abs(inverse);
     ivec3 voxel = clamp(ivec3(floor(near + begin * direction)), ivec3(0), preview.size - 1);

@@ -1,5 +1,5 @@
-// The voxels that a brush would change, as rays meet them. Positions are in voxels from the box around those voxels, made in
-// double on the CPU, so that nothing is lost far from the volume's first corner.
+// The voxels that a brush would change, as rays meet them. Positions are in voxels from the box around those voxels,
+// made in double on the CPU, so that nothing is lost far from the volume's first corner.
 #ifndef SHVR_PREVIEW_H
 #define SHVR_PREVIEW_H
 #include "shared.h"

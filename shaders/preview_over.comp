@@ -1,5 +1,5 @@
-// Lays a share of what preview.comp has found over the picture: all of it shows where the volume hides it, and slices show
-// what is below. Where the picture ends at it already, nothing changes. One thread a pixel.
+// Lays a share of what preview.comp has found over the picture: all of it shows where the volume hides it, and slices
+// show what is below. Where the picture ends at it already, nothing changes. One thread a pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,10 +1,11 @@
 // Emission-absorption ray-casting of a volume of bricks: one pixel per thread. Its variants differ in what they bind:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
-//   PAGED      bricks of several levels come and go (pages.h), instead of a leap grid over bricks that are all there
+//   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over bricks that are all there
 //   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
 //   SURFACED   rays end at opaque surfaces (surfaces.comp)
-//   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they drop it
+//   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they
+//              drop it
 // variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
 // Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
@@ -27,8 +28,8 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint SHADED = 1u;
 layout(constant_id = 1) const uint COUNT_WORK = 0u;
-// Rows of bricks lie along x in memory, so a wider group of pixels uses more of each cache line on devices whose images are
-// linear.
+// Rows of bricks lie along x in memory, so a wider group of pixels uses more of each cache line on devices whose images
+// are linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 // Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
@@ -53,8 +54,10 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
-// Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after another.
-layout(binding = 3, rgba32f) uniform readonly image3D table;   // linear RGB (PREINTEGRATED: times opacity), opacity of a full step
+// Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after
+// another.
+// linear RGB (PREINTEGRATED: times opacity), opacity of a full step
+layout(binding = 3, rgba32f) uniform readonly image3D table;
 layout(binding = 4, rgba32f) uniform writeonly image3D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
@@ -143,8 +146,8 @@ vec4 classify(const RaycastParams params, float density)
     return look;
 }
 
-// The same where the density goes from `front` to `back`. The table has both axes; what the function leaves out at its ends is
-// a part of the step in which there is nothing.
+// The same where the density goes from `front` to `back`. The table has both axes; what the function leaves out at its
+// ends is a part of the step in which there is nothing.
 vec4 classify_step(const RaycastParams params, float front, float back)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
@@ -153,7 +156,8 @@ vec4 classify_step(const RaycastParams params, float front, float back)
     const ivec2 entry = ivec2(min(at, last - 1.0));
     const vec2 share = at - vec2(entry);
     const vec4 near = mix(imageLoad(table, ivec3(entry, 0)), imageLoad(table, ivec3(entry + ivec2(1, 0), 0)), share.x);
-    const vec4 far = mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
+    const vec4 far =
+        mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
     const vec4 sum = mix(near, far, share.y);
     const float whole = abs(back - front), inside = abs(ends.y - ends.x);
     const bool is_inside = front >= params.table_lower && front <= params.table_upper;
@@ -185,8 +189,8 @@ float value_near(vec3 in_brick, ivec3 slot)
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// Colour (shaded) and opacity of a full step, of which `stretch` is sampled, in the middle of it at a position in the brick at
-// `place`.
+// Colour (shaded) and opacity of a full step, of which `stretch` is sampled, in the middle of it at a position in the
+// brick at `place`.
 vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float stretch, const Place place,
                  inout Work work)
 {
@@ -240,7 +244,8 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     return look;
 }
 
-// Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is held.
+// Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
+// held.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);
@@ -277,7 +282,8 @@ void note(const Place place, inout Work work)
 #endif
 }
 
-// The one sample of a slice. What the transfer function hides is there nevertheless; what the view does not reach is not.
+// The one sample of a slice. What the transfer function hides is there nevertheless; what the view does not reach is
+// not.
 vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work)
 {
     Place place = place_at(params, position);
@@ -374,7 +380,8 @@ void main()
         if (i < steps) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
 #endif
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < steps) accumulate(sum, sample_look(params, ray, position, params.step, place, work));
+        if (place.distance == 0u && i < steps)
+            accumulate(sum, sample_look(params, ray, position, params.step, place, work));
         ++i;
     }
 
@@ -408,11 +415,13 @@ void main()
 #ifdef SURFACED
         if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may lie outside the volume
 #endif
-        imageStore(color, ivec3(params.target + in_part, 0), sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
+        imageStore(color, ivec3(params.target + in_part, 0),
+                   sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
         return;
     }
     const float through = (1.0 - sum.a) * params.background.a;
-    imageStore(color, ivec3(params.target + in_part, 0), vec4(sum.rgb + through * params.background.rgb, sum.a + through));
+    imageStore(color, ivec3(params.target + in_part, 0),
+               vec4(sum.rgb + through * params.background.rgb, sum.a + through));
 
     if (COUNT_WORK != 0u && extent > 0.0) {
         const uint crossed = bricks_between(position_at(params, ray, begin), position_at(params, ray, end));

@@ -1,10 +1,10 @@
-// The nearest opaque surface of each pixel's ray: rgb its lit colour in linear light, a the length along the ray from the near
-// plane, as raycast.comp counts it, in reference lengths; NO_SURFACE where there is none. One thread a pixel.
+// The nearest opaque surface of each pixel's ray: rgb its lit colour in linear light, a the length along the ray from
+// the near plane, as raycast.comp counts it, in reference lengths; NO_SURFACE where there is none. One thread a pixel.
 //   LISTED   there is a list of surfaces beside the probe
 // variants: LISTED
 //
-// Surfaces are solid: a ray that begins in one (the near plane cuts it, or the eye is in it) sees it at its beginning, facing
-// the eye. The volume's cutting planes do not cut them.
+// Surfaces are solid: a ray that begins in one (the near plane cuts it, or the eye is in it) sees it at its beginning,
+// facing the eye. The volume's cutting planes do not cut them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -37,12 +37,13 @@ struct Hit {
 };
 const uint PROBE_INDEX = 0xffffffffu;
 
-// A surface comes first where its range does. At equal lengths the lower number does, so the order of the search is of no
-// account.
+// A surface comes first where its range does. At equal lengths the lower number does, so the order of the search is of
+// no account.
 void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 {
     const float at = max(range.x, begin);
-    const bool is_nearer = range.y >= begin && range.x <= range.y && (at < hit.at || (at == hit.at && number < hit.number));
+    const bool is_nearer = range.y >= begin && range.x <= range.y &&
+                               (at < hit.at || (at == hit.at && number < hit.number));
     hit.at = is_nearer ? at : hit.at;
     hit.is_inside = is_nearer ? range.x < begin : hit.is_inside;
     hit.number = is_nearer ? number : hit.number;
@@ -59,8 +60,8 @@ vec3 from_origin(const SurfaceParams scene, const Surface surface)
     return sum;
 }
 
-// Every variable that outlives a turn is carried from turn to turn: lanes whose search is over keep theirs on devices that
-// run a loop until the last lane is done.
+// Every variable that outlives a turn is carried from turn to turn: lanes whose search is over keep theirs on devices
+// that run a loop until the last lane is done.
 void search(const SurfaceParams scene, const Line line, float begin, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));

@@ -1,13 +1,13 @@
-// Opaque surfaces: balls and rods that end rays, found by exact intersection. Lengths and positions are in isotropic space:
-// physical positions divided by the reference length, the finest axis of a voxel.
+// Opaque surfaces: balls and rods that end rays, found by exact intersection. Lengths and positions are in isotropic
+// space: physical positions divided by the reference length, the finest axis of a voxel.
 #ifndef SHVR_SURFACES_H
 #define SHVR_SURFACES_H
 #include "shared.h"
 
 SHARED_BEGIN
 
-/// The convex hull of two balls (a round cone), or one ball where `along` is 0. `from` + `from_rest` is the place of the first
-/// one: the rest holds what a float of the size of a large volume loses.
+/// The convex hull of two balls (a round cone), or one ball where `along` is 0. `from` + `from_rest` is the place of
+/// the first one: the rest holds what a float of the size of a large volume loses.
 struct Surface {
     vec3 from;
     vec3 from_rest;
@@ -18,7 +18,8 @@ struct Surface {
     uint number;      ///< of two at the same length, the lower one is seen
 };
 
-/// A box around surfaces. Nodes lie in depth-first order: the next one is the first child, or where there is none `skip`.
+/// A box around surfaces. Nodes lie in depth-first order: the next one is the first child, or where there is none
+/// `skip`.
 struct SurfaceNode {
     vec3 lower;
     vec3 upper;
@@ -27,9 +28,9 @@ struct SurfaceNode {
     uint end;
 };
 
-/// The ray of a pixel goes through a point of the middle plane, in the direction from a point of the near plane to one of
-/// the far plane. Points are relative to the middle of that plane, which is what a person looks at, so that nothing is lost
-/// there though the volume may be large and the eye far.
+/// The ray of a pixel goes through a point of the middle plane, in the direction from a point of the near plane to one
+/// of the far plane. Points are relative to the middle of that plane, which is what a person looks at, so that nothing
+/// is lost there though the volume may be large and the eye far.
 struct SurfaceParams {
     vec3 origin;  ///< what points are relative to: origin + origin_rest
     vec3 origin_rest;

@@ -60,7 +60,7 @@ MOST_SOURCES = 30  # in a folder
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
-    "Vulkan": (r"vulkan/", r"engine/gpu/|ui/window\.cpp"),
+    "Vulkan": (r"vulkan/", r"engine/gpu/|ui/swapchain\.cpp"),
     "hidapi": (r"hidapi", r"haptics/hid_device\.cpp"),
     "GLFW": (r"GLFW/", r"ui/"),
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/"),

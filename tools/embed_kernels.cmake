@@ -1,5 +1,6 @@
 # Writes OUTPUT, a C++ file that holds the SPIR-V files BINARIES as arrays, so that `shvr` is one file that runs from
-# anywhere. Run by the build: cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv -P embed_kernels.cmake
+# anywhere, and which macros a kernel may be compiled with. Run by the build:
+# cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv "-DVARIANTS=raycast PAGED MASKED;surfaces LISTED" -P embed_kernels.cmake
 set(arrays "")
 set(entries "")
 foreach(binary IN LISTS BINARIES)
@@ -10,6 +11,20 @@ foreach(binary IN LISTS BINARIES)
     string(APPEND arrays "constexpr uint32_t ${name}_words[] = {${words}};\n")
     string(APPEND entries "    {\"${name}\", ${name}_words, std::size(${name}_words)},\n")
 endforeach()
+set(variants "")
+foreach(line IN LISTS VARIANTS)
+    string(REPLACE " " ";" macros "${line}")
+    list(POP_FRONT macros name)
+    list(TRANSFORM macros REPLACE "(.+)" "\"\\1\"")
+    list(JOIN macros ", " macros)
+    string(APPEND arrays "constexpr std::string_view ${name}_macros[] = {${macros}};\n")
+    string(APPEND variants "    {\"${name}\", ${name}_macros},\n")
+endforeach()
+set(kernel_variants "{}")
+if(variants)
+    string(APPEND arrays "constexpr KernelVariants variants[] = {\n${variants}};\n")
+    set(kernel_variants "gpu::variants")
+endif()
 set(kernels "{}")
 if(entries)
     string(APPEND arrays "constexpr EmbeddedKernel kernels[] = {\n${entries}};\n")
@@ -17,6 +32,7 @@ if(entries)
 endif()
 file(WRITE ${OUTPUT} "// Made by tools/embed_kernels.cmake.
 #include \"engine/gpu/embedded_kernels.h\"
+#include \"engine/graph/kernel_variants.h\"
 
 #include <iterator>
 
@@ -30,4 +46,13 @@ std::span<const EmbeddedKernel> embedded_kernels()
 }
 
 }  // namespace shvr::gpu
+
+namespace shvr {
+
+std::span<const KernelVariants> kernel_variants()
+{
+    return ${kernel_variants};
+}
+
+}  // namespace shvr
 ")

@@ -89,6 +89,8 @@ struct PushProbe {  ///< away from the viewer of a pane, in voxels
     size_t pane = 0;
     double voxels = 0.0;
 };
+/// What a hand can aim with, in voxels along x. Sessions and scripts may use other radii.
+inline constexpr double SMALLEST_RADIUS_VOXELS = 0.5, LARGEST_RADIUS_VOXELS = 60.0;
 struct ScaleProbe {
     double factor = 1.0;
 };
@@ -156,5 +158,16 @@ using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFro
                             ChooseGroup, SetTool, Paint, Trace, DragNode, SetHapticThreshold, Assist, SetProxyLaw, Undo,
                             Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
+
+/// It may change what a session holds but for the camera and the probe's place.
+inline bool edits_session(const Action& action)
+{
+    const auto is_one_of = [&]<class... Kinds>(const std::variant<Kinds...>*) {
+        return (std::holds_alternative<Kinds>(action) || ...);
+    };
+    using Harmless = std::variant<Orbit, Roll, Move, Zoom, DragInMap, LookFrom, MoveClip, ProbeTo, ProbeOnto, PushProbe,
+                                  UpdateOcclusion, Save, Screenshot, ShowHelp, Quit>;
+    return !is_one_of(static_cast<const Harmless*>(nullptr));
+}
 
 }  // namespace shvr::ui

@@ -1,14 +1,12 @@
 #include "ui/app.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include <imgui/imgui.h>
 
 #include "engine/base/assets.h"
-#include "engine/base/image_file.h"
 #include "haptics/hid_device.h"
 
 namespace shvr::ui {
@@ -18,16 +16,10 @@ namespace {
 /// While work is on its way the loop looks after it this often, so that the device never runs dry.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
-/// While nobody does anything, sharper tiles are shown this often: drawing the interface takes time from them.
+/// Without input, sharper tiles are shown this often: drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
 /// Widgets settle, hover and blink for so long after the last event.
 constexpr double AFTERGLOW_S = 0.3;
-
-ImU32 color_of(const glm::dvec3& linear, float alpha)
-{
-    const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
-    return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
-}
 
 }  // namespace
 
@@ -55,26 +47,32 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
 void App::say(const std::string& status)
 {
     status_ = status;
-    report_.messages.push_back(status);
+    report_.said(status);
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }
 
+/// The device holds one volume at a time. The document before stays until the next one stands, and comes back if it
+/// cannot.
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
-    opened_s_ = window_.now_s();
-    report_.first_picture_ms = report_.sharp_picture_ms = std::nullopt;
+    const double begun_s = window_.now_s();
     OpenedSession opened = open_session(path, settings);
-    large_screenshot_.reset();
-    document_.reset();  // its volume gives way before the next takes memory
-    std::string device_said;
-    std::unique_ptr<HapticDevice> device = find_device(device_said);
+    screenshots_.drop_large();
     View::Options view_options;
     view_options.swap_red_blue = window_.swaps_red_and_blue();
-    auto document = std::make_unique<Document>(*renderer_, std::move(opened), path, std::move(device), "haptic device",
-                                               view_options);
-    document_ = std::move(document);
-    window_.set_title("SHVR");  // until it can be seen
+    if (document_) document_->screen.clear();
     look_again();
+    try {
+        document_ = Document::open(*renderer_, std::move(opened), path, view_options, !settings.empty());
+    } catch (const Error& error) {
+        if (!document_) throw;
+        bring_back(error.what());
+    }
+    report_.opened(begun_s);
+    std::string device_said;
+    if (std::unique_ptr<HapticDevice> device = find_device(device_said))
+        document_->touch.use(std::move(device), "haptic device");
+    window_.set_title("SHVR");  // until it can be seen
     std::string status = "Opened " + path.string();
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const std::string& message : document_->messages) status += "; " + message;
@@ -82,7 +80,20 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     say(status);
 }
 
-/// A device that cannot be used is told of, and the mouse takes its place.
+/// After the next scan could not be opened. Fails in any case, with a sentence that says why and what is open.
+void App::bring_back(const std::string& why)
+{
+    const std::string before = document_->session_path.string();
+    try {
+        document_->show_again(*renderer_);
+    } catch (const Error& error) {
+        document_.reset();
+        fail(why, "; ", before, " cannot be shown again either: ", error.what(), "; it is saved");
+    }
+    fail(why, "; ", before, " stays open");
+}
+
+/// Where the device cannot be used, that is said and the mouse takes its place.
 std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 {
     try {
@@ -99,38 +110,82 @@ std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 void App::run()
 {
     while (!closes()) {
-        handle_events(time_to_wait());
+        attempt(events_, [this] { handle_events(time_to_wait()); });
         apply_all();
         work();
-        note_presented();
+        report_.done(window_.frames_done(), window_.now_s());
         const double now = window_.now_s();
         const double frames_per_second =
             (document_ ? document_->session.interaction : InteractionSettings{}).frames_per_second;
         if (now < next_frame_s_ || now < next_reason_to_draw_s()) continue;
-        draw_ui();
+        draw();
         next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
     }
-    if (screenshot_.valid()) screenshot_.wait();
+    screenshots_.wait();
 }
 
-/// Paint is never lost: it is saved before the window goes, and where that fails the window stays.
+template <class Part>
+void App::attempt(Attempt& state, Part part)
+{
+    if (window_.now_s() < state.again_s) return;
+    try {
+        part();
+    } catch (const std::exception& error) {
+        note_failure(state, error.what());
+    }
+}
+
+void App::note_failure(Attempt& state, const std::string& why)
+{
+    constexpr double AGAIN_S = 0.25, SAY_AGAIN_S = 1.0;
+    const double now = window_.now_s();
+    const bool is_known = state.failed_s > 0.0 && why == state.said && now - state.failed_s < SAY_AGAIN_S;
+    if (!is_known) say(why);
+    state = {.said = why, .failed_s = now, .again_s = now + AGAIN_S};
+}
+
+/// A window that shows nothing any more is of no use: then the program ends with the reason.
+void App::draw()
+{
+    constexpr double PATIENCE_S = 10.0;
+    bool is_drawn = false;
+    attempt(drawing_, [&] {
+        draw_ui();
+        is_drawn = true;
+    });
+    if (is_drawn) return undrawn_since_s_.reset();
+    const double now = window_.now_s();
+    if (!undrawn_since_s_) undrawn_since_s_ = now;
+    if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", drawing_.said);
+}
+
+/// Work is never lost: it is saved before the window goes, and where that fails the window stays.
 bool App::closes()
 {
     if (!window_.should_close()) return false;
-    if (!document_ || document_->work_is_saved()) return true;
+    if (!document_) return true;
     try {
-        save();
+        save_before_leaving();
         return true;
-    } catch (const Error& error) {
-        say(std::string("The window stays open, since the paint could not be saved: ") + error.what());
-        window_.stay_open();
-        return false;
+    } catch (const std::exception& error) {
+        return !refuses_to_close(error.what());
     }
+}
+
+/// Paint is kept at any price. What was set is given up where a person closes the window a second time.
+bool App::refuses_to_close(const std::string& why)
+{
+    if (document_->work_is_saved() && was_asked_to_close_) return false;
+    was_asked_to_close_ = true;
+    say("The window stays open, since not all could be saved: " + why +
+        (document_->work_is_saved() ? "; close it again to leave without saving" : ""));
+    window_.stay_open();
+    return true;
 }
 
 bool App::something_moves() const
 {
-    if (window_.now_s() < ui_until_s_ || !unanswered_s_.empty()) return true;
+    if (window_.now_s() < ui_until_s_ || report_.has_unanswered()) return true;
     if (!document_) return false;
     constexpr double STIR_VOXELS = 0.05;
     return look_is_stale_ || camera_moved_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
@@ -141,18 +196,18 @@ double App::next_reason_to_draw_s() const
 {
     // Until there is something to see, the device is there for the first picture.
     const bool waits_for_picture = document_ && !document_->screen.shows_anything() && viewport_.pixels().x > 0;
-    if (waits_for_picture && unanswered_s_.empty()) return last_begun_s_ + SHARPEN_S;
+    if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
     if (something_moves()) return 0.0;
-    const bool sharpens_or_tells =
-        document_ && (document_->screen.revision() != drawn_revision_ || document_->assistance || large_screenshot_);
-    return sharpens_or_tells ? last_begun_s_ + SHARPEN_S : std::numeric_limits<double>::infinity();
+    const bool sharpens_or_tells = document_ && (document_->screen.revision() != drawn_revision_ ||
+                                                 document_->assistance || screenshots_.has_large());
+    return sharpens_or_tells ? report_.last_begun_s() + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
 
 double App::time_to_wait() const
 {
     const bool has_work = document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
                                         document_->assistance || look_is_stale_ || camera_moved_ ||
-                                        screenshot_.valid() || !document_->previewer.is_current());
+                                        screenshots_.is_writing() || !document_->previewer.is_current());
     const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
     return std::clamp(until_frame, 0.0, has_work ? WORK_S : IDLE_S);
 }
@@ -163,7 +218,7 @@ void App::handle_events(double timeout_s)
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
         const bool is_answered =
             std::holds_alternative<KeyEvent>(event.what) || std::holds_alternative<ButtonEvent>(event.what);
-        if (is_answered) unanswered_s_.push_back(event.time_s);
+        if (is_answered) report_.asked(event.time_s);
         if (document_) {
             const ImGuiIO& io = ImGui::GetIO();
             viewport_.handle(event, model(), io.WantCaptureMouse, io.WantTextInput, actions_);
@@ -186,7 +241,8 @@ void App::apply_all()
         if (needs_document && !document_) continue;
         try {
             std::visit([&](const auto& what) { apply(what); }, action);
-        } catch (const Error& error) {
+            if (document_ && edits_session(action)) note_edit();
+        } catch (const std::exception& error) {
             say(error.what());
         }
     }
@@ -207,193 +263,62 @@ TouchSettings App::touch_settings() const
 void App::work()
 {
     if (!document_) return;
+    attempt(touching_, [this] { follow_device(); });
+    attempt(painting_, [this] { follow_stroke(); });
+    attempt(previewing_, [this] { show_preview(); });
+    attempt(looking_, [this] { follow_look(); });
+    for (const std::string& message : renderer_->scene().take_messages()) say(message);
+    attempt(photographing_, [this] { follow_screenshots(); });
+}
+
+void App::follow_device()
+{
+    Touch& touch = document_->touch;
+    touch.advance(touch_settings());
+    if (const bool paints = touch.paint_button(); paints != std::exchange(device_paints_, paints))
+        actions_.emplace_back(Paint{paints});
+}
+
+void App::follow_stroke()
+{
     Document& document = *document_;
-    document.touch.advance(touch_settings());
-    if (const bool paints = document.touch.buttons() & 1; paints != device_paints_) {
-        device_paints_ = paints;
-        apply(Paint{paints});
-    }
+    const std::string failure = document.annotator.work().journal().failure;
+    if (failure != journal_failure_)
+        say(failure.empty() ? "The journal can be written again: all work is kept" : failure);
+    journal_failure_ = failure;
+    if (!document.annotator.stroke_is_running()) return;
     extend_stroke();
-    const bool stroke_was_running = document.annotator.stroke_is_running();
-    try {
-        static_cast<void>(document.annotator.advance());
-    } catch (const Error& error) {
-        return say(error.what());
-    }
-    if (const std::string failure = document.annotator.work().journal().failure; failure != journal_failure_) {
-        say(failure.empty() ? "The journal is written again: all that was done is kept" : failure);
-        journal_failure_ = failure;
-    }
-    if (stroke_was_running && !document.annotator.stroke_is_running()) stroke_ended();
-    show_preview();
+    static_cast<void>(document.annotator.advance());
+    if (!document.annotator.stroke_is_running()) stroke_ended();
+}
+
+void App::follow_look()
+{
+    Document& document = *document_;
     if (viewport_.pixels().x > 0 && viewport_.pixels().y > 0) {
-        const bool moved = std::exchange(camera_moved_, false);
-        if (std::exchange(look_is_stale_, false))
+        if (look_is_stale_)
             document.screen.look(document.session, document.camera, viewport_.pixels(), document.probe_voxel());
-        else if (moved)
+        else if (camera_moved_)
             document.screen.look_from(document.camera, document.probe_voxel());
+        look_is_stale_ = camera_moved_ = false;
     }
     // A running stroke or touch names what it needs itself.
     if (!document.assistance && !document.annotator.stroke_is_running())
         renderer_->volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
-    for (const std::string& message : renderer_->scene().take_messages()) say(message);
-    if (wants_screenshot_) finish_screenshot();
-    if (large_screenshot_) advance_large_screenshot();
-    if (screenshot_.valid() && screenshot_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        say(screenshot_.get());
 }
 
-void App::draw_ui()
+void App::follow_screenshots()
 {
-    const double begun = window_.now_s();
-    const bool moves = something_moves();
-    // A software device presents after everything that was submitted before, so this waits for nothing it would not wait
-    // for below; and the view learns what its work costs without the interface's share.
-    if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
-    window_.begin_ui();
-    std::vector<View::Layer> layers;
-    Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
-    if (document_) {
-        layout = draw_panels(model(), window_.pixels(), actions_);
-        draw_strokes();
-        layers = document_->screen.layers();
-        drawn_revision_ = document_->screen.revision();
-        drawn_probe_voxel_ = document_->probe_voxel();
-    } else {
-        ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
+    if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
+        screenshots_.drop_large();  // paint would be in some parts of it and not in others
+        say("The large screenshot was cancelled by painting");
     }
-    if (layout.begin != viewport_.layout().begin || layout.end != viewport_.layout().end) {
-        viewport_.set_layout(layout);
-        look_again();
-    }
-    if (!window_.present(layers, viewport_.layout().begin)) return;
-    if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
-    if (was_moving_ && moves) report_.interval_ms.push_back((begun - last_begun_s_) * 1e3);
-    was_moving_ = moves;
-    last_begun_s_ = begun;
-    ++report_.frames;
-    presented_.push_back({.frame = window_.frames_presented(),
-                          .begun_s = begun,
-                          .inputs_s = std::exchange(unanswered_s_, {}),
-                          .shows_picture = !layers.empty(),
-                          .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
-}
-
-void App::note_presented()
-{
-    if (presented_.empty()) return;
-    const uint64_t done = window_.frames_done();
-    const double now = window_.now_s();
-    std::erase_if(presented_, [&](const Presented& frame) {
-        if (frame.frame > done) return false;
-        report_.frame_ms.push_back((now - frame.begun_s) * 1e3);
-        const double since_open_ms = (now - opened_s_) * 1e3;
-        if (frame.shows_picture && !report_.first_picture_ms) report_.first_picture_ms = since_open_ms;
-        if (frame.shows_sharp_picture && !report_.sharp_picture_ms) report_.sharp_picture_ms = since_open_ms;
-        for (double input : frame.inputs_s) report_.input_ms.push_back((now - input) * 1e3);
-        return true;
-    });
-}
-
-/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a line
-/// goes to where assistance pulls the probe.
-void App::draw_strokes() const
-{
-    const Document& document = *document_;
-    if (!document.screen.shows_anything()) return;
-    const ProbeLook look = document.probe_look();
-    const TraceMarks marks = document.trace_marks();
-    const ServoState* servo = document.touch.servo();
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    for (const Screen::Part& part : document.screen.parts()) {
-        const glm::dvec2 origin(viewport_.layout().begin + part.pane.box.begin);
-        const glm::uvec2 pixels = part.pane.box.end - part.pane.box.begin;
-        const auto on_screen = [&](const glm::dvec2& pixel) {
-            return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
-        };
-        list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
-        for (const Stroke& stroke : document.screen.strokes(part, look, marks))
-            list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
-                         float(stroke.width));
-        if (document.screen.parts().size() > 1) {
-            const char* const name = part.pane.name.c_str();
-            const ImVec2 size = ImGui::CalcTextSize(name), at = on_screen({8.0, 6.0});
-            list.AddRectFilled({at.x - 4.0f, at.y - 2.0f}, {at.x + size.x + 4.0f, at.y + size.y + 2.0f},
-                               IM_COL32(20, 20, 20, 170), 3.0f);
-            list.AddText(at, IM_COL32(255, 255, 255, 235), name);
-        }
-        const Camera* const camera = part.view->shown_camera();
-        if (servo && servo->step.in_contact && camera) {
-            const auto center = project(*camera, pixels, look.center),
-                       proxy = project(*camera, pixels, servo->step.proxy);
-            if (center && proxy) {
-                list.AddLine(on_screen(center->pixel), on_screen(proxy->pixel), IM_COL32(255, 255, 255, 200), 1.5f);
-                list.AddCircleFilled(on_screen(proxy->pixel), 3.0f, IM_COL32(255, 255, 255, 230));
-            }
-        }
-        list.PopClipRect();
-    }
-}
-
-Model App::model()
-{
-    Document& document = *document_;
-    return {
-        .session = document.session,
-        .volume = document.volume(),
-        .statistics = document.statistics,
-        .cameras = document.cameras(),
-        .panes = document.screen.parts(),
-        .presets = presets_,
-        .brush = document.brush,
-        .haptic_threshold = document.haptic_threshold,
-        .probe_voxel = document.probe_voxel(),
-        .is_painting = document.annotator.stroke_is_running(),
-        .assistance = document.assistance,
-        .law = document.law,
-        .servo = document.touch.servo(),
-        .device_name = document.touch.device_name(),
-        .tool = document.tool,
-        .trace = document.annotator.document().trace,
-        .nearby_node = document.nearby_node(),
-        .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
-                                ? std::optional(document.previewer.shown()->voxels)
-                                : std::nullopt,
-        .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
-        .undoable = document.annotator.history().undoable(),
-        .redoable = document.annotator.history().redoable(),
-        .is_saved = document.is_saved && document.work_is_saved(),
-        .status = status_,
-        .shows_help = shows_help_,
-        .gpu_name = renderer_->device().traits().name,
-        .pass_times = document.screen.pass_times(),
-        .view_is_complete = document.screen.complete(),
-        .view_is_limited = renderer_->volume().state() == DeviceVolume::State::limited,
-        .relevance_age_ms = document.touch.relevance_age_ms(),
-        .ui_frame_ms = report_.frame_ms.empty() ? 0.0 : report_.frame_ms.back(),
-        .device_bytes = renderer_->memory().device_bytes(),
-        .device_budget = renderer_->memory().device_budget()};
-}
-
-AppReport App::report()
-{
-    AppReport report = report_;
-    report.gpu_name = renderer_->device().traits().name;
-    report.status = status_;
-    if (document_) {
-        report.relevance_ms = document_->touch.mirror_ms();
-        report.view_submissions = document_->screen.submissions();
-        report.view_complete = document_->screen.complete();
-        report.servo = document_->touch.last_state();
-        report.probe_voxel = document_->probe_voxel();
-        report.voxels_by_group = document_->annotator.document().mask.voxels_by_group();
-        report.undoable = document_->annotator.history().undoable();
-        report.redoable = document_->annotator.history().redoable();
-    }
-    report.validation_messages = renderer_->device().take_validation_messages();
-    return report;
+    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
+    const Screenshots::Turn turn = screenshots_.advance(document_->screen, stem, !something_moves());
+    if (!turn.said.empty()) say(turn.said);
+    if (!turn.progress.empty()) status_ = turn.progress;
 }
 
 }  // namespace shvr::ui

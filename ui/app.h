@@ -1,6 +1,6 @@
 #pragma once
-// The application: owns the window, the device and what is open; takes what the person did, carries out the actions, and
-// keeps everything that runs beside the user interface supplied with work.
+// The application: owns the window, the device and what is open; takes what the person did, carries out the actions,
+// and keeps everything that runs beside the user interface supplied with work.
 //
 //   events -> Viewport, keys, panels -> Actions -> apply -> Session, Annotator, Touch -> View -> Window
 //
@@ -8,12 +8,13 @@
 // shared by turns of a few milliseconds: brush, relevance, probe, sketch, tiles, user interface. The interface is drawn
 // when something changed, at most so many times a second as the session says; with nothing to do the loop sleeps.
 
-#include <future>
 #include <memory>
 #include <optional>
 
 #include "ui/document.h"
 #include "ui/panels/panels.h"
+#include "ui/run_report.h"
+#include "ui/screenshots.h"
 #include "ui/viewport.h"
 
 namespace shvr::ui {
@@ -29,28 +30,6 @@ struct AppOptions {
     glm::uvec2 window_size{1280, 800};
 };
 
-/// Measured over a run, for people who profile and for tests.
-struct AppReport {
-    std::string gpu_name;
-    uint64_t frames = 0;              ///< of the user interface
-    std::vector<double> frame_ms;     ///< one interface frame: from its first call to the device being done with it
-    std::vector<double> interval_ms;  ///< between two frames while something was moving
-    std::vector<double> input_ms;     ///< from a key or button to the frame that shows it being done
-    /// From opening the last volume to the frame that first showed anything of it, and all of it sharp, being done.
-    std::optional<double> first_picture_ms, sharp_picture_ms;
-    std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it
-    uint64_t view_submissions = 0;
-    bool view_complete = false;
-    ServoState servo;
-    glm::dvec3 probe_voxel{0.0};
-    std::array<int64_t, 256> voxels_by_group{};
-    size_t undoable = 0, redoable = 0;
-    std::optional<int64_t> previewed_voxels;  ///< when the last stroke began, where there was a preview of it
-    std::string status;
-    std::vector<std::string> messages;  ///< every status so far
-    std::vector<std::string> validation_messages;
-};
-
 class App {
 public:
     explicit App(const AppOptions& options);
@@ -61,6 +40,8 @@ public:
 
 private:
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    [[noreturn]] void bring_back(const std::string& why);
+    void note_edit();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void handle_events(double timeout_s);
     void work();
@@ -72,21 +53,34 @@ private:
     double time_to_wait() const;
     void apply_all();
     void say(const std::string& status);
+    /// A part of a turn. Where it fails, that is said once, and the part is tried again a little later: whatever fails,
+    /// the window stays, and so does all that was done in it.
+    struct Attempt {
+        std::string said;       ///< of the last failure
+        double failed_s = 0.0;  ///< when that was; 0: never
+        double again_s = 0.0;
+    };
+    template <class Part>
+    void attempt(Attempt& state, Part part);
+    void note_failure(Attempt& state, const std::string& why);
+    void draw();
     void look_again() { look_is_stale_ = true; }
     void look_from_elsewhere() { camera_moved_ = true; }
     const Pane& pane(size_t index) const;
-    void note_presented();
     TouchSettings touch_settings() const;
+    void follow_device();
+    void follow_stroke();
+    void follow_look();
+    void follow_screenshots();
     void extend_stroke();
+    std::string finish_stroke();
     void show_changes(const Command& command);
     void stroke_ended();
     void show_preview();
     void save();
+    void save_before_leaving();
     bool closes();
-    void finish_screenshot();
-    void advance_large_screenshot();
-    void write_screenshot(Image8 image);
-    std::filesystem::path free_screenshot_path() const;
+    bool refuses_to_close(const std::string& why);
 
     // One for each action.
     void apply(const Orbit& action);
@@ -144,10 +138,11 @@ private:
     bool shows_help_ = false;
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
-    bool wants_screenshot_ = false;
-    std::unique_ptr<PictureJob> large_screenshot_;  ///< under way
-    bool device_paints_ = false;                    ///< its paint button is down
-    std::future<std::string> screenshot_;
+    bool was_asked_to_close_ = false;  ///< and could not save what was set; nothing was done since
+    Attempt events_, touching_, painting_, previewing_, looking_, photographing_, drawing_;
+    std::optional<double> undrawn_since_s_;  ///< every frame since has failed
+    Screenshots screenshots_;
+    bool device_paints_ = false;  ///< its paint button is down
     std::string status_;
     std::string journal_failure_;  ///< as it was said
 
@@ -155,20 +150,9 @@ private:
     double next_frame_s_ = 0.0;
     double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
     double last_keys_s_ = 0.0;
-    double opened_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     glm::dvec3 drawn_probe_voxel_{0.0};
-    std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
-    struct Presented {
-        uint64_t frame = 0;
-        double begun_s = 0.0;
-        std::vector<double> inputs_s;
-        bool shows_picture = false, shows_sharp_picture = false;
-    };
-    std::vector<Presented> presented_;
-    double last_begun_s_ = 0.0;
-    bool was_moving_ = false;
-    AppReport report_;
+    RunReport report_;
 };
 
 }  // namespace shvr::ui

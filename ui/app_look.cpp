@@ -1,4 +1,5 @@
-// What actions do to the view and to what things look like. Each says in the status bar what a person would want to read.
+// What actions do to the view and to what things look like. Each says in the status bar what a person would want to
+// read.
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,6 @@ void App::apply(const SetView& action)
 {
     const bool is_other = action.view.arrangement != document_->session.view.arrangement;
     document_->session.view = action.view;
-    document_->is_saved = false;
     if (is_other) {
         switch (action.view.arrangement) {
             case Arrangement::single: say("Full screen"); break;
@@ -136,7 +136,7 @@ void App::apply(const ResetCuts&)
     document_->session.cut = {};
     document_->camera.near_distance = document_->camera.far_distance = 0.0;
     look_again();
-    say("The whole volume is drawn");
+    say("All cutting planes are removed");
 }
 
 // ---- What things look like ------------------------------------------------------------------------------------------
@@ -144,14 +144,12 @@ void App::apply(const ResetCuts&)
 void App::apply(const SetTransferFunction& action)
 {
     document_->session.transfer_function = action.function;
-    document_->is_saved = false;
     look_again();
 }
 
 void App::apply(const SetGroup& action)
 {
     document_->session.groups[action.group] = action.settings;
-    document_->is_saved = false;
     renderer_->scene().show_surfaces(document_->surfaces, document_->annotator.document().trace,
                                      document_->session.groups);
     look_again();
@@ -160,7 +158,6 @@ void App::apply(const SetGroup& action)
 void App::apply(const SetBlend& action)
 {
     document_->session.blend = action.blend;
-    document_->is_saved = false;
     say(sentence("Distance blending: size ", action.blend.size, ", rate ", action.blend.rate));
     look_again();
 }
@@ -169,15 +166,13 @@ void App::apply(const SetLight& action)
 {
     if (action.light.shaded != document_->session.light.shaded) say(action.light.shaded ? "Shading on" : "Shading off");
     document_->session.light = action.light;
-    document_->is_saved = false;
     look_again();
 }
 
 void App::apply(const SetPreintegration& action)
 {
     document_->session.render.preintegration = action.on;
-    document_->is_saved = false;
-    say(action.on ? "Narrow peaks: every one that a step passes is seen" : "Narrow peaks: steps may miss them");
+    say(action.on ? "Narrow peaks on: none is missed between samples" : "Narrow peaks off: samples may miss them");
     look_again();
 }
 
@@ -190,7 +185,7 @@ void App::apply(const SetOcclusion& action)
 void App::apply(const UpdateOcclusion&)
 {
     document_->screen.update_occlusion();
-    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is renewed"
+    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is being updated"
                                                           : "Ambient occlusion is off: its strength is 0");
 }
 

@@ -40,7 +40,7 @@ void App::apply(const ProbeOnto& action)
         const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
         point = renderer_->pick(document_->session.look(), seen.shot.camera, pixels, pixel, document_->probe_look());
     }
-    if (!point) return say("Nothing is seen there that is half opaque; the probe stays where it is");
+    if (!point) return say("Nothing opaque enough there: the probe stays where it is");
     document_->touch.place(*point);
     const glm::dvec3 voxel = document_->probe_voxel();
     say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
@@ -55,7 +55,8 @@ void App::apply(const PushProbe& action)
 
 void App::apply(const ScaleProbe& action)
 {
-    document_->brush.radius_voxels = std::clamp(document_->brush.radius_voxels * action.factor, 0.5, 60.0);
+    document_->brush.radius_voxels =
+        std::clamp(document_->brush.radius_voxels * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
     say(sentence("Probe radius ", std::round(10.0 * document_->brush.radius_voxels) / 10.0, " voxels"));
 }
 
@@ -72,7 +73,7 @@ void App::apply(const ShowShell& action)
 {
     ProbeSettings& probe = document_->session.probe;
     if (action.on != probe.shell)
-        say(action.on ? "Iso-surface at the paint threshold around the probe" : "No iso-surface around the probe");
+        say(action.on ? "Iso-surface around the probe on, at the paint threshold" : "Iso-surface around the probe off");
     probe.shell = action.on;
     probe.shell_opacity = action.opacity;
 }
@@ -80,15 +81,14 @@ void App::apply(const ShowShell& action)
 void App::apply(const ShowPreview& action)
 {
     document_->session.probe.preview = action.on;
-    document_->is_saved = false;
-    say(action.on ? "What the brush would change is shown before it does" : "No preview of the brush");
+    say(action.on ? "Preview of the brush on: what it would change is shown" : "Preview of the brush off");
 }
 
 void App::apply(const ChooseGroup& action)
 {
     document_->brush.group = action.group;
     say(action.group == 0
-            ? std::string("Eraser: painting takes voxels out of their group")
+            ? std::string("Eraser: painting removes voxels from their group")
             : sentence("Group ", int(action.group), ": ", group_of(document_->session.groups, action.group).name));
 }
 
@@ -100,13 +100,13 @@ void App::apply(const SetHapticThreshold& action)
 void App::apply(const Assist& action)
 {
     document_->assistance = action.on;
-    say(action.on ? "Assistance on: the probe is drawn to what is at or above the haptic threshold" : "Assistance off");
+    say(action.on ? "Guidance on: the probe is pulled to what is at or above the haptic threshold" : "Guidance off");
 }
 
 void App::apply(const SetProxyLaw& action)
 {
     document_->law = action.law;
-    say(action.law == ProxyLaw::potential ? "Assistance: smooth" : "Assistance: as in the thesis");
+    say(action.law == ProxyLaw::potential ? "Guidance: smooth" : "Guidance: as in the thesis");
 }
 
 // ---- Painting -------------------------------------------------------------------------------------------------------
@@ -129,7 +129,7 @@ void App::apply(const Paint& action)
     }
     if (action.on && !annotator.stroke_is_running()) {
         const Previewer& previewer = document_->previewer;
-        if (previewer.shown() && previewer.is_current()) report_.previewed_voxels = previewer.shown()->voxels;
+        if (previewer.shown() && previewer.is_current()) report_.previewed(previewer.shown()->voxels);
         check_radius(document_->brush.radius_voxels, document_->volume().spacing, document_->volume().size);
         annotator.begin_stroke(with_offset(document_->brush, document_->session.transfer_function));
         annotator.extend_stroke(document_->probe_voxel());
@@ -149,7 +149,7 @@ void App::stroke_ended()
     const int64_t voxels = document_->annotator.last_stroke_voxels();
     if (voxels == 0)
         return say(
-            "The stroke changed nothing: no voxel at or above the paint threshold here, or all of them are that way "
+            "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted "
             "already");
     say(painted_sentence(document_->brush, voxels));
 }
@@ -165,6 +165,7 @@ void App::show_preview()
         document.previewer.advance();
     } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
         document.session.probe.preview = false;
+        note_edit();
         document.previewer.want(std::nullopt);
         say(error.what());
     }

@@ -17,7 +17,7 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
         return sentence("A segment is selected: ", selected.internodes.size(), " internodes, ", selected.nodes.size(),
                         " nodes");
     }
-    if (!done) return "The trace is that way already";
+    if (!done) return "Nothing to change in the trace";
     if (std::holds_alternative<NodeOp>(op)) {
         const uint32_t node = *selected.node();
         const auto internodes = trace.internodes_of(node);
@@ -32,10 +32,10 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
 void App::apply(const Trace& action)
 {
     Annotator& annotator = document_->annotator;
-    if (annotator.stroke_is_running()) return say("The trace waits until the stroke is painted");
+    if (annotator.stroke_is_running()) return say("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
     if (std::holds_alternative<NodeOp>(action.op) && document_->brush.group == 0)
-        return say("Group 0 erases; choose a group from 1 for the node");
+        return say("Group 0 is the eraser; choose a group from 1 up for the node");
     TraceEffect effect = effect_of(action.op, trace, document_->trace_defaults());
     document_->drags_node = false;
     if (effect.selection) annotator.work().select_trace(*effect.selection);
@@ -51,7 +51,7 @@ void App::apply(const DragNode& action)
         const std::optional<uint32_t> node = trace.selection().node();
         if (!node) return say("No node is selected; select one to move it");
         document_->drags_node = true;
-        return say(sentence("Node ", *node, " goes with the probe until the key is let go"));
+        return say(sentence("Node ", *node, " follows the probe until the key is released"));
     }
     if (document_->drags_node) apply(Trace{MoveOp{document_->probe_voxel()}});
 }

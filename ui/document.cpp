@@ -23,39 +23,61 @@ std::filesystem::path session_path_of(const std::filesystem::path& input)
     return beside.replace_extension(".session.json");
 }
 
-void load(Renderer& renderer, std::shared_ptr<const VolumeSource> source, const OpenedSession& opened)
+void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source, const VolumeStatistics& statistics,
+          const Session& session)
 {
-    renderer.load(source, opened.statistics, opened.session.render, shows_occlusion(opened.session.light));
+    renderer.load(source, statistics, session.render, shows_occlusion(session.light));
 }
 
 }  // namespace
 
-Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                   std::unique_ptr<HapticDevice> device, const std::string& device_name,
-                   const View::Options& view_options)
-    : session_path(session_path_of(input)),
-      session(opened.session),
-      source((load(renderer, opened.source, opened), std::move(opened.source))),
+std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
+                                         const View::Options& view_options, bool overridden)
+{
+    load(renderer, opened.source, opened.statistics, opened.session);
+    std::unique_ptr<Document> document(
+        new Document(renderer, std::move(opened), session_path_of(input), view_options, overridden));
+    document->load_work(renderer);
+    document->note_saved();
+    return document;
+}
+
+Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
+                   const View::Options& view_options, bool overridden)
+    : session_path(path),
+      session(std::move(opened.session)),
+      source(std::move(opened.source)),
       statistics(opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer),
       screen(renderer, view_options),
-      touch(renderer, std::move(device), device_name)
+      touch(renderer),
+      overridden_(overridden)
 {
     if (session.mask_path.empty()) {
         session.mask_path = session_path;
         session.mask_path.replace_extension(".mask");
     }
     if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
-    messages = annotator.open(work_files(session, volume()));
-    is_saved = annotator.work().unsaved() == 0;
     surfaces = std::exchange(session.surfaces, {});
-    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     const ProbeSettings& probe = session.probe;
     brush = dab_of(session, volume(), statistics);
     brush.path.clear();
     haptic_threshold = probe.haptic_threshold.value_or(brush.threshold);
     touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
+}
+
+void Document::load_work(Renderer& renderer)
+{
+    messages = annotator.open(work_files(session, volume()));
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+}
+
+void Document::show_again(Renderer& renderer)
+{
+    load(renderer, source, statistics, session);
+    renderer.scene().show(annotator.document());
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
 ProbeLook Document::probe_look() const
@@ -94,20 +116,63 @@ Session Document::saved_session() const
     return saved;
 }
 
+// ---- Saving ---------------------------------------------------------------------------------------------------------
+
+/// What a person has set, as it would be written. Surfaces are left out: nothing here changes them, and they are many.
+Session Document::edits() const
+{
+    Session edits = saved_session();
+    edits.surfaces.clear();
+    edits.cameras = session.cameras;
+    edits.camera_name = session.camera_name;
+    edits.probe.voxel.reset();
+    return edits;
+}
+
+bool Document::edits_are_saved() const
+{
+    if (!edits_are_saved_) edits_are_saved_ = edits() == saved_edits_;
+    return *edits_are_saved_;
+}
+
+void Document::note_saved()
+{
+    saved_edits_ = edits();
+    edits_are_saved_ = true;
+    saved_camera_ = camera;
+    saved_probe_voxel_ = probe_voxel();
+}
+
+void Document::write_session() const
+{
+    const std::string text = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
+    write_file_atomically(session_path, std::as_bytes(std::span(text)));
+}
+
+void Document::keep_view() const
+{
+    const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
+    std::error_code ignored;
+    if (is_kept || overridden_ || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored)) return;
+    try {
+        write_session();
+    } catch (const Error&) {  // a place to look from is not worth a question
+    }
+}
+
 void Document::save()
 {
-    const std::filesystem::path folder = std::filesystem::absolute(session_path).parent_path();
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
     annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
     annotator.work().save(label_looks(session.groups, annotator.document().mask));
-    const std::string text = to_text(saved_session(), folder);
-    write_file_atomically(session_path, std::as_bytes(std::span(text)));
-    is_saved = true;
+    write_session();
+    note_saved();
 }
 
-/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its own.
+/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its
+/// own.
 void Document::name_trace()
 {
     if (annotator.work().trace_is_saved()) return;

@@ -1,8 +1,14 @@
 #pragma once
-// What is open in the application: session, volume, mask and history, and how they are looked at and touched. Main thread.
+// What is open in the application: session, volume, mask and history, and how they are looked at and touched. Main
+// thread.
+//
+// Whether it is saved is found out, not kept: the session as it would be saved is compared with the one that was read
+// or written last. The camera and the probe's place are left out of that, since they change whenever somebody looks.
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/live/previewer.h"
@@ -15,6 +21,12 @@
 namespace shvr::ui {
 
 struct Document {
+    /// Loads the volume onto the device, then the work that is kept of it. `overridden`: the session is not as its file
+    /// says. Fails where either cannot be had; then the device holds no volume. The mouse moves the probe.
+    static std::unique_ptr<Document> open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
+                                          const View::Options& view_options, bool overridden = false);
+    Document(const Document&) = delete;
+
     std::filesystem::path session_path;  ///< where the session is saved
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -30,16 +42,11 @@ struct Document {
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< the session's; taken out of it, since views copy that at every turn
     std::vector<std::string> messages;  ///< what opening the work found
-    bool is_saved = true;               ///< the session; work says it of itself
     Tool tool = Tool::paint;
     bool drags_node = false;  ///< the selected one goes with the probe
 
-    bool work_is_saved() const { return annotator.work().unsaved() == 0; }
-
-    /// Loads the volume and, where there is one, the mask onto the device.
-    /// `device`: what moves the probe; null for the mouse.
-    Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-             std::unique_ptr<HapticDevice> device, const std::string& device_name, const View::Options& view_options);
+    /// Brings everything to the device again, which held something else meanwhile. Fails as load and create do.
+    void show_again(Renderer& renderer);
 
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
@@ -55,12 +62,34 @@ struct Document {
     VoxelBox voxels_around_probe() const;
     /// The session as it would be saved: with the camera, the probe and the thresholds of the moment.
     Session saved_session() const;
+    /// Closing would lose nothing of work and session, but perhaps where it was looked at from.
+    bool is_saved() const { return work_is_saved() && edits_are_saved(); }
+    bool work_is_saved() const { return annotator.work().unsaved() == 0; }
+    /// To be called after whatever may have changed the session, camera and probe's place apart: what is_saved() found
+    /// out is forgotten.
+    void note_edit() { edits_are_saved_.reset(); }
     /// Writes the mask, offsets and the trace, then the session; each file appears whole or not at all.
     void save();
+    /// Writes the session where it is saved but for the camera and the probe's place, and has a file; otherwise
+    /// nothing. So people who only look at a volume leave no file. A file that cannot be written stays as it is.
+    void keep_view() const;
     std::vector<std::string> cameras() const;
 
 private:
+    Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
+             const View::Options& view_options, bool overridden);
+    void load_work(Renderer& renderer);
     void name_trace();
+    void write_session() const;
+    bool edits_are_saved() const;
+    Session edits() const;
+    void note_saved();
+
+    bool overridden_;      ///< by settings that nobody wrote into the file
+    Session saved_edits_;  ///< edits() of what was read or written last
+    Camera saved_camera_;
+    glm::dvec3 saved_probe_voxel_{0.0};
+    mutable std::optional<bool> edits_are_saved_;  ///< as it was found out last
 };
 
 }  // namespace shvr::ui

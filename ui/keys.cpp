@@ -23,7 +23,7 @@ constexpr double BLEND_STEP = 0.05;
 constexpr double MOST_BLEND = 20.0;
 constexpr double TAPS_PER_SECOND = 5.0;  ///< of a key that is held
 constexpr double LONGEST_FRAME_S = 0.5;  ///< a frame that hung must not throw the view away
-constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and its like
+constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and other locks
 
 // ---- What keys do. The ones with parameters stand several times in the table.
 
@@ -241,7 +241,7 @@ constexpr KeyBinding BINDINGS[] = {
         [](const Model& m, double) -> Action {
             return ShowShell{!m.session.probe.shell, m.session.probe.shell_opacity};
         }),
-    tap(GLFW_KEY_HOME, 0, PROBE, "Next way of guiding", next_law),
+    tap(GLFW_KEY_HOME, 0, PROBE, "Next kind of guidance", next_law),
     hold(GLFW_KEY_PAGE_UP, 0, PROBE, "Larger probe", scale_probe<1>),
     hold(GLFW_KEY_PAGE_DOWN, 0, PROBE, "Smaller probe", scale_probe<-1>),
 

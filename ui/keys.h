@@ -1,6 +1,6 @@
 #pragma once
-// Keys: one table of key, modifiers, what it does and in which words, from which both the keyboard and the help window are
-// served. Codes are GLFW's. The letters are those of the thesis's appendix C.
+// Keys: one table of key, modifiers, what it does and in which words, from which both the keyboard and the help window
+// are served. Codes are GLFW's. The letters are those of the thesis's appendix C.
 
 #include <span>
 #include <string>

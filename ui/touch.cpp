@@ -23,10 +23,15 @@ uint64_t now_ns()
 
 }  // namespace
 
-Touch::Touch(Renderer& renderer, std::unique_ptr<HapticDevice> device, const std::string& device_name)
-    : renderer_(renderer), relevance_(renderer), is_mouse_(!device), device_name_(device ? device_name : "mouse")
+Touch::Touch(Renderer& renderer) : renderer_(renderer), relevance_(renderer) {}
+
+void Touch::use(std::unique_ptr<HapticDevice> device, const std::string& name)
 {
-    if (device) servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
+    servo_.reset();
+    mouse_ = nullptr;
+    is_mouse_ = false;
+    device_name_ = name;
+    servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
 }
 
 Workspace Touch::mouse_workspace() const

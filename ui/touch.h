@@ -3,10 +3,10 @@
 //
 //   mouse -> wish -> servo's device -> probe -> relevance pass (device) -> bits -> Latest -> servo -> force -> probe
 //
-// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view, right,
-// up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force; then the
-// servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is computed. Main
-// thread; the servo has its own, and shares only latest values with it.
+// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view,
+// right, up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force;
+// then the servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is
+// computed. Main thread; the servo has its own, and shares only latest values with it.
 
 #include <memory>
 #include <string>
@@ -30,8 +30,10 @@ struct TouchSettings {
 
 class Touch {
 public:
-    /// `device`: null for the mouse.
-    Touch(Renderer& renderer, std::unique_ptr<HapticDevice> device, const std::string& device_name);
+    /// The mouse moves the probe until there is a device.
+    explicit Touch(Renderer& renderer);
+    /// From now on `device` moves the probe, and the servo runs.
+    void use(std::unique_ptr<HapticDevice> device, const std::string& name);
 
     /// Puts the probe somewhere at once (physical units of the volume).
     void place(const glm::dvec3& point);
@@ -47,6 +49,7 @@ public:
     bool is_mouse() const { return is_mouse_; }
     /// Of the device, as the servo read them last; 0 for the mouse.
     uint32_t buttons() const { return is_mouse_ ? 0 : state_.device.buttons; }
+    bool paint_button() const { return (buttons() & PAINT_BUTTON) != 0; }
     /// From asking the device which voxels are relevant to the servo being told, milliseconds; newest last.
     const std::vector<double>& mirror_ms() const { return mirror_ms_; }
     double relevance_age_ms() const;
@@ -65,8 +68,8 @@ private:
 
     Renderer& renderer_;
     Relevance relevance_;
-    const bool is_mouse_;
-    const std::string device_name_;
+    bool is_mouse_ = true;
+    std::string device_name_ = "mouse";
     std::unique_ptr<Servo> servo_;
     SimulatedDevice* mouse_ = nullptr;  ///< the servo's, while it runs
     bool was_assisting_ = false;

@@ -1,6 +1,6 @@
 #pragma once
-// What a person means by a key, a menu or a button of tracing, as operations that scripts have, too. Pure; the main thread,
-// while the model lives.
+// What a person means by a key, a menu or a button of tracing, as operations that scripts have, too. Pure; the main
+// thread, while the model lives.
 
 #include "ui/action.h"
 #include "ui/model.h"

@@ -1,6 +1,6 @@
 #pragma once
-// Mouse and keys in the graphics window, turned into actions. Knows where the graphics window lies, and which gesture is
-// under way; changes nothing else. Main thread.
+// Mouse and keys in the graphics window, turned into actions. Knows where the graphics window lies, and which gesture
+// is under way; changes nothing else. Main thread.
 //
 //   no button          the probe follows in its plane          wheel          zoom
 //   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer

@@ -1,6 +1,6 @@
 #pragma once
-// The window: GLFW, the swapchain and Dear ImGui's Vulkan back end. It shows images of the view under the user interface,
-// and collects what the person did. The only file outside engine/gpu that speaks Vulkan is window.cpp.
+// The window, by GLFW: it shows images of the view under the user interface (swapchain.h), and collects what the person
+// did.
 //
 //     Window window({...});                                  // before the device, which must know what it needs
 //     Renderer renderer({.device = window.device_needs()});
@@ -54,6 +54,8 @@ struct InputEvent {
     double time_s = 0.0;  ///< when it was received
 };
 
+class Swapchain;
+
 class Window {
 public:
     /// Fails where there is no display.
@@ -94,9 +96,8 @@ public:
 
 private:
     struct Input;
-    struct Vulkan;
     std::unique_ptr<Input> input_;
-    std::unique_ptr<Vulkan> vulkan_;
+    std::unique_ptr<Swapchain> swapchain_;
 };
 
 }  // namespace shvr::ui

@@ -10,6 +10,8 @@
 
 namespace shvr {
 
+static_assert(MOST_OCCLUSION_RADIUS == OCCLUSION_MOST_RADIUS);
+
 namespace {
 
 /// Beyond the radius: how far rays are lifted off surfaces, half the largest cell, and the voxel itself.

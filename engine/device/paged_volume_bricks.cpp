@@ -234,6 +234,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
             SHVR_CHECK(place(key, *texels, true), "room was counted");
         }
         const std::optional<uint32_t> slot = slots_.find(key);
+        if (!slot)
+            if (const std::optional<std::string> failure = store_.failure_of(key)) throw Error(*failure);
         all_there = all_there && slot.has_value();
         region.slots.push_back(slot ? atlas_.packed(*slot) : gpu::NO_SLOT);
     }

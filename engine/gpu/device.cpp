@@ -27,17 +27,6 @@ const char* name_of(VkResult result)
     }
 }
 
-template <class T, class Call>
-std::vector<T> enumerate(Call call)
-{
-    uint32_t count = 0;
-    call(&count, nullptr);
-    std::vector<T> items(count);
-    call(&count, items.data());
-    items.resize(count);
-    return items;
-}
-
 bool layer_is_installed(const char* name)
 {
     const auto layers = enumerate<VkLayerProperties>(

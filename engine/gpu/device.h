@@ -29,7 +29,7 @@ struct DeviceOptions {
 struct DeviceTraits {
     std::string name;
     std::string driver;              ///< name and version
-    bool is_cpu = false;             ///< lavapipe and its like
+    bool is_cpu = false;             ///< lavapipe and other software devices
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
     bool linear_r16 = false;    ///< R16_UNORM can be filtered by the sampler
@@ -38,6 +38,18 @@ struct DeviceTraits {
     VkPhysicalDeviceLimits limits{};
     uint64_t max_allocation_bytes = 0;
 };
+
+/// What the pairs of Vulkan calls list that are asked for the count first and for the items then.
+template <class T, class Call>
+std::vector<T> enumerate(Call call)
+{
+    uint32_t count = 0;
+    call(&count, nullptr);
+    std::vector<T> items(count);
+    call(&count, items.data());
+    items.resize(count);
+    return items;
+}
 
 class Device {
 public:
@@ -63,7 +75,6 @@ public:
 
     /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
     std::vector<std::string> take_validation_messages();
-    bool validates() const { return messenger_ != VK_NULL_HANDLE; }
 
 private:
     void create_instance(const DeviceOptions& options);

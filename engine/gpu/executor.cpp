@@ -17,7 +17,6 @@ VkPipelineStageFlags2 vulkan_stages(Stages stages)
     if (stages & STAGE_COMPUTE) flags |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     if (stages & STAGE_TRANSFER) flags |= VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     if (stages & STAGE_HOST) flags |= VK_PIPELINE_STAGE_2_HOST_BIT;
-    if (stages & STAGE_INDIRECT) flags |= VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
     return flags;
 }
 
@@ -35,7 +34,6 @@ VkAccessFlags2 touched_by(Stages stages)
     if (stages & STAGE_COMPUTE) flags |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
     if (stages & STAGE_TRANSFER) flags |= VK_ACCESS_2_TRANSFER_READ_BIT;
     if (stages & STAGE_HOST) flags |= VK_ACCESS_2_HOST_READ_BIT;
-    if (stages & STAGE_INDIRECT) flags |= VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
     return flags;
 }
 
@@ -154,7 +152,7 @@ void Submission::Frame::prepare()
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const PassData& data = pass(compiled.steps[i]);
         if (data.kind == PassData::Kind::read_back)
-            read_backs[data.fill_value] =
+            read_backs[data.read_back] =
                 &take("read back", buffer_desc(resources[data.bindings[0].resource].desc.bytes), Placement::download);
         if (data.kind != PassData::Kind::compute) continue;
         const KernelInterface& interface = executor.kernels_.interface(data.kernel);
@@ -335,7 +333,7 @@ void Submission::Frame::record_pass(const Step& step, Prepared& state)
             break;
         }
         case PassData::Kind::read_back: {
-            const VkBuffer target = executor.memory_.object(read_backs[data.fill_value]->import().id).buffer;
+            const VkBuffer target = executor.memory_.object(read_backs[data.read_back]->import().id).buffer;
             if (first.image) {
                 const glm::uvec3 texels = first.desc.texels;
                 const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},

@@ -6,8 +6,8 @@
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
 // Frames reach the device in the order they were submitted, and each knows what those before it left in flight. Long
-// passes are split by their tile into several submissions to the queue, so that none of them takes long. Who needs other
-// work to get in between makes several small frames and keeps few of them in flight. One thread at a time.
+// passes are split by their tile into several submissions to the queue, so that none of them takes long. Who needs
+// other work to get in between makes several small frames and keeps few of them in flight. One thread at a time.
 
 #include <memory>
 #include <string>
@@ -83,7 +83,6 @@ public:
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    Kernels& kernels() { return kernels_; }
     /// Gives back the memory of transient resources that the last `runs` runs did not use.
     void trim(uint64_t runs = 0);
 

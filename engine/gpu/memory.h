@@ -42,7 +42,7 @@ public:
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// The same without waiting, for who knows that the device is done with it.
+    /// As reset(), for callers that know the device is done with it.
     void reset_idle();
 
 private:
@@ -83,7 +83,6 @@ public:
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }
     uint64_t peak_host_bytes() const { return peak_host_bytes_; }
     uint64_t device_budget() const { return budget_.device_bytes; }
-    uint64_t host_budget() const { return budget_.host_bytes; }
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes_; }
     std::map<std::string, uint64_t> bytes_by_name() const;
     Device& device() { return device_; }

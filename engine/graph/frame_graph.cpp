@@ -13,12 +13,12 @@ std::string place(const PassData& pass)
                     ":", pass.declared_at.line(), ")");
 }
 
-Stages stages_of(const PassData& pass, const Binding&)
+Stages stages_of(const PassData& pass)
 {
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
-/// Why a handle may not be used, said of whoever uses it; nothing where it is the current one.
+/// Why a handle may not be used, worded for the pass that uses it; nothing where it is the current one.
 std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
 {
     if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
@@ -74,7 +74,7 @@ std::string names_of(Stages stages)
 {
     std::string names;
     const std::pair<Stages, const char*> all[] = {
-        {STAGE_COMPUTE, "compute"}, {STAGE_TRANSFER, "transfer"}, {STAGE_HOST, "host"}, {STAGE_INDIRECT, "indirect"}};
+        {STAGE_COMPUTE, "compute"}, {STAGE_TRANSFER, "transfer"}, {STAGE_HOST, "host"}};
     for (const auto& [stage, name] : all)
         if (stages & stage) names += (names.empty() ? "" : "+") + std::string(name);
     return names.empty() ? "nothing" : names;
@@ -178,6 +178,18 @@ Pass FrameGraph::compute(const std::string& kernel, const std::string& name, Loc
     return {*this, uint32_t(passes_.size() - 1)};
 }
 
+Pass FrameGraph::compute(const std::string& kernel, std::initializer_list<VariantChoice> choices,
+                         const std::string& name, Location at)
+{
+    PassData& pass = add(PassData::Kind::compute, name.empty() ? kernel : name, at);
+    try {
+        pass.kernel = variant_of(kernel, choices);
+    } catch (const Error& error) {
+        fail(place(pass), ": ", error.what());
+    }
+    return {*this, uint32_t(passes_.size() - 1)};
+}
+
 Resource FrameGraph::fill(Resource buffer, uint32_t value, const std::string& name, Location at)
 {
     add(PassData::Kind::fill, name, at).fill_value = value;
@@ -207,7 +219,7 @@ uint32_t FrameGraph::read_back(Resource resource, const std::string& name, Locat
     const std::string label =
         !name.empty() ? name
                       : "read back " + (resource.index < resources_.size() ? resources_[resource.index].name : "");
-    add(PassData::Kind::read_back, label, at).fill_value = read_backs_;
+    add(PassData::Kind::read_back, label, at).read_back = read_backs_;
     use(uint32_t(passes_.size() - 1), "source", resource, true, false);
     return read_backs_++;
 }
@@ -244,10 +256,10 @@ std::vector<bool> living_passes(const FrameGraph& graph)
 /// The barrier that `pass` needs, given what is in flight.
 std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<ResourceState>& states)
 {
+    const Stages stages = stages_of(pass);
     Barrier barrier;
     for (const Binding& binding : pass.bindings) {
         const ResourceState& state = states[binding.resource];
-        const Stages stages = stages_of(pass, binding);
         if (state.written_by && (stages & ~state.visible_to)) {  // read or write after write
             barrier.from |= state.written_by;
             barrier.to |= stages;
@@ -273,14 +285,14 @@ void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 
 void record_use(const PassData& pass, std::vector<ResourceState>& states)
 {
+    const Stages stages = stages_of(pass);
     for (const Binding& binding : pass.bindings) {
         ResourceState& state = states[binding.resource];
-        const Stages stages = stages_of(pass, binding);
         if (binding.writes) {
             state = {.written_by = stages};
             continue;
         }
-        // Whoever waits for a read that came after all others waits for those as well.
+        // Waiting for a read that came after all others waits for those as well.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;

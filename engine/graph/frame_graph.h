@@ -25,6 +25,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/base/error.h"
+#include "engine/graph/kernel_variants.h"
 
 namespace shvr {
 
@@ -55,7 +56,6 @@ using Stages = uint8_t;
 inline constexpr Stages STAGE_COMPUTE = 1;
 inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
-inline constexpr Stages STAGE_INDIRECT = 8;
 std::string names_of(Stages stages);
 
 /// What is still in flight on a resource. Carried from frame to frame for imported ones.
@@ -67,8 +67,7 @@ struct ResourceState {
     bool operator==(const ResourceState&) const = default;
 };
 /// Nothing is known of what came before; the first use waits for everything.
-inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0,
-                                             STAGE_COMPUTE | STAGE_TRANSFER | STAGE_INDIRECT, 0};
+inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0, STAGE_COMPUTE | STAGE_TRANSFER, 0};
 
 /// An object that outlives the frame; `id` is the executor's name for it.
 struct Import {
@@ -114,6 +113,7 @@ struct PassData {
     glm::uvec3 threads{0};
     glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; bounds the time of one dispatch
     uint32_t fill_value = 0;
+    uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
     std::vector<BufferRegion> buffer_regions;
     std::source_location declared_at;
@@ -187,6 +187,10 @@ public:
 
     /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
+    /// The same of a kernel with variants (kernel_variants.h): `choices` says of each macro in its line "// variants:
+    /// ...", in any order, whether the kernel is compiled with it. Fails where one is unknown, missing or named twice.
+    Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
+                 Location at = Location::current());
     [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",
                                 Location at = Location::current());
     [[nodiscard]] Resource copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,

@@ -168,19 +168,30 @@ void Annotator::end_stroke()
     stroke_->has_ended = true;
 }
 
+void Annotator::drop_stroke()
+{
+    if (stroke_) last_stroke_voxels_ = stroke_->voxels;
+    stroke_.reset();
+}
+
 std::optional<VoxelBox> Annotator::advance()
 {
     if (!stroke_) return std::nullopt;
+    try {
+        return advance_stroke();
+    } catch (const Error&) {
+        drop_stroke();  // what cannot be kept is not painted, nor is the rest
+        throw;
+    }
+}
+
+std::optional<VoxelBox> Annotator::advance_stroke()
+{
     Stroke& stroke = *stroke_;
     std::optional<VoxelBox> changed;
     if (stroke.query.is_asking()) {
         if (!stroke.query.is_answered()) return std::nullopt;
-        try {
-            changed = paint_answer();
-        } catch (const Error&) {
-            stroke_.reset();  // what cannot be kept is not painted, nor is the rest
-            throw;
-        }
+        changed = paint_answer();
     }
     if (stroke.next < stroke.positions.size()) {
         FrameOfRegions frame = frame_of_regions(stroke.brush, stroke.positions, stroke.next, renderer_.volume().info());

@@ -60,7 +60,10 @@ public:
     bool stroke_is_running() const { return stroke_.has_value(); }
     /// It has begun and not ended.
     bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
-    /// Paints a finished answer and submits the next query. Returns the voxels that may look different.
+    /// Ends it at once: what is painted stays, the rest is dropped.
+    void drop_stroke();
+    /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the stroke
+    /// cannot go on (too large a brush, bricks or a journal that fail); then the rest of it is dropped.
     std::optional<VoxelBox> advance();
     /// How many voxels the last stroke that ended has changed, counted as `paint` does.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
@@ -93,6 +96,7 @@ private:
     static void add(Answered& answered, const PaintOp& op, std::span<const RegionAnswer> answers);
     Answered ask(const PaintOp& op);
     std::vector<Change> changes_of(const PaintOp& op, const Answered& answered) const;
+    std::optional<VoxelBox> advance_stroke();
     PaintPreview preview_of_answer(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
     void show(const Touched& touched, const std::optional<VoxelBox>& within = {});

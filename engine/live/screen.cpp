@@ -25,12 +25,7 @@ void Screen::look_from(const Camera& camera, const glm::dvec3& probe_voxel)
 void Screen::arrange(bool look_changed)
 {
     const std::vector<Pane> panes = panes_of(view_, camera_, pixels_, renderer_.scene().info(), probe_voxel_);
-    while (parts_.size() > panes.size()) {
-        parts_.back().view->wait();
-        retired_submissions_ += parts_.back().view->submissions();
-        retired_revisions_ += parts_.back().view->revision() + 1;
-        parts_.pop_back();
-    }
+    retire_beyond(panes.size());
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         const glm::uvec2 size = pane.box.end - pane.box.begin;
@@ -41,6 +36,22 @@ void Screen::arrange(bool look_changed)
         before = pane;
         if (is_new || look_changed || !looks_the_same) parts_[i].view->look(look_, interaction_, pane.shot, size);
     }
+}
+
+void Screen::retire_beyond(size_t panes)
+{
+    while (parts_.size() > panes) {
+        parts_.back().view->wait();
+        retired_submissions_ += parts_.back().view->submissions();
+        retired_revisions_ += parts_.back().view->revision() + 1;
+        parts_.pop_back();
+    }
+}
+
+void Screen::clear()
+{
+    retire_beyond(0);
+    turn_ = 0;
 }
 
 void Screen::show_probe(const ProbeLook& probe)

@@ -27,6 +27,8 @@ public:
 
     void advance();
     void wait();
+    /// Gives up all panes, and with them the device's memory; look() makes new ones.
+    void clear();
     bool complete() const;
 
     struct Part {
@@ -51,6 +53,7 @@ public:
 
 private:
     void arrange(bool look_changed);
+    void retire_beyond(size_t panes);
     void take_changed();
     void give_turn(size_t part);
     bool is_loading() const;

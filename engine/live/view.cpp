@@ -265,12 +265,7 @@ bool View::submit_tiles()
 
     reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
     Running running{.purpose = Purpose::tiles, .sight = shown_sight_};
-    for (uint32_t x = begin; x < end; ++x) {
-        Tile& tile = tiles_[x + counts.x * nearest->y];
-        tile.is_due = tile.is_urgent = false;
-        tile.drawn_s = now_s();
-        running.tiles.push_back(x + counts.x * nearest->y);
-    }
+    for (uint32_t x = begin; x < end; ++x) running.tiles.push_back(x + counts.x * nearest->y);
     PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
     part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
     running.pixels = PixelBox{part.begin, part.end}.area();
@@ -285,6 +280,11 @@ bool View::submit_tiles()
     params.last = size - 1u;
     static_cast<void>(encode(graph, light, graph.import("display", sharp_.import()), params));
     submit(std::move(graph), std::move(running));
+    for (const uint32_t index : running_.back().tiles) {
+        Tile& tile = tiles_[index];
+        tile.is_due = tile.is_urgent = false;
+        tile.drawn_s = now_s();
+    }
     return true;
 }
 

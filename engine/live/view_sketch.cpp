@@ -87,8 +87,8 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
         encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
         sketch.next_encoded = sketch.next_row;
     }
-    ++sketch.running;
     submit(std::move(graph), std::move(running));
+    ++sketch.running;
 }
 
 void View::submit_encoding(Sketch& sketch, Purpose purpose)
@@ -100,9 +100,9 @@ void View::submit_encoding(Sketch& sketch, Purpose purpose)
     FrameGraph graph;
     encode_rows(graph, graph.import("light", work_.import()), sketch, sketch.next_encoded, end);
     const double estimate_ms = ENLARGING_MS * width * (end - sketch.next_encoded);
+    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .sight = sketch.job->sight});
     sketch.next_encoded = end;
     ++sketch.running;
-    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .sight = sketch.job->sight});
 }
 
 /// Rows of the sketch's target, from the light that starts at the sketch's part.

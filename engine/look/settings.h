@@ -11,6 +11,9 @@
 
 namespace shvr {
 
+/// The largest OcclusionSettings::radius: what the bricks around a brick hold (engine/passes/occlusion.h).
+inline constexpr double MOST_OCCLUSION_RADIUS = 60.0;
+
 /// How much of the ambient light reaches a place (shaders/occlusion.h).
 struct OcclusionSettings {
     double strength = 0.0;     ///< 0: off, 1: nothing is left of the ambient light where none arrives

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "engine/passes/pixel_groups.h"
+
 namespace shvr {
 
 namespace {
@@ -40,7 +42,7 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
 {
     for (size_t first = 0; first < jobs.size(); first += BATCH) {
         const std::span<const gpu::BrickLeapJob> batch = jobs.subspan(first, std::min(BATCH, jobs.size() - first));
-        Pass pass = graph.compute(mask ? "brick_leap_masked" : "brick_leap", "brick_leap");
+        Pass pass = graph.compute("brick_leap", {{"MASKED", mask.has_value()}});
         pass.read("cell_ranges", volume.cell_ranges);
         pass.block("jobs", batch);
         pass.block("visible_intervals", std::span<const uint32_t>(visibility.visible_intervals));
@@ -49,7 +51,7 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
             pass.block("visible_groups", std::span<const uint32_t>(visibility.visible_groups));
         }
         pass.push(visibility.params);
-        pass.dispatch({8 * uint32_t(batch.size()), 8, 1});
+        group_each(pass, batch.size());
         volume.pages->cell_leap = pass.write("cell_leap", volume.pages->cell_leap);
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
-// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup a brick, run when bricks arrive, and for all
-// that are there when the transfer function or the groups change.
+// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup a brick, run when bricks arrive, and for
+// all that are there when the transfer function or the groups change.
 
 #include <array>
 #include <span>

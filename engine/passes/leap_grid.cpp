@@ -16,7 +16,7 @@ CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_
 void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
                uint32_t empty_distance, Resource& to)
 {
-    Pass pass = graph.compute(input.mask ? "leap_occupancy_masked" : "leap_occupancy", "leap_occupancy");
+    Pass pass = graph.compute("leap_occupancy", {{"MASKED", input.mask.has_value()}});
     pass.read("cell_ranges", volume.cell_ranges);
     pass.read("page_table", volume.page_table);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
@@ -63,7 +63,7 @@ void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 {
     // As the last stage: the cells whose distance the changed ones may bound.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
-    Pass pass = graph.compute("leap_bound", "leap_bound");
+    Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});
     pass.dispatch(cells.end - cells.begin);
     volume.leap = pass.modify("leap", volume.leap);

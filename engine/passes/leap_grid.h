@@ -6,8 +6,8 @@
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 //
-// A patch is what a picture needs at once after a few cells changed: right, but some leaps are shorter than they could be
-// until the four stages have run. One thread a cell, few loads.
+// A patch is what a picture needs at once after a few cells changed: right, but some leaps are shorter than they could
+// be until the four stages have run. One thread a cell, few loads.
 
 #include <array>
 #include <optional>
@@ -35,8 +35,8 @@ struct LeapGridInput {
 
 inline constexpr uint32_t LEAP_STAGES = 4;
 
-/// Adds one stage, 0 ... LEAP_STAGES - 1, and renews the handles of `volume` that it writes. The leap grid holds after the
-/// last one, provided that all four ran in order with the same input.
+/// Adds one stage, 0 ... LEAP_STAGES - 1, and renews the handles of `volume` that it writes. The leap grid holds after
+/// the last one, provided that all four ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
 /// The grid that is there holds for what is now in the changed cells, too.

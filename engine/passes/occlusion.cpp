@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/passes/pixel_groups.h"
+
 namespace shvr {
 
 namespace {
@@ -12,8 +14,8 @@ namespace {
 constexpr double LIFT = 1.5;
 constexpr double LIFT_OF_LARGE_CELLS = 0.5;  ///< per voxel of their side beyond the first
 
-/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four, whose
-/// stretches grow with larger radii. Smaller ones have fewer looks.
+/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four,
+/// whose stretches grow with larger radii. Smaller ones have fewer looks.
 constexpr double NEAR_STRETCH = 0.875;
 constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border, for rays along its edges and those across
 constexpr uint32_t NEAR_TAPS = 2;
@@ -26,11 +28,6 @@ static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::O
 
 /// From one direction to the next: the golden angle.
 const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
-
-std::string variant(const char* kernel, const VolumeBinding& volume)
-{
-    return std::string(kernel) + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "");
-}
 
 }  // namespace
 
@@ -75,16 +72,6 @@ OcclusionTaps occlusion_taps(double radius)
         SHVR_CHECK(result.aprons[size] <= MOST_APRON);
     }
     return result;
-}
-
-std::vector<glm::dvec3> occlusion_directions(uint32_t count)
-{
-    std::vector<glm::dvec3> directions;
-    for (uint32_t k = 0; k < count; ++k) {
-        const double z = 1.0 - (2.0 * k + 1.0) / count, r = std::sqrt(1.0 - z * z);
-        directions.emplace_back(r * std::cos(TURN * k), r * std::sin(TURN * k), z);
-    }
-    return directions;
 }
 
 uint32_t occlusion_reach(double radius)
@@ -145,8 +132,9 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     std::vector<ImageRegion> regions;
     for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, SIDE * i}, glm::uvec3(SIDE)});
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
-    Pass pass =
-        graph.compute(variant("occlusion_gather", volume) + (input.near.mask ? "_masked" : ""), "occlusion_gather");
+    Pass pass = graph.compute(
+        "occlusion_gather",
+        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.near.mask.has_value()}});
     gpu::OcclusionGatherParams params{.voxels = input.near.params,
                                       .cell_counts = volume.cell_counts,
                                       .reach = occlusion_reach(input.taps.radius),
@@ -159,7 +147,7 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     bind_opacities(pass, input.near);
     pass.read("atlas", volume.atlas);
     bind_leap(pass, volume);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
+    group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         pass.read(CELL_NAMES[size], occlusion.cells[size]);
         scratch.around[size] = pass.write(AROUND_NAMES[size], scratch.around[size]);
@@ -172,13 +160,15 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs)
 {
-    Pass pass = graph.compute(variant("occlusion_cells", volume) + (input.mask ? "_masked" : ""), "occlusion_cells");
+    Pass pass = graph.compute(
+        "occlusion_cells",
+        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.mask.has_value()}});
     const gpu::OcclusionCellsParams& params = input.params;
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
     bind_opacities(pass, input);
     pass.read("atlas", volume.atlas);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, 1});
+    group_each(pass, jobs.size());
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
         occlusion.cells[size] = pass.write(CELL_NAMES[size], occlusion.cells[size]);
 }
@@ -189,7 +179,7 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
 {
     SHVR_CHECK(jobs.size() <= gpu::OCCLUSION_SLICE);
     gather(graph, volume, occlusion, scratch, input, jobs, around);
-    Pass pass = graph.compute(variant("occlusion_bake", volume), "occlusion_bake");
+    Pass pass = graph.compute("occlusion_bake", {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}});
     gpu::OcclusionBakeParams params = input.params;
     params.radius = float(input.taps.radius);
     params.first = float(input.taps.first);
@@ -210,7 +200,7 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     pass.read("near", scratch.near);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);
     bind_leap(pass, volume);
-    pass.dispatch({8 * uint32_t(jobs.size()), 8, gpu::OCCLUSION_SPLIT});
+    group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     occlusion.values = pass.write("values", occlusion.values);
 }
 

@@ -38,13 +38,11 @@ inline constexpr double OCCLUSION_MOST_RADIUS = gpu::OCCLUSION_REACH * gpu::BRIC
 /// Radii below 1 have no tap: light reaches every voxel.
 OcclusionTaps occlusion_taps(double radius);
 
-/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010); the kernel makes its own.
-std::vector<glm::dvec3> occlusion_directions(uint32_t count);
-
 /// Bricks on each side of a brick that its light comes from.
 uint32_t occlusion_reach(double radius);
 
-/// Lets all light arrive in `slots`. `with_empty`: and makes slot 0, of bricks that are not there, let all light through.
+/// Lets all light arrive in `slots`. `with_empty`: and makes slot 0, of bricks that are not there, let all light
+/// through.
 void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots, bool with_empty);
 
 struct OcclusionCellsInput {

@@ -21,7 +21,7 @@ uint64_t word_bytes(const gpu::RegionParams& params)
 
 Labelled region_bits(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    Pass pass = graph.compute(volume.filtered ? "region_bits_filtered" : "region_bits", "region_bits");
+    Pass pass = graph.compute("region_bits", {{"FILTERED", volume.filtered}});
     pass.read("atlas", volume.atlas);
     pass.block("region_bricks", std::span<const uint32_t>(input.bricks.slots));
     pass.block("rows", input.rows);

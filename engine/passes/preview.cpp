@@ -1,5 +1,6 @@
 #include "engine/passes/preview.h"
 
+#include "engine/passes/pixel_groups.h"
 #include "engine/passes/raycast.h"
 
 namespace shvr {
@@ -8,7 +9,7 @@ PreviewSeen preview(FrameGraph& graph, const PreviewInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(pixels, 1));
-    Pass pass = graph.compute(input.surfaces ? "preview_surfaced" : "preview", "preview");
+    Pass pass = graph.compute("preview", {{"SURFACED", input.surfaces.has_value()}});
     pass.block("params_block", std::span(&input.params, 1));
     pass.block("preview_params", std::span(&input.preview, 1));
     pass.block("preview_words", input.words);
@@ -17,8 +18,7 @@ PreviewSeen preview(FrameGraph& graph, const PreviewInput& input)
     pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pass.constant("SLICE", input.slice);
-    const glm::uvec2 group(input.group_width, 64 / input.group_width);
-    pass.dispatch(glm::uvec3((pixels + group - 1u) / group * 8u, 1));
+    pixel_groups(pass, pixels, input.group_width);
     PreviewSeen made;
     const Resource nearest = pass.write("nearest", graph.create("preview surfaces", desc));
     if (!input.slice) made.surfaces = nearest;

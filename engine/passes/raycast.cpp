@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/passes/pixel_groups.h"
+
 namespace shvr {
 
 uint32_t shininess_squarings(float shininess)
@@ -15,11 +17,12 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const bool is_shelled = input.shell != gpu::SHELL_NONE && !input.pick;
-    Pass pass =
-        graph.compute(std::string("raycast") + (volume.pages ? "_paged" : "") + (volume.filtered ? "_filtered" : "") +
-                          (input.mask ? "_masked" : "") + (input.occlusion ? "_occluded" : "") +
-                          (input.surfaces ? "_surfaced" : "") + (is_shelled ? "_shelled" : ""),
-                      "raycast");
+    Pass pass = graph.compute("raycast", {{"PAGED", volume.pages.has_value()},
+                                          {"FILTERED", volume.filtered},
+                                          {"MASKED", input.mask.has_value()},
+                                          {"OCCLUDED", input.occlusion.has_value()},
+                                          {"SURFACED", input.surfaces.has_value()},
+                                          {"SHELLED", is_shelled}});
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     if (volume.pages) {
@@ -50,10 +53,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
-    // The kernel is 8 x 8 threads a group, whatever the shape of the pixels it covers.
-    const glm::uvec2 group(input.group_width, 64 / input.group_width);
-    pass.dispatch(glm::uvec3((pixels + group - 1u) / group * 8u, 1),
-                  glm::uvec3(input.tile / group * 8u, input.tile.x > 0));
+    pixel_groups(pass, pixels, input.group_width, input.tile);
     return pass.write("color", target);
 }
 

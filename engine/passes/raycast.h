@@ -37,8 +37,8 @@ struct RaycastInput {
     bool pick = false;                 ///< positions instead of colours, see the kernel
 };
 
-/// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied, over
-/// the background. Returns its new version, and renews `volume.pages->reached`.
+/// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied,
+/// over the background. Returns its new version, and renews `volume.pages->reached`.
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

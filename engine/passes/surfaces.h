@@ -24,8 +24,8 @@ struct SurfacesInput {
     glm::uvec2 tile{0};        ///< as RaycastInput's
 };
 
-/// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface ends
-/// it, gpu::NO_SURFACE where none does. Work of that one frame.
+/// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface
+/// ends it, gpu::NO_SURFACE where none does. Work of that one frame.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
 
 }  // namespace shvr

@@ -30,7 +30,8 @@ struct VolumeBinding {
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};
     glm::uvec3 cell_counts{1};
-    /// false: r32ui, two 16-bit codes along x in one texel, for exact sampling; true: R16_UNORM for the device's filter.
+    /// false: r32ui, two 16-bit codes along x in one texel, for exact sampling; true: R16_UNORM for the device's
+    /// filter.
     bool filtered = false;
 };
 

@@ -84,7 +84,8 @@ float central(float low, float high, float beyond, float f)
     return inner + (outer - inner) * abs(f - 0.5);
 }
 
-/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight corners.
+/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight
+/// corners.
 vec3 gradient_of(const Density d)
 {
     const vec3 f = d.fraction;

@@ -11,7 +11,8 @@ uint mask_slot_of(uvec3 brick)
     uint found = 0u;
     for (uint probe = 0u; probe < MASK_PROBES; ++probe) {   // always all of them: lanes stay together
         const uint entry = 1u + MASK_ENTRY * (first + probe & last);
-        const bool is_it = mask_table.slots[entry] == (brick.x | brick.y << 16u) && mask_table.slots[entry + 1u] == brick.z;
+        const bool is_it = mask_table.slots[entry] == (brick.x | brick.y << 16u) &&
+                           mask_table.slots[entry + 1u] == brick.z;
         found |= is_it ? mask_table.slots[entry + 2u] : 0u;
     }
     return found;

@@ -1,5 +1,6 @@
-// The light that reaches a sample, interpolated between the values of voxels (occlusion.h). Needs `occlusion` (r8ui) and
-// `occlusion_look`. By hand: 8-bit filters are coarse on many devices, and not every device has one for this format.
+// The light that reaches a sample, interpolated between the values of voxels (occlusion.h). Needs `occlusion` (r8ui)
+// and `occlusion_look`. By hand: 8-bit filters are coarse on many devices, and not every device has one for this
+// format.
 
 float occlusion_value(ivec3 texel)
 {

@@ -1,5 +1,5 @@
-// The bricks around one whose values are made, and which of its cells show anything. Needs `bricks_around`, and `leap`, or
-// PAGED `cell_leap`.
+// The bricks around one whose values are made, and which of its cells show anything. Needs `bricks_around`, and `leap`,
+// or PAGED `cell_leap`.
 
 shared uint around[OCCLUSION_AROUND];
 

@@ -22,8 +22,8 @@ Place place_at(const RaycastParams params, vec3 position)
     place.cell_shift = params.page_shift;
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
     uint entry = directory.entries[place.entry];
-    // The finest view of the largest volume goes down ten times; most pictures never do. Lanes go down together: what one
-    // sets in a loop that others leave is not kept on every device.
+    // The finest view of the largest volume goes down ten times; most pictures never do. Lanes go down together: what
+    // one sets in a loop that others leave is not kept on every device.
     for (uint depth = 0u; depth < params.page_depth; ++depth) {
         const bool down = entry >> PAGE_LEVEL_SHIFT == PAGE_NODE;
         place.cell_shift -= uint(down);

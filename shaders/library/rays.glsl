@@ -1,5 +1,5 @@
-// Which pixel a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH: a group's 64
-// threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels.
+// Which pixel a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH: a group's
+// 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels.
 
 // From the first pixel of the part that is drawn.
 uvec2 thread_in_part()

@@ -1,5 +1,5 @@
-// Where a line meets balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part of each
-// ball. Everything is reckoned from the line's point nearest to the surface, so that a far origin does not cancel
+// Where a line meets balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part of
+// each ball. Everything is computed from the line's point nearest to the surface, so that a far origin does not cancel
 // (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
 
 struct Line {
@@ -20,8 +20,8 @@ vec2 ball_range(const vec3 center, const vec3 direction, float radius)
     return half_chord_squared < 0.0 ? NOTHING : vec2(middle - half_chord, middle + half_chord);
 }
 
-// A rod along the unit vector `axis`. Radii of its tangent cone are (radius_from - x * sine) / cosine at x along it, between
-// the circles where it touches the balls.
+// A rod along the unit vector `axis`. Radii of its tangent cone are (radius_from - x * sine) / cosine at x along it,
+// between the circles where it touches the balls.
 struct Rod {
     vec3 axis;
     float sine;
@@ -41,11 +41,11 @@ Rod rod_of(const Surface surface)
     return rod;
 }
 
-// The line's points at `from` + shift * direction + s * direction lie on the cone where, with w and u the parts of offset and
-// direction that stand perpendicular to the axis, x and v those along it,
+// The line's points at `from` + shift * direction + s * direction lie on the cone where, with w and u the parts of
+// offset and direction that stand perpendicular to the axis, x and v those along it,
 //   cosine^2 |w + s u|^2 = (radius - (x + s v) sine)^2.
-// The discriminant is written such that only differences of the size of the radii are left: |w x u| / |u| is the distance
-// from the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
+// The discriminant is written such that only differences of the size of the radii are left: |w x u| / |u| is the
+// distance from the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
 vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direction)
 {
     const float x = dot(offset, rod.axis), v = dot(direction, rod.axis);
@@ -68,8 +68,8 @@ vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direc
                 max(first ? roots.x : NOTHING.y, second ? roots.y : NOTHING.y));
 }
 
-// Lengths along the line at which it enters and leaves a surface. `from` relative to the line's origin. The hull is convex, so
-// every point where the line meets a ball or the cone lies between the two.
+// Lengths along the line at which it enters and leaves a surface. `from` relative to the line's origin. The hull is
+// convex, so every point where the line meets a ball or the cone lies between the two.
 vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
 {
     const float shift = dot(from + 0.5 * surface.along, direction);

@@ -21,8 +21,8 @@ vec3 half_way(vec3 light, vec3 to_eye)
     return sum_length > 1e-6 ? sum / sum_length : vec3(0.0);
 }
 
-// Blinn-Phong with one white light (Blinn 1977), for a normal that is a surface's to the degree of `surface`: where it is
-// none, the highlight goes and the diffuse term becomes its full, directionless value.
+// Blinn-Phong with one white light (Blinn 1977), for a normal that is a surface's to the degree of `surface`: where it
+// is none, the highlight goes and the diffuse term becomes its full, directionless value.
 vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, float surface, vec3 half_way)
 {
     const float facing = max(dot(normal, params.light), 0.0);
@@ -31,7 +31,8 @@ vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, flo
     return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
-// Where the gradient is far below `gradient_fade` there is no surface, so that flat regions neither sparkle nor go dark.
+// Where the gradient is far below `gradient_fade` there is no surface, so that flat regions neither sparkle nor go
+// dark.
 vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);
@@ -50,8 +51,8 @@ vec3 blended(const RaycastParams params, vec3 color, vec3 position)
     return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
 }
 
-// 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series has none
-// and converges fast for small `a`.
+// 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series has
+// none and converges fast for small `a`.
 float opacity_of_part(float a, float part)
 {
     const float series = part * a * (1.0 + 0.5 * (1.0 - part) * a * (1.0 + (2.0 - part) / 3.0 * a *

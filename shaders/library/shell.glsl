@@ -1,11 +1,11 @@
-// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, found in the cell and
-// not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is split
-// where its derivative is 0, and each stretch holds one crossing at most (Marmitt and others 2004, "Fast and accurate
-// ray-voxel intersection techniques for iso-surface ray tracing").
+// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, found in the
+// cell and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic;
+// it is split where its derivative is 0, and each stretch holds one crossing at most (Marmitt and others 2004, "Fast
+// and accurate ray-voxel intersection techniques for iso-surface ray tracing").
 //
-// Whether a ray is inside is carried from cell to cell: a crossing that rounding loses at a border is found at the start of
-// the next cell, so there are neither holes nor doubles. Every variable that outlives a turn of a loop is carried from turn to
-// turn, since lanes that leave early keep no other.
+// Whether a ray is inside is carried from cell to cell: a crossing that rounding loses at a border is found at the
+// start of the next cell, so there are neither holes nor doubles. Every variable that outlives a turn of a loop is
+// carried from turn to turn, since lanes that leave early keep no other.
 
 const float NO_SHELL = 1e30;
 // Reference lengths. A cell that a ray cuts by less counts to its neighbour, and a shell thinner than this is none.

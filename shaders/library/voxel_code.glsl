@@ -1,5 +1,5 @@
-// The 16-bit code of one texel of the density atlas, whichever form it has. Needs `atlas`, and FILTERED where it is for a
-// sampler.
+// The 16-bit code of one texel of the density atlas, whichever form it has. Needs `atlas`, and FILTERED where it is for
+// a sampler.
 
 float code_at(ivec3 texel)
 {

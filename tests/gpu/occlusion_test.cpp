@@ -143,7 +143,7 @@ struct Expected {
         const OcclusionTaps taps = occlusion_taps(session.light.occlusion.radius);
         reference::OcclusionRays rays{
             .radius = taps.radius, .first = taps.first, .exponent = taps.exponent, .voxels_per_unit = units()};
-        rays.directions = occlusion_directions(session.light.occlusion.rays);
+        rays.directions = reference::occlusion_directions(session.light.occlusion.rays);
         for (uint32_t i = 0; i < taps.taps.size(); ++i)
             rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].lift), double(taps.taps[i].stretch),
                                  i < taps.end[0]   ? 0
@@ -426,7 +426,7 @@ TEST_CASE_FIXTURE(OnDevice, "32 rays of six looks come close to 512 rays of 32 s
     TestVolume scene{.size = glm::ivec3(SIDE)};
     for (const std::byte voxel : bytes) scene.voxels.push_back(257.0 * std::to_integer<int>(voxel));
     load(scene);
-    const std::vector<glm::dvec3> directions = occlusion_directions(512);
+    const std::vector<glm::dvec3> directions = reference::occlusion_directions(512);
     for (const double densest : {0.9, 0.27}) {
         CAPTURE(densest);
         const Session session =

@@ -251,6 +251,19 @@ TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, a
     Annotator annotator(device.renderer);
     CHECK_THROWS_WITH(annotator.paint({.group = 1, .threshold = 0.0, .radius_voxels = 3.0, .path = {{10, 60, 60}}}),
                       doctest::Contains("torn"));
+    // A hand's stroke there ends with the same words, and does not wait for ever.
+    annotator.begin_stroke({.group = 1, .threshold = 0.0, .radius_voxels = 3.0});
+    annotator.extend_stroke({10, 60, 60});
+    annotator.end_stroke();
+    const auto finish = [&] {
+        for (int i = 0; annotator.stroke_is_running(); ++i) {
+            REQUIRE(i < 10'000);
+            static_cast<void>(annotator.advance());
+            static_cast<void>(device.renderer.volume().advance(true));
+        }
+    };
+    CHECK_THROWS_WITH(finish(), doctest::Contains("torn"));
+    CHECK(!annotator.stroke_is_running());
 }
 
 TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corner")

@@ -1,10 +1,8 @@
 // Opaque balls and rods: where rays meet them, held against distances in double.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -80,7 +78,6 @@ public:
     glm::uvec2 pixels{24, 24};
     glm::vec3 light{0.0f, 0.0f, 1.0f};
     size_t most_in_leaf = SURFACES_IN_LEAF;
-    double pass_ms = 0.0;
 
     Surfaces() { info.size = Size3(100); }
 
@@ -100,9 +97,7 @@ public:
         input.params.diffuse = 1.0f;
         input.params.inverse_spacing = glm::vec3(1.0f);
         const uint32_t index = graph.read_back(shvr::surfaces(graph, input));
-        const auto begun = std::chrono::steady_clock::now();
         const gpu::FrameResult result = renderer().executor().run(std::move(graph));
-        pass_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
         Sight sight{{}, std::vector<glm::vec4>(size_t(pixels.x) * pixels.y)};
         std::memcpy(sight.seen.data(), result.read_backs[index].data(), sight.seen.size() * sizeof(glm::vec4));
         for (uint32_t y = 0; y < pixels.y; ++y)
@@ -362,24 +357,4 @@ TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds
         CHECK((look(first, camera).seen == asked.seen));
     }
     CHECK(hits > 5000);
-}
-
-// Skipped unless asked for: it measures, and asking every rod takes a minute.
-TEST_CASE_FIXTURE(Surfaces, "measuring 10000 rods" * doctest::skip())
-{
-    const std::vector<SurfaceLook> rods = random_rods(10000, 96, 6.0, 0.6);  // seed 96
-    pixels = {512, 512};
-    const Camera camera = perspective({-150, -60, 90}, MIDDLE, 30.0);
-    const auto measure = [&](const std::vector<SurfaceLook>& surfaces, size_t leaf) {
-        most_in_leaf = leaf;
-        look(surfaces, camera);  // makes the pipeline, and the memory that is used again
-        const std::clock_t begun = std::clock();
-        look(surfaces, camera);
-        const double cpu_ms = 1e3 * double(std::clock() - begun) / CLOCKS_PER_SEC;
-        MESSAGE(surfaces.size() << " rods, " << leaf << " in a leaf: " << pass_ms << " ms, " << cpu_ms
-                                << " ms of all cores");
-    };
-    measure({rods[0]}, SURFACES_IN_LEAF);
-    for (const size_t leaf : {1, 2, 4, 8}) measure(rods, leaf);
-    measure(rods, rods.size());
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace shvr::reference {
 
@@ -95,6 +96,17 @@ double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dv
         }
     }
     return sum / double(directions.size());
+}
+
+std::vector<glm::dvec3> occlusion_directions(uint32_t count)
+{
+    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));  // the golden angle
+    std::vector<glm::dvec3> directions;
+    for (uint32_t k = 0; k < count; ++k) {
+        const double z = 1.0 - (2.0 * k + 1.0) / count, r = std::sqrt(1.0 - z * z);
+        directions.emplace_back(r * std::cos(turn * k), r * std::sin(turn * k), z);
+    }
+    return directions;
 }
 
 }  // namespace shvr::reference

@@ -27,6 +27,9 @@ struct OcclusionRays {
     glm::dvec3 voxels_per_unit{1.0};
 };
 
+/// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010), as the kernel takes them.
+std::vector<glm::dvec3> occlusion_directions(uint32_t count);
+
 /// Opacity of one unit for every voxel there may be; 0 outside the volume.
 using VoxelOpacity = std::function<double(const glm::ivec3&)>;
 /// Opacity of one unit for every half of a voxel: the voxel, and 0 or 1 along each axis.

@@ -91,7 +91,7 @@ void add_device_options(CLI::App& command, Common& common)
         ->type_name("MIB")
         ->check(whole_mib());
     add_input_options(command, common);
-    command.add_option("--threads", common.threads, "Worker threads; 0: one a core")->check(CLI::Range(0, 1024));
+    command.add_option("--threads", common.threads, "Worker threads; 0: one per core")->check(CLI::Range(0, 1024));
 }
 
 void say(const Common& common, const std::string& line)

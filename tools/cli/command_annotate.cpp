@@ -137,11 +137,11 @@ void run_annotate(const AnnotateCommandOptions& options)
 void add_annotate(CLI::App& program)
 {
     auto options = std::make_shared<AnnotateCommandOptions>();
-    CLI::App* command = program.add_subcommand("annotate", "Replays annotation commands");
+    CLI::App* command = program.add_subcommand("annotate", "Runs annotation commands from a script");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
     command->add_flag("--fresh", options->fresh,
-                      "Start without the annotation there is; its journal is kept as JOURNAL.old");
+                      "Start without the existing annotation; its journal is kept as JOURNAL.old");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

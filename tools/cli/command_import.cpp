@@ -252,7 +252,7 @@ void add_import(CLI::App& program)
     command
         ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-    command->add_flag("--reverse", options->reverse, "Exchange dark and bright");
+    command->add_flag("--reverse", options->reverse, "Swap dark and bright");
     command->add_option("--blur", options->blur, "Gaussian blur: sigma in voxels, of all axes or of each")
         ->type_name("S|SX,SY,SZ");
     command->add_option("--downscale", options->downscale, "Make it N times smaller along every axis")
@@ -264,18 +264,18 @@ void add_import(CLI::App& program)
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
     command->add_option("--spacing", options->spacing, "Size of a voxel, instead of what the file says")
         ->type_name("X,Y,Z");
-    command->add_option("--unit", options->unit, "Unit of it, as in um");
+    command->add_option("--unit", options->unit, "Unit of that size, as in um");
     command->add_option("--channel", options->choice.channel, "What to take from a file with channels")
         ->type_name("NAME|N");
     command->add_option("--frame", options->choice.frame, "Which point in time to take from a file with several")
         ->type_name("N");
     command->add_flag("--overwrite", options->overwrite,
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
-    command->add_option("--threads", options->common.threads, "Worker threads; 0: one a core")
+    command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_output_options(*command, options->common);
     command->footer(
-        "The order is: crop, reverse, blur, downscale. An import that was stopped goes on when it is called again.\n"
+        "The order is: crop, reverse, blur, downscale. An interrupted import continues when it is run again.\n"
         "Example:\n  shvr import scan.nhdr scan --blur 1 --downscale 2 --json\n  shvr view scan");
     command->callback([options] { run_import(*options); });
 }

@@ -140,7 +140,7 @@ void run_info(const InfoCommandOptions& options)
 void add_info(CLI::App& program)
 {
     auto options = std::make_shared<InfoCommandOptions>();
-    CLI::App* command = program.add_subcommand("info", "Tells what a volume, a session or a project is");
+    CLI::App* command = program.add_subcommand("info", "Describes a volume, a session or a project");
     command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);

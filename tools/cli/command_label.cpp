@@ -172,12 +172,12 @@ void add_label(CLI::App& program)
         ->check(CLI::IsMember({6, 26}));
     command->add_option("--min-voxels", options->fewest_voxels, "Leave out smaller components")
         ->check(CLI::Range(int64_t{1}, int64_t{1} << 62));
-    command->add_option("--largest", options->largest, "Keep the N largest alone; of equal ones the first")
+    command->add_option("--largest", options->largest, "Keep only the N largest; of equal ones the first")
         ->type_name("N")
         ->check(CLI::Range(int64_t{1}, int64_t{1} << 32));
     command->add_option("-o,--output", options->output,
                         "The labels, from 1 in the order of first voxels (.zarr: OME-Zarr labels; .nrrd, .tif; .mask)");
-    command->add_option("--threads", options->common.threads, "Worker threads; 0: one a core")
+    command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);

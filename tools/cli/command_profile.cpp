@@ -131,7 +131,7 @@ void add_diff(CLI::App& profile, const std::shared_ptr<ProfileCommandOptions>& o
 {
     CLI::App* command = profile.add_subcommand("diff", "What changed from profile A to profile B");
     command->add_option("A", options->a, "What shvr profile --json printed")->required();
-    command->add_option("B", options->b, "The same, later")->required();
+    command->add_option("B", options->b, "The same of a later run")->required();
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr profile diff before.json after.json");
     command->callback([options] { run_diff(*options); });
@@ -147,7 +147,7 @@ void add_profile(CLI::App& program)
     command->add_option("--frames", options->frames, "Frames to measure")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--warmup", options->warmup, "Frames to throw away first")
+    command->add_option("--warmup", options->warmup, "Frames to discard first")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command->add_option("--size", options->size, "Pixels, as in 512x384");

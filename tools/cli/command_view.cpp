@@ -98,7 +98,7 @@ void add_view(CLI::App& program)
     auto options = std::make_shared<ViewCommandOptions>();
     CLI::App* command = program.add_subcommand("view", "Opens the window; so does shvr alone");
     command->add_option("INPUT", options->input, "Session (.json), project folder or volume; none: drop one onto it");
-    command->add_option("--size", options->size, "Of the window, as in 1280x800");
+    command->add_option("--size", options->size, "Size of the window, as in 1280x800");
     command->add_flag("--allow-force", options->allow_force,
                       "Let a haptic device with a verified profile put force on the hand");
     add_device_options(*command, options->common);

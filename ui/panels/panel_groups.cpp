@@ -30,8 +30,8 @@ struct Row {
     int depth = 0;  ///< below the groups without a parent
 };
 
-/// Those with a key, those that the session describes, those that were painted, and the one that is chosen; groups below
-/// the one they belong to.
+/// Those with a key, those that the session describes, those that were painted, and the one that is chosen; groups
+/// below the one they belong to.
 std::vector<Row> listed_groups(const Model& model)
 {
     std::set<uint8_t> groups{model.brush.group};
@@ -68,8 +68,8 @@ bool visible_cell(const ColorGroup& look, GroupSettings& settings)
 {
     ImGui::TableNextColumn();
     const bool changed = ImGui::Checkbox("##visible", &settings.visible);
-    hint(settings.visible && !look.visible ? "Hidden with the group that it belongs to."
-                                           : "Whether the voxels of the group, and of those below it, are drawn.");
+    hint(settings.visible && !look.visible ? "Hidden together with its parent group."
+                                           : "Shows or hides the voxels of this group and of its subgroups.");
     return changed;
 }
 
@@ -78,7 +78,7 @@ bool parent_menu(uint8_t group, const Model& model, GroupSettings& settings)
 {
     int parent = settings.parent;
     ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
-    if (!ImGui::InputInt("Belongs to group (0: none)", &parent, 1, 10)) return false;
+    if (!ImGui::InputInt("Parent group (0: none)", &parent, 1, 10)) return false;
     parent = std::clamp(parent, 0, 255);
     if (parent != 0 && is_within(model.session.groups, uint8_t(parent), group)) return false;
     settings.parent = uint8_t(parent);
@@ -99,10 +99,10 @@ bool name_cell(const Row& row, const Model& model, const ColorGroup& look, Group
     ImGui::PopStyleColor();
     if (indent > 0.0f) ImGui::Unindent(indent);
     if (group == 0) {
-        hint("Paints voxels back to unpainted. Key: 0.");
+        hint("Removes paint. Key: 0.");
         return false;
     }
-    hint("Click: paint with this group. Right click: rename it, or put it below another.");
+    hint("Click: paint with this group. Right click: rename it, or choose its parent.");
     bool changed = false;
     if (ImGui::BeginPopupContextItem("settings")) {
         ImGui::SetNextItemWidth(12.0f * ImGui::GetFontSize());
@@ -118,7 +118,7 @@ bool name_cell(const Row& row, const Model& model, const ColorGroup& look, Group
             settings.opacity.reset();
             changed = true;
         }
-        hint("That of the group it belongs to, where there is one.");
+        hint("Its parent's, where it has one.");
         ImGui::EndPopup();
     }
     return changed;
@@ -182,7 +182,7 @@ void other_group(const Model& model, Actions& actions)
     ImGui::SameLine();
     ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
     if (ImGui::InputInt("##group", &group, 1, 10)) actions.push_back(ChooseGroup{uint8_t(std::clamp(group, 0, 255))});
-    hint("There are 255 groups; 0 erases. Those that are used get a row.");
+    hint("There are 255 groups; 0 erases. Groups in use are listed.");
 }
 
 }  // namespace

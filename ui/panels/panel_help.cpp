@@ -22,7 +22,7 @@ constexpr Gesture GESTURES[] = {
     {"Wheel", "Zoom"},
     {"Ctrl + wheel", "Push the probe away or pull it closer"},
     {"Mouse without buttons", "The probe follows, in its plane"},
-    {"Double click", "Put the probe onto what is seen there"},
+    {"Double click", "Put the probe onto what you see there"},
     {"Right button held", "Paint; when tracing, add a node"},
     {"Drop a file", "Open it"},
 };
@@ -105,7 +105,7 @@ void help_window(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
     ImGui::SetNextWindowPos(viewport.GetWorkCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     if (ImGui::Begin("Keys and mouse", &is_open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-        ImGui::TextDisabled("Keys of turning, moving and cutting go on while they are held, and slowly with Shift.");
+        ImGui::TextDisabled("Keys for turning, moving and cutting repeat while held; with Shift slowly.");
         if (ImGui::BeginTable("columns", 2)) {
             ImGui::TableSetupColumn("left", ImGuiTableColumnFlags_WidthStretch, 0.42f);
             ImGui::TableSetupColumn("right", ImGuiTableColumnFlags_WidthStretch, 0.58f);

@@ -24,8 +24,8 @@ void light_controls(const Model& model, Actions& actions)
     Light light = model.session.light;
     bool changed = ImGui::Checkbox("Shading", &light.shaded);
     hint("Light from over your shoulder. Without it, colours are as chosen in the transfer function.");
-    changed |= explained_slider("Ambient", light.ambient, 1.0, "The share of a colour that is always seen.");
-    changed |= explained_slider("Diffuse", light.diffuse, 1.0, "The share that depends on which way a surface faces.");
+    changed |= explained_slider("Ambient", light.ambient, 1.0, "Share of a colour that does not depend on the light.");
+    changed |= explained_slider("Diffuse", light.diffuse, 1.0, "Share that depends on which way a surface faces.");
     changed |= explained_slider("Highlight", light.specular, 1.0, "Strength of the highlight.");
     changed |= explained_slider("Shininess", light.shininess, 256.0, "How small and sharp the highlight is.",
                                 ImGuiSliderFlags_Logarithmic);
@@ -41,7 +41,7 @@ void blend_controls(const Model& model, Actions& actions)
         "Keys: T, Ctrl + T.");
     changed |= explained_slider(
         "Blend rate", blend.rate, 10.0,
-        "How it gets there: 0 blends everywhere alike, 1 evenly, more keeps what is near clear. Keys: R, "
+        "How it grows with depth: 0 the same everywhere, 1 evenly, above 1 near things stay clear. Keys: R, "
         "Ctrl + R.");
     const glm::dvec3 color = blend.color.value_or(glm::dvec3(model.session.render.background));
     float shown[3];
@@ -52,7 +52,7 @@ void blend_controls(const Model& model, Actions& actions)
         blend.color = chosen;
         changed = true;
     }
-    hint("The background's, until you choose one. Right click for the background's again.");
+    hint("The background's unless you choose another. Right click resets it.");
     if (blend.color && ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
         blend.color.reset();
         changed = true;

@@ -84,7 +84,7 @@ void open_dialog(OpenDialog& dialog, Actions& actions)
     const bool appears = std::exchange(dialog.is_asked_for, false);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(OPEN_TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::TextUnformatted("Path of a volume (.nrrd, .nhdr, .mhd), a session (.json) or a project folder:");
+    ImGui::TextUnformatted("Path of a volume, a session (.json) or a project folder:");
     ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
     if (appears) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText("##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -227,7 +227,7 @@ void probe_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Probe")) return;
     key_item("Guide the probe", model, actions, {.is_checked = model.assistance});
-    key_item("Next way of guiding", model, actions);
+    key_item("Next kind of guidance", model, actions);
     key_item("Iso-surface around the probe", model, actions, {.is_checked = model.session.probe.shell});
     ImGui::Separator();
     key_item("Larger probe", model, actions);

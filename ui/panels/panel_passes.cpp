@@ -69,14 +69,14 @@ double mebibytes(uint64_t bytes)
 void passes_panel(const Model& model, Actions&)
 {
     ImGui::TextDisabled("Time on the GPU, by step (?)");
-    hint("Of the picture that is being made or was made last: it is made in many small pieces, so a step runs often.");
+    hint("Of the current picture, which is drawn in many small pieces, so each step runs many times.");
     table(model.pass_times);
     ImGui::TextWrapped("%s", model.gpu_name.c_str());
-    hint("The GPU that draws.");
+    hint("The GPU in use.");
     ImGui::Text("Memory: %.0f of %.0f MiB", mebibytes(model.device_bytes), mebibytes(model.device_budget));
-    hint("Memory of the GPU that SHVR uses, and how much the system lets it use.");
+    hint("GPU memory in use, and how much SHVR may use.");
     ImGui::Text("Interface: %.1f ms a frame", model.ui_frame_ms);
-    hint("Time between two frames of this window, the median of the last ones. Below 17 ms it feels smooth.");
+    hint("Time that a frame of the interface takes, median of the last 31. Below 17 ms it feels smooth.");
 }
 
 }  // namespace shvr::ui

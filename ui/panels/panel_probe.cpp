@@ -13,9 +13,6 @@ namespace shvr::ui {
 
 namespace {
 
-// What a hand can aim with; scripts may use other radii.
-constexpr double SMALLEST_RADIUS = 0.5;
-constexpr double LARGEST_RADIUS = 60.0;
 constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
 
 /// Intensities of whole numbers need no decimals.
@@ -64,9 +61,9 @@ bool radius(const Model& model, PaintOp& brush)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    const bool changed =
-        ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f, &SMALLEST_RADIUS,
-                          &LARGEST_RADIUS, "%.1f voxels", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f,
+                                           &SMALLEST_RADIUS_VOXELS, &LARGEST_RADIUS_VOXELS, "%.1f voxels",
+                                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     hint("Of the probe and the brush. Drag sideways, or Ctrl + click to type. Keys: ] and [, Page Up and Page Down.");
     if (model.volume.unit == "voxel") return changed;
     ImGui::SameLine();
@@ -87,10 +84,10 @@ bool connectivity(PaintOp& brush)
     const int was = brush.connectivity;
     label("Neighbours");
     if (ImGui::RadioButton("6 (faces)", was == 6)) brush.connectivity = 6;
-    hint("Voxels hang together where they share a face.");
+    hint("Voxels are connected where they share a face.");
     ImGui::SameLine();
     if (ImGui::RadioButton("26 (corners too)", was == 26)) brush.connectivity = 26;
-    hint("Voxels hang together where they share a face, an edge or a corner: follows thin slanting roots.");
+    hint("Voxels are connected where they share a face, an edge or a corner: follows thin slanting roots.");
     return brush.connectivity != was;
 }
 
@@ -101,7 +98,7 @@ bool density(const Model& model, PaintOp& brush)
     label("Density");
     bool changed = ImGui::Checkbox("raise", &is_on);
     hint(
-        "Density painting: raises the intensities of what is painted, so that faint structures are seen like bright "
+        "Density painting: raises the intensities of what is painted, so that faint structures look like bright "
         "ones. The volume's file stays as it is; the eraser takes offsets away.");
     if (changed) {
         brush.density = is_on ? std::optional(DensityBrush{}) : std::nullopt;
@@ -110,7 +107,7 @@ bool density(const Model& model, PaintOp& brush)
     if (!brush.density) return changed;
     ImGui::SameLine();
     changed |= ImGui::Checkbox("and paint the group", &brush.paints_group);
-    hint("Off: intensities are raised and colours stay.");
+    hint("Off: raises intensities and leaves groups as they are.");
 
     label("Raise by");
     const double automatic = automatic_offset(model.session.transfer_function.lower(), brush.threshold);
@@ -119,7 +116,7 @@ bool density(const Model& model, PaintOp& brush)
         brush.density->offset = is_automatic ? std::nullopt : std::optional(automatic);
         changed = true;
     }
-    hint("As much as makes the paint threshold visible: the lowest point of the transfer function less the threshold.");
+    hint("As much as makes the paint threshold visible: the transfer function's lowest point minus the threshold.");
     ImGui::SameLine();
     double offset = brush.density->offset.value_or(automatic);
     ImGui::BeginDisabled(is_automatic);
@@ -134,7 +131,7 @@ bool density(const Model& model, PaintOp& brush)
     ImGui::EndDisabled();
     if (is_automatic && automatic == 0.0) {
         ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-        ImGui::TextWrapped("Nothing to raise: the paint threshold is visible. Lower it, or give a number.");
+        ImGui::TextWrapped("Nothing to raise: the paint threshold is visible already. Lower it, or enter a number.");
         ImGui::PopStyleColor();
     }
 
@@ -156,8 +153,7 @@ void preview(const Model& model, Actions& actions)
     bool is_on = model.session.probe.preview;
     label("Preview");
     if (ImGui::Checkbox("(F5)", &is_on)) actions.push_back(ShowPreview{is_on});
-    hint(
-        "Shows the voxels that painting would change now, before the button is pressed; striped where it would erase.");
+    hint("Shows the voxels that painting would change here; striped where it would erase.");
     if (!is_on) return;
     ImGui::SameLine();
     if (model.tool == Tool::trace)
@@ -202,7 +198,7 @@ void guidance(const Model& model, Actions& actions)
     ImGui::SameLine();
     if (ImGui::RadioButton("as in the thesis", model.law == ProxyLaw::mean) && model.law != ProxyLaw::mean)
         actions.push_back(SetProxyLaw{ProxyLaw::mean});
-    hint("Pulls to the mean of what lies in the probe. Key: Home goes through the ways of guiding.");
+    hint("Pulls to the mean of what lies in the probe. Key: Home switches between the kinds of guidance.");
 
     text_label("Moved by");
     ImGui::TextUnformatted(model.device_name.c_str());
@@ -213,9 +209,9 @@ struct FlagText {
     const char* text;
 };
 constexpr FlagText FLAGS[] = {
-    {FORCE_NO_DEVICE, "The device is silent, gone or not calibrated."},
+    {FORCE_NO_DEVICE, "The device does not answer, is unplugged or is not calibrated."},
     {FORCE_NO_REGION, "The probe is too large to feel, or the felt region is out of date."},
-    {FORCE_FAULT, "Stopped for safety after an impossible reading. Switch the guidance off and on."},
+    {FORCE_FAULT, "Stopped for safety after an impossible reading. Switch guidance off and on."},
     {FORCE_CLAMPED, "At the strongest force the device can give."},
     {FORCE_ENGAGING, "Fading in."},
 };
@@ -224,13 +220,10 @@ void touch(const Model& model, const ServoState& servo)
 {
     text_label("Touch");
     ImGui::Text("%s, %.2f N", servo.step.in_contact ? "in contact" : "not in contact", glm::length(servo.step.force_n));
-    hint(
-        "Whether something that can be felt lies in the probe, and the force on the hand: with the mouse, what it "
-        "would "
-        "be.");
+    hint("Whether the probe touches something, and the force on the hand; with the mouse, the force that it would be.");
     text_label("Felt region");
     ImGui::Text("%.0f ms old", model.relevance_age_ms);
-    hint("What can be felt is brought to the hand in small regions around the probe. Above 50 ms the force fades out.");
+    hint("Age of the region around the probe that is felt. Above 50 ms the force fades out.");
     if (!model.assistance) return;
     for (const FlagText& flag : FLAGS) {
         if (!(servo.step.flags & flag.flag)) continue;
@@ -265,7 +258,7 @@ void servo_panel(const ServoState& servo)
     ImGui::Text("%llu ticks, %llu late", static_cast<unsigned long long>(servo.ticks),
                 static_cast<unsigned long long>(servo.late_ticks));
     hint(
-        "The force is renewed a thousand times a second; a tick is late where it began more than a period after its "
+        "The force is updated a thousand times a second; a tick is late if it began more than a period after its "
         "time.");
     lateness_plot(servo.lateness);
 }

@@ -20,7 +20,7 @@ void tool(const Model& model, Actions& actions)
     ImGui::SameLine();
     if (ImGui::RadioButton("Trace (X)", model.tool == Tool::trace)) actions.push_back(SetTool{Tool::trace});
     hint(
-        "The right mouse button, F and the stylus then add a node at the probe, of its size and in the chosen group, "
+        "The right mouse button, F and the stylus add a node at the probe, with its radius and in the chosen group, "
         "linked with the selected node.");
 }
 
@@ -140,17 +140,18 @@ void buttons(const Model& model, Actions& actions)
     button("Segment", !selected.empty(), "Selects the whole chain between two branches or ends. Key: Shift + .",
            SelectSegmentOp{}, actions);
     ImGui::SameLine();
-    button("Move here", selected.node().has_value(), "Puts the selected node where the probe is. Key: M, held.",
+    button("Move here", selected.node().has_value(), "Moves the selected node to the probe. Key: M, held.",
            MoveOp{model.probe_voxel}, actions);
     ImGui::SameLine();
-    button("Delete", !selected.empty(), "What is selected; a node goes with its internodes. Key: Delete", DeleteOp{},
-           actions);
+    button("Delete", !selected.empty(), "Deletes the selection; a node's internodes go with it. Key: Delete",
+           DeleteOp{}, actions);
     ImGui::SameLine();
-    button("Deselect", !selected.empty(), "The next node starts a trace of its own. Key: /", DeselectOp{}, actions);
+    button("Deselect", !selected.empty(), "Deselects, so that the next node starts a new trace. Key: /", DeselectOp{},
+           actions);
     const std::string group = std::to_string(model.brush.group);
     ImGui::BeginDisabled(model.brush.group == 0);
     button(("To group " + group).c_str(), !selected.empty(),
-           "What is selected goes to the chosen group. Keys: Ctrl + 1 ... 9", GroupOp{model.brush.group}, actions);
+           "Moves the selection to the chosen group. Keys: Ctrl + 1 ... 9", GroupOp{model.brush.group}, actions);
     ImGui::EndDisabled();
 }
 
@@ -170,7 +171,8 @@ void tapering(const Model& model, Actions& actions)
         actions.push_back(Trace{op});
     }
     hint(
-        "From node to node; otherwise all of the group have one size, which = and - change while nothing is selected.");
+        "Tapers from node to node; otherwise all of the group have one size, which = and - change while nothing is "
+        "selected.");
     if (found == model.trace.internode_radii().end()) return;
     ImGui::SameLine();
     ImGui::TextDisabled("%.4g %s", found->second, spelled(model.volume.unit));

@@ -401,14 +401,14 @@ void transfer_function_panel(const Model& model, Actions& actions)
     const size_t count = function.points().size();
     if (!model.statistics.histogram.empty()) preset_list(model, actions);
     if (count < 2) {
-        ImGui::TextWrapped("There is no transfer function, so nothing is seen.");
+        ImGui::TextWrapped("There is no transfer function, so nothing is visible.");
     } else {
         state.selected = std::min(state.selected, count - 1);
         const size_t edited = state.selected;  // of the points as they are in this frame
         curve(model, state, actions);
         shading_and_help(model, actions);
         edit_point(model, edited, actions);
-        if (function.draws_nothing()) ImGui::TextDisabled("Nothing is seen: no opacity is above 0.");
+        if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: no opacity is above 0.");
     }
 }
 

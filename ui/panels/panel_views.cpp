@@ -25,7 +25,7 @@ bool stereo_controls(StereoSettings& stereo)
     stereo.output = StereoOutput(output);
     is_other |= slider("Eyes apart", stereo.eye_distance, 0.0, 0.2, "%.3f");
     hint(
-        "In distances from the camera to what it turns about, where both eyes see the same. Less is easier on the "
+        "Relative to the distance from the camera to the point it turns about. Less is easier on the "
         "eyes.");
     is_other |= ImGui::Checkbox("Toe-in", &stereo.toe_in);
     hint("Turns the eyes towards each other. Otherwise both look straight ahead, which strains less.");
@@ -51,7 +51,7 @@ bool slice_controls(SliceSettings& slices, const VolumeStatistics& statistics)
     is_other |= slider("Paint", slices.paint_share, 0.0, 1.0, "%.2f");
     hint("How strongly painted voxels take their group's colour.");
     is_other |= slider("Enlarged", slices.zoom, 1.0, 50.0, "%.1f times", ImGuiSliderFlags_Logarithmic);
-    hint("Of the slices, about the probe.");
+    hint("Magnification of the slices around the probe.");
     return is_other;
 }
 
@@ -60,14 +60,14 @@ void interaction_controls(const Model& model, Actions& actions)
     InteractionSettings interaction = model.session.interaction;
     double percent = 100.0 * interaction.resolution;
     bool is_other = slider("In motion", percent, 10.0, 100.0, "%.0f %%");
-    hint("Pixels along each side that are drawn while something moves. What stands still is always sharp.");
+    hint("Resolution while something moves. What stands still is always sharp.");
     interaction.resolution = percent / 100.0;
     is_other |= slider("Frames", interaction.frames_per_second, 5.0, 120.0, "at most %.0f a second");
     hint("More is smoother and leaves less time for other work.");
     int scale = int(interaction.screenshot_scale);
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
     is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
-    hint("Of large screenshots (Ctrl + P): pixels for one of the window, along each side.");
+    hint("Size of large screenshots (Ctrl + P), relative to the window.");
     interaction.screenshot_scale = uint32_t(scale);
     if (is_other) actions.push_back(SetInteraction{interaction});
 }
@@ -88,7 +88,7 @@ void views_panel(const Model& model, Actions& actions)
         case Arrangement::stereo: is_other |= stereo_controls(view.stereo); break;
         case Arrangement::overview:
             is_other |= slider("Map scale", view.overview_zoom, 0.1, 10.0, "%.2f", ImGuiSliderFlags_Logarithmic);
-            hint("Below 1 the maps show more around the volume.");
+            hint("Below 1 the maps show more of the surroundings.");
             break;
         case Arrangement::slices: is_other |= slice_controls(view.slices, model.statistics); break;
     }

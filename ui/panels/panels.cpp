@@ -10,7 +10,12 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr const char* FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+/// The first that is there; otherwise the font that Dear ImGui brings.
+constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
+                                 "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
+                                 "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
+                                 "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+                                 "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
 constexpr double FONT_PIXELS = 14.0;           ///< at a content scale of 1
 constexpr float PANEL_WIDTH = 330.0f / 14.0f;  ///< in font sizes, so that it follows the content scale
 
@@ -86,7 +91,8 @@ void load_font(double content_scale)
     }
     const float pixels = float(std::max(1.0, std::round(FONT_PIXELS * content_scale)));
     std::error_code error;
-    if (std::filesystem::is_regular_file(FONT, error) && io.Fonts->AddFontFromFileTTF(FONT, pixels)) return;
+    for (const char* font : FONTS)
+        if (std::filesystem::is_regular_file(font, error) && io.Fonts->AddFontFromFileTTF(font, pixels)) return;
     ImFontConfig config;
     config.SizePixels = pixels;
     io.Fonts->AddFontDefault(&config);
@@ -112,7 +118,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
                                    ImGuiWindowFlags_AlwaysVerticalScrollbar;
     ImGui::Begin("Side panel", nullptr, flags);
     section("Probe and painting", true, probe_panel, model, actions);
-    // Who paints needs the room for the transfer function; who traces sees it, whatever was folded.
+    // While painting, the transfer function needs the room; while tracing the section is open, even if it was folded.
     if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
     section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);

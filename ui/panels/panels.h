@@ -12,7 +12,8 @@ struct Layout {
     glm::uvec2 begin{0}, end{0};
 };
 
-/// The dark, even look of all panels, and a readable font. Once, before the window is attached: that takes the font along.
+/// The dark, even look of all panels, and a readable font. Once, before the window is attached: that takes the font
+/// along.
 void set_style(double content_scale);
 
 /// Menu bar, side panel, status bar and, when asked for, the help window; adds to `actions`. Returns what is left.

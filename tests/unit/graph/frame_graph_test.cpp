@@ -187,14 +187,14 @@ TEST_CASE("nothing is known of an import without a state, so its first use waits
     FrameGraph graph;
     const Resource x = graph.import("x", {.id = 1, .desc = buffer_desc(64)});
     pass(graph, "write", {}, x);
-    CHECK(steps_of(graph) == "[compute+transfer+indirect->compute]write");
+    CHECK(steps_of(graph) == "[compute+transfer->compute]write");
 }
 
 TEST_CASE("the memory of a transient may still be in use by the last frame")
 {
     FrameGraph graph;
     graph.read_back(graph.fill(graph.create("x", buffer_desc(64)), 0), "back");
-    CHECK(steps_of(graph) == "[compute+transfer+indirect->transfer]fill [transfer->transfer]back");
+    CHECK(steps_of(graph) == "[compute+transfer->transfer]fill [transfer->transfer]back");
 }
 
 TEST_CASE("a frame waits for what the last frame left in flight")
@@ -259,7 +259,7 @@ TEST_CASE("a read-back keeps the whole chain behind it and nothing beside it")
     CHECK(graph.read_back(y, "back") == 0);
     CHECK(graph.read_back(y, "again") == 1);
     CHECK(graph.read_back_count() == 2);
-    CHECK(steps_of(graph) == "[compute+transfer+indirect->compute]a [compute->compute]b [compute->transfer]back again");
+    CHECK(steps_of(graph) == "[compute+transfer->compute]a [compute->compute]b [compute->transfer]back again");
 }
 
 TEST_CASE("keep() keeps what made a resource")
@@ -456,7 +456,7 @@ Event anything_in_flight(uint64_t object)
 {
     Event event;
     for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER}) event.accesses.push_back({object, stage, true, true});
-    for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER, STAGE_INDIRECT})
+    for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER, STAGE_HOST})
         event.accesses.push_back({object, stage, false, true});
     return event;
 }

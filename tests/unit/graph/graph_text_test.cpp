@@ -60,7 +60,7 @@ TEST_CASE("Graphviz shows a pass with step, kernel, threads and barrier")
     CHECK(holds(box, "0: raycast \\\"fine\\\""));
     CHECK(holds(box, "kernel raycast_masked"));
     CHECK(holds(box, "640 x 480 x 1 threads"));
-    CHECK(holds(box, "barrier compute+transfer+indirect -> compute"));
+    CHECK(holds(box, "barrier compute+transfer -> compute"));
     CHECK_FALSE(holds(box, "dashed"));
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("JSON tells of every pass what it binds and what became of it")
     CHECK(raycast["threads"] == Json::array({640, 480, 1}));
     CHECK(raycast["tile"] == Json::array({128, 128, 0}));
     CHECK(raycast["constants"] == Json{{"SHADED", 1}});
-    CHECK(raycast["barrier"] == Json{{"from", "compute+transfer+indirect"}, {"to", "compute"}, {"memory", true}});
+    CHECK(raycast["barrier"] == Json{{"from", "compute+transfer"}, {"to", "compute"}, {"memory", true}});
     CHECK(raycast["declared_at"].get<std::string>().starts_with("graph_text_test.cpp:"));
     CHECK(raycast["bindings"] ==
           Json::array({{{"name", "atlas"}, {"resource", "atlas"}, {"index", 0}, {"reads", true}, {"writes", false}},

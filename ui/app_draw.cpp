@@ -1,0 +1,152 @@
+// A frame of the window: what panels are shown, the lines over the panes, and what a run measured.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+
+#include "engine/base/image.h"
+#include "ui/app.h"
+
+namespace shvr::ui {
+
+namespace {
+
+ImU32 color_of(const glm::dvec3& linear, float alpha)
+{
+    const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
+    return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
+}
+
+}  // namespace
+
+void App::draw_ui()
+{
+    const double begun = window_.now_s();
+    const bool moves = something_moves();
+    // A software device presents after everything that was submitted before, so this waits for nothing it would not
+    // wait for below; and the view learns what its work costs without the interface's share.
+    if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
+    std::vector<View::Layer> layers;
+    Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
+    window_.begin_ui();
+    if (document_) {
+        layout = draw_panels(model(), window_.pixels(), actions_);
+        draw_strokes();
+        layers = document_->screen.layers();
+        drawn_revision_ = document_->screen.revision();
+        drawn_probe_voxel_ = document_->probe_voxel();
+    } else {
+        ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
+    }
+    if (layout.begin != viewport_.layout().begin || layout.end != viewport_.layout().end) {
+        viewport_.set_layout(layout);
+        look_again();
+    }
+    if (!window_.present(layers, viewport_.layout().begin)) return;
+    if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
+    report_.presented({.number = window_.frames_presented(),
+                       .begun_s = begun,
+                       .moves = moves,
+                       .shows_picture = !layers.empty(),
+                       .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
+}
+
+/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a
+/// line goes to where assistance pulls the probe.
+void App::draw_strokes() const
+{
+    const Document& document = *document_;
+    if (!document.screen.shows_anything()) return;
+    const ProbeLook look = document.probe_look();
+    const TraceMarks marks = document.trace_marks();
+    const ServoState* servo = document.touch.servo();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const Screen::Part& part : document.screen.parts()) {
+        const glm::dvec2 origin(viewport_.layout().begin + part.pane.box.begin);
+        const glm::uvec2 pixels = part.pane.box.end - part.pane.box.begin;
+        const auto on_screen = [&](const glm::dvec2& pixel) {
+            return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
+        };
+        list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
+        for (const Stroke& stroke : document.screen.strokes(part, look, marks))
+            list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
+                         float(stroke.width));
+        if (document.screen.parts().size() > 1) {
+            const char* const name = part.pane.name.c_str();
+            const ImVec2 size = ImGui::CalcTextSize(name), at = on_screen({8.0, 6.0});
+            list.AddRectFilled({at.x - 4.0f, at.y - 2.0f}, {at.x + size.x + 4.0f, at.y + size.y + 2.0f},
+                               IM_COL32(20, 20, 20, 170), 3.0f);
+            list.AddText(at, IM_COL32(255, 255, 255, 235), name);
+        }
+        const Camera* const camera = part.view->shown_camera();
+        if (servo && servo->step.in_contact && camera) {
+            const auto center = project(*camera, pixels, look.center),
+                       proxy = project(*camera, pixels, servo->step.proxy);
+            if (center && proxy) {
+                list.AddLine(on_screen(center->pixel), on_screen(proxy->pixel), IM_COL32(255, 255, 255, 200), 1.5f);
+                list.AddCircleFilled(on_screen(proxy->pixel), 3.0f, IM_COL32(255, 255, 255, 230));
+            }
+        }
+        list.PopClipRect();
+    }
+}
+
+Model App::model()
+{
+    Document& document = *document_;
+    return {.session = document.session,
+            .volume = document.volume(),
+            .statistics = document.statistics,
+            .cameras = document.cameras(),
+            .panes = document.screen.parts(),
+            .presets = presets_,
+            .brush = document.brush,
+            .haptic_threshold = document.haptic_threshold,
+            .probe_voxel = document.probe_voxel(),
+            .is_painting = document.annotator.stroke_is_running(),
+            .assistance = document.assistance,
+            .law = document.law,
+            .servo = document.touch.servo(),
+            .device_name = document.touch.device_name(),
+            .tool = document.tool,
+            .trace = document.annotator.document().trace,
+            .nearby_node = document.nearby_node(),
+            .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
+                                    ? std::optional(document.previewer.shown()->voxels)
+                                    : std::nullopt,
+            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+            .undoable = document.annotator.history().undoable(),
+            .redoable = document.annotator.history().redoable(),
+            .is_saved = document.is_saved(),
+            .status = status_,
+            .shows_help = shows_help_,
+            .gpu_name = renderer_->device().traits().name,
+            .pass_times = document.screen.pass_times(),
+            .view_is_complete = document.screen.complete(),
+            .view_is_limited = renderer_->volume().state() == DeviceVolume::State::limited,
+            .relevance_age_ms = document.touch.relevance_age_ms(),
+            .ui_frame_ms = report_.recent_frame_ms(),
+            .device_bytes = renderer_->memory().device_bytes(),
+            .device_budget = renderer_->memory().device_budget()};
+}
+
+AppReport App::report()
+{
+    AppReport report = report_.measured();
+    report.gpu_name = renderer_->device().traits().name;
+    report.status = status_;
+    if (document_) {
+        report.relevance_ms = document_->touch.mirror_ms();
+        report.view_submissions = document_->screen.submissions();
+        report.view_complete = document_->screen.complete();
+        report.servo = document_->touch.last_state();
+        report.probe_voxel = document_->probe_voxel();
+        report.voxels_by_group = document_->annotator.document().mask.voxels_by_group();
+        report.undoable = document_->annotator.history().undoable();
+        report.redoable = document_->annotator.history().redoable();
+    }
+    report.validation_messages = renderer_->device().take_validation_messages();
+    return report;
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,83 @@
+#pragma once
+// What the window shows: the swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that speak
+// Vulkan.
+//
+//   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
+//
+// The main thread.
+
+#include <array>
+#include <vector>
+
+#include "engine/gpu/memory.h"
+#include "engine/live/view.h"
+
+struct GLFWwindow;
+
+namespace shvr::ui {
+
+class Swapchain {
+public:
+    /// Fails where the device cannot show pictures in the window.
+    Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
+    ~Swapchain();
+    Swapchain(const Swapchain&) = delete;
+    Swapchain& operator=(const Swapchain&) = delete;
+
+    /// Layers must have blue first (View::Options).
+    bool swaps_red_and_blue() const { return format_.format == VK_FORMAT_B8G8R8A8_UNORM; }
+    /// Before ImGui::NewFrame.
+    static void begin_ui();
+    /// As Window::present, after ImGui::Render.
+    bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
+
+    uint64_t frames_presented() const { return presented_; }
+    uint64_t frames_done() const;
+
+private:
+    static constexpr uint32_t FRAMES_IN_FLIGHT = 2;
+    struct Target {
+        VkImage image = VK_NULL_HANDLE;
+        VkImageView view = VK_NULL_HANDLE;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        VkSemaphore drawn = VK_NULL_HANDLE;
+    };
+    struct Frame {
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        VkSemaphore acquired = VK_NULL_HANDLE;
+        VkFence done = VK_NULL_HANDLE;
+        uint64_t number = 0;  ///< of the frame it was used for last
+    };
+
+    void create();
+    void choose_format();
+    void create_render_pass();
+    void create_frames();
+    void create_imgui();
+    void create_swapchain();
+    void add_target(VkImage image);
+    void destroy_targets();
+    void destroy();
+    void record(const Frame& frame, const Target& target, const std::vector<View::Layer>& layers,
+                const glm::uvec2& origin) const;
+    void draw_layers(VkCommandBuffer commands, VkImage target, const std::vector<View::Layer>& layers,
+                     const glm::uvec2& origin) const;
+
+    gpu::Device& device_;
+    gpu::Memory& memory_;
+    GLFWwindow* window_;
+    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+    VkSurfaceFormatKHR format_{};
+    VkRenderPass render_pass_ = VK_NULL_HANDLE;
+    VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+    VkExtent2D extent_{};
+    std::vector<Target> targets_;
+    std::array<Frame, FRAMES_IN_FLIGHT> frames_;
+    uint32_t next_frame_ = 0;
+    uint64_t presented_ = 0;
+    bool imgui_is_ready_ = false;
+};
+
+}  // namespace shvr::ui
