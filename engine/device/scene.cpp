@@ -93,17 +93,17 @@ void Scene::show(const Document& document)
     if (const std::vector<int64_t> painted = document.mask.painted_bricks(); !painted.empty())
         update_mask(document.mask, painted);
     std::vector<VoxelBox> raised;
-    for (const int64_t brick : document.density.painted_bricks())
-        raised.push_back(document.density.box_of(brick));
+    for (const int64_t brick : document.density.painted_bricks()) raised.push_back(document.density.box_of(brick));
     if (!raised.empty()) update_density(document.density, raised);
 }
 
-void Scene::show(const Document& document, std::span<const Change> changes, const std::optional<VoxelBox>& within)
+bool Scene::show(const Document& document, std::span<const Change> changes)
 {
     const Touched touched = touched_by(document, changes);
-    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
+    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks);
     if (!touched.raised.empty()) update_density(document.density, touched.raised);
     show_trace(document.trace, changes);
+    return !touched.mask_bricks.empty() || !touched.raised.empty();
 }
 
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)

@@ -57,9 +57,10 @@ public:
     /// All of the document's paint and offsets.
     void show(const Document& document);
     /// What these changes are about, of which the document holds the result: paint, offsets and, once show_surfaces() has
-    /// been called, the trace. `within`: the painted voxels lie in this box. Frames submitted later see it. Fails where
+    /// been called, the trace. Returns whether paint or offsets are among them. Frames submitted later see it. Fails where
     /// voxels cannot be read.
-    void show(const Document& document, std::span<const Change> changes, const std::optional<VoxelBox>& within = {});
+    bool show(const Document& document, std::span<const Change> changes);
+    /// Paint in these bricks. `within`: the voxels lie in this box.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
     /// Voxels in these boxes have other offsets than before. Offsets raise intensities no higher than the volume's window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);

@@ -52,10 +52,8 @@ Annotator::Annotator(Renderer& renderer)
 std::vector<std::string> Annotator::open(const WorkFiles& files, Work::Start start)
 {
     std::vector<std::string> messages = work_.open(files, start);
-    const auto& [mask, trace, density] = document();
-    Touched all{.mask_bricks = mask.painted_bricks()};
-    for (const int64_t brick : density.painted_bricks()) all.raised.push_back(density.box_of(brick));
-    show(all);
+    renderer_.scene().show(document());
+    ++revision_;
     return messages;
 }
 
@@ -238,7 +236,7 @@ const Command* Annotator::edit_trace(std::string label, std::vector<TraceChange>
 {
     SHVR_CHECK(!stroke_);
     const Command* command = work_.perform({std::move(label), as_changes(std::move(changes))});
-    if (command) renderer_.scene().show_trace(document().trace, command->changes);
+    if (command) show(*command);
     return command;
 }
 
@@ -258,8 +256,7 @@ const Command* Annotator::redo()
 
 void Annotator::show(const Command& command)
 {
-    show(touched_by(document(), command.changes));
-    renderer_.scene().show_trace(document().trace, command.changes);
+    revision_ += renderer_.scene().show(document(), command.changes);
 }
 
 }  // namespace shvr
