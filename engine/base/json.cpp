@@ -42,7 +42,8 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as they are.
+/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as
+/// they are.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
