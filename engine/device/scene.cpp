@@ -93,8 +93,7 @@ void Scene::show(const Document& document)
     if (const std::vector<int64_t> painted = document.mask.painted_bricks(); !painted.empty())
         update_mask(document.mask, painted);
     std::vector<VoxelBox> raised;
-    for (const int64_t brick : document.density.painted_bricks())
-        raised.push_back(document.density.box_of(brick));
+    for (const int64_t brick : document.density.painted_bricks()) raised.push_back(document.density.box_of(brick));
     if (!raised.empty()) update_density(document.density, raised);
 }
 

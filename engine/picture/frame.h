@@ -2,7 +2,7 @@
 // A picture's frame: everything that is added to a graph to draw a part of a picture, in order. What is in brackets is
 // there only where there is something to do.
 //
-//   volume     [brick_leap, upload page directory] clear reached, of paged bricks      | which bricks, how far they leap
+//   volume     [brick_leap, upload page directory] clear reached, of paged bricks      | which bricks, how far rays go
 //              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] | of a resident volume
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
 //   tables     [upload transfer function] [upload groups]
