@@ -1,6 +1,6 @@
 #pragma once
-// The segmentation mask: one 8-bit colour group per voxel (0 = unpainted), in sparse bricks (sparse_bricks.h), so that an
-// unpainted volume costs nothing.
+// The segmentation mask: one 8-bit colour group per voxel (0 = unpainted), in sparse bricks (sparse_bricks.h), so that
+// an unpainted volume costs nothing.
 
 #include "engine/annotation/sparse_bricks.h"
 

@@ -1,11 +1,11 @@
 #pragma once
 // One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: what the mask (mask.h) and density
-// offsets (density.h) are made of. A brick whose values are all 0 does not exist. Values change through records of exact
-// before and after and through nothing else; undo is the same record applied backwards.
+// offsets (density.h) are made of. A brick whose values are all 0 does not exist. Values change through records of
+// exact before and after and through nothing else; undo is the same record applied backwards.
 //
-// A brick never changes once it is there: changing its voxels replaces it. So a copy of all bricks costs their table and
-// shares them, and callers may keep a brick for as long as they like. One thread owns the bricks and lends them as const;
-// a copy may go to another thread.
+// A brick never changes once it is there: changing its voxels replaces it. So a copy of all bricks costs their table
+// and shares them, and callers may keep a brick for as long as they like. One thread owns the bricks and lends them as
+// const; a copy may go to another thread.
 
 #include <algorithm>
 #include <array>
@@ -107,8 +107,8 @@ protected:
     using Named = std::function<std::string(Value)>;
     /// Whether voxels may come to hold a value; empty: any.
     using Allowed = std::function<bool(Value)>;
-    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must hold what the record
-    /// says they hold before the change. Empty where it fits.
+    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must hold what the
+    /// record says they hold before the change. Empty where it fits.
     std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
                                     const Allowed& allowed = {}) const;
     /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.

@@ -6,8 +6,8 @@
 
 namespace shvr {
 
-/// The folder of that name in $SHVR_ASSETS, or in what lies where the program was installed or built. Empty where there is
-/// none.
+/// The folder of that name in $SHVR_ASSETS, or in what lies where the program was installed or built. Empty where there
+/// is none.
 std::filesystem::path asset_folder(const std::string& name);
 
 }  // namespace shvr

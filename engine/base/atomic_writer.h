@@ -1,6 +1,6 @@
 #pragma once
-// Writing a file so that it is either all there or not there: the bytes go into a temporary file beside the target, which
-// is synced and renamed over it at the end. Without `commit` the target stays as it was and the temporary goes.
+// Writing a file so that it is either all there or not there: the bytes go into a temporary file beside the target,
+// which is synced and renamed over it at the end. Without `commit` the target stays as it was and the temporary goes.
 //
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
 
@@ -31,7 +31,8 @@ public:
     void write_at(int64_t offset, std::span<const std::byte> content);
     /// Fails where not so much was written.
     void read_back(int64_t offset, std::span<std::byte> content) const;
-    /// Syncs, renames, and syncs the folder, so that the new file survives a power cut. Keeps the old one's permissions.
+    /// Syncs, renames, and syncs the folder, so that the new file survives a power cut. Keeps the old one's
+    /// permissions.
     void commit();
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// PNG files in and out, PFM files out. Written are 8-bit RGBA files with an sRGB chunk; read is every PNG there is. Files come from
-// strangers: sizes are checked before memory is taken. Any thread may call these.
+// PNG files in and out, PFM files out. Written are 8-bit RGBA files with an sRGB chunk; read is every PNG there is.
+// Files come from strangers: sizes are checked before memory is taken. Any thread may call these.
 
 #include <cstddef>
 #include <cstdint>

@@ -42,7 +42,8 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as they are.
+/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as
+/// they are.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
@@ -54,9 +55,9 @@ std::string reason_of(const json::exception& error)
     return reason;
 }
 
-/// Goes through a text and refuses what is not JSON, and what the parser itself lets pass: depth, and a key given twice, of
-/// which it would silently keep the last. A pass of its own: given to the parser as its callback, it would make that one
-/// search the whole of an array at the end of each element.
+/// Goes through a text and refuses what is not JSON, and what the parser itself lets pass: depth, and a key given
+/// twice, of which it would silently keep the last. A pass of its own: given to the parser as its callback, it would
+/// make that one search the whole of an array at the end of each element.
 class Strictness : public nlohmann::json_sax<json> {
 public:
     Strictness(const std::string& origin, const JsonLimits& limits) : origin_(&origin), limits_(limits) {}

@@ -1,6 +1,6 @@
 #pragma once
-// Reading JSON strictly: every value is fetched by name with what is expected of it, and what does not fit is refused in
-// one sentence that names the key in full:
+// Reading JSON strictly: every value is fetched by name with what is expected of it, and what does not fit is refused
+// in one sentence that names the key in full:
 //
 //   scan.json: key render.step_voxels is -1; expected a number above 0 (0.0001 ... 1024)
 //   scan.json: key volume.path is missing; expected the path of a volume file
@@ -140,8 +140,8 @@ private:
 
     const JsonDocument* document_;
     const nlohmann::json* value_;
-    // Of a missing value: the innermost object that is there, and the rest of the key. The key of a value that is there is
-    // found by searching the document, which only a refusal does.
+    // Of a missing value: the innermost object that is there, and the rest of the key. The key of a value that is there
+    // is found by searching the document, which only a refusal does.
     const nlohmann::json* parent_ = nullptr;
     std::string missing_;
 };

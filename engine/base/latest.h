@@ -7,8 +7,8 @@
 //     latest.writing() = pose; latest.publish();      // writer: any number of fields, then publish
 //     if (latest.take()) use(latest.value());         // reader: value() stays as it is until the next take()
 //
-// One writing and one reading thread. Copying T must not throw; what a slot holds before it is written is T{} or, later,
-// some older value, so a writer must set every field.
+// One writing and one reading thread. Copying T must not throw; what a slot holds before it is written is T{} or,
+// later, some older value, so a writer must set every field.
 
 #include <array>
 #include <atomic>

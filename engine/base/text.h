@@ -1,5 +1,6 @@
 #pragma once
-// Text that comes from strangers: trimmed, split, read strictly as numbers, and made safe to quote in a message. Any thread.
+// Text that comes from strangers: trimmed, split, read strictly as numbers, and made safe to quote in a message. Any
+// thread.
 
 #include <cstdint>
 #include <optional>

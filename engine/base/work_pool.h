@@ -23,8 +23,8 @@ class WorkPool {
 public:
     using Task = std::function<void(int64_t task, int worker)>;
 
-    /// `poll` is called every 50 ms by a thread that waits, for one batch or for many short ones; what it throws ends the
-    /// batch that is waited for and is thrown on.
+    /// `poll` is called every 50 ms by a thread that waits, for one batch or for many short ones; what it throws ends
+    /// the batch that is waited for and is thrown on.
     /// `before_task` is called by workers before every task; what it throws is as if the task had thrown it.
     explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
     /// Drops what has not begun, and waits for the rest.

@@ -44,8 +44,8 @@ public:
         std::optional<BrickKey> evicted;  ///< that was there
     };
     /// A slot for a brick that has none, and that is used now: a free one, or one of a brick that nobody needs. For a
-    /// region, bricks that only the picture needs go after those. Nothing where there is no room. Pinned bricks stay until
-    /// they are removed.
+    /// region, bricks that only the picture needs go after those. Nothing where there is no room. Pinned bricks stay
+    /// until they are removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 

@@ -16,8 +16,9 @@ constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
 /// More sentences than a person reads; the count goes on.
 constexpr size_t MOST_MESSAGES = 20;
 
-/// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first picture. Linux
-/// holds a rank for each thread; where it does not (POSIX has one a process), or refuses, only haste is lost.
+/// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first
+/// picture. Linux holds a rank for each thread; where it does not (POSIX has one a process), or refuses, only haste is
+/// lost.
 void give_way()
 {
     constexpr int NICENESS = 5;
@@ -156,7 +157,8 @@ std::optional<BrickKey> BrickStore::next()
     return std::nullopt;
 }
 
-/// The mutex is held. Drops the bricks used longest ago that are not waiting to be taken, until there is room for one more.
+/// The mutex is held. Drops the bricks used longest ago that are not waiting to be taken, until there is room for one
+/// more.
 bool BrickStore::make_room()
 {
     const auto is_full = [&] { return kept_.size() + loading_.size() >= most_bricks_; };

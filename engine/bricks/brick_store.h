@@ -1,7 +1,7 @@
 #pragma once
-// The host's tier of a volume's bricks: what somebody wants is read, decoded and cut by loader threads, most wanted first,
-// and kept within a byte budget. What is no longer wanted is not begun. A brick that cannot be read is named once and
-// never tried again.
+// The host's tier of a volume's bricks: what somebody wants is read, decoded and cut by loader threads, most wanted
+// first, and kept within a byte budget. What is no longer wanted is not begun. A brick that cannot be read is named
+// once and never tried again.
 //
 // One thread asks (want, take, get); the loaders are its own.
 

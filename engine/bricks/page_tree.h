@@ -1,10 +1,11 @@
 #pragma once
-// Which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can show, without
-// what is outside the view, cut away or shown by no transfer function. Plain data made in double on the CPU; no device.
+// Which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can show,
+// without what is outside the view, cut away or shown by no transfer function. Plain data made in double on the CPU; no
+// device.
 //
-// A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel is at the brick's nearest point,
-// divided by `detail`. That is a matter of the view alone, never of what happens to be loaded or of a budget: it is
-// what makes pictures under different budgets equal.
+// A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel is at the brick's nearest
+// point, divided by `detail`. That is a matter of the view alone, never of what happens to be loaded or of a budget: it
+// is what makes pictures under different budgets equal.
 
 #include <functional>
 
@@ -44,8 +45,8 @@ struct PageTree {
     std::vector<uint32_t> leaf_of_entry;
 };
 
-/// `levels` as VolumeSource::levels. `shows` says whether anything of a brick, or of the bricks below it, may be visible.
-/// A view that needs more than `most_leaves` is taken with half the detail, and half again.
+/// `levels` as VolumeSource::levels. `shows` says whether anything of a brick, or of the bricks below it, may be
+/// visible. A view that needs more than `most_leaves` is taken with half the detail, and half again.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t most_leaves = size_t{1} << 17);
 

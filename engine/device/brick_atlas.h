@@ -1,7 +1,7 @@
 #pragma once
-// Bricks in slots on the device: their codes, aprons included, and the ranges of their cells. What is in which slot is its
-// owner's affair (paged_volume.h). Bricks go up in batches of BATCH, one being filled while the device copies the other. One
-// thread, the one that owns the device.
+// Bricks in slots on the device: their codes, aprons included, and the ranges of their cells. What is in which slot is
+// its owner's affair (paged_volume.h). Bricks go up in batches of BATCH, one being filled while the device copies the
+// other. One thread, the one that owns the device.
 
 #include <array>
 #include <vector>

@@ -57,8 +57,8 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
     send_table(mask);
 }
 
-/// Slots to those that are painted and have none; those that are no longer painted lose theirs. True where the atlas had to
-/// grow and all bricks have other slots.
+/// Slots to those that are painted and have none; those that are no longer painted lose theirs. True where the atlas
+/// had to grow and all bricks have other slots.
 bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
 {
     std::vector<int64_t> added;

@@ -19,8 +19,8 @@ public:
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}
 
-    /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not wait:
-    /// frames submitted later see them.
+    /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not
+    /// wait: frames submitted later see them.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// Of a painted brick on the device; gpu::NO_SLOT where it is not there.

@@ -102,17 +102,17 @@ public:
     virtual std::vector<std::string> take_messages() = 0;
     /// Rays visited it, as far as that is known.
     virtual bool is_drawn(const BrickKey& key) const = 0;
-    /// Around visited bricks those as far away as `reach` says for their level are needed, too: light arrives from there.
-    /// Empty: none.
+    /// Around visited bricks those as far away as `reach` says for their level are needed, too: light arrives from
+    /// there. Empty: none.
     virtual void want_around(const std::vector<int>& reach) = 0;
-    /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that takes
-    /// more than a quarter of the room. Until the next call, or that of region().
+    /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that
+    /// takes more than a quarter of the room. Until the next call, or that of region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
     // ---- What is changed
 
-    /// The source has other voxels of level 0 in these boxes; what depends on them is renewed. Frames submitted later see
-    /// it. Fails where voxels cannot be read.
+    /// The source has other voxels of level 0 in these boxes; what depends on them is renewed. Frames submitted later
+    /// see it. Fails where voxels cannot be read.
     virtual void renew(std::span<const VoxelBox> changed) = 0;
     /// These bricks of level 0 have been painted, or are no longer.
     virtual void note_painted(const Mask& mask, std::span<const int64_t> bricks) = 0;
@@ -127,8 +127,8 @@ public:
     virtual uint64_t places_revision() const = 0;
     /// Handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) const = 0;
-    /// The bricks of a box of voxels, which keep their slots until the next call. Null where some are not there yet; they
-    /// are loaded before all others. `wait`: reads them now, and fails where that cannot be.
+    /// The bricks of a box of voxels, which keep their slots until the next call. Null where some are not there yet;
+    /// they are loaded before all others. `wait`: reads them now, and fails where that cannot be.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
 
     /// Of paged bricks, for reports.

@@ -1,7 +1,7 @@
 #pragma once
-// What of the leap grid on the device is out of date, and when it is built again. A new look (transfer function, visible
-// groups) needs all of it before anything is drawn; where a few cells changed, a patch is enough for pictures, and the rest
-// is built when there is nothing else to do. One thread, the renderer's.
+// What of the leap grid on the device is out of date, and when it is built again. A new look (transfer function,
+// visible groups) needs all of it before anything is drawn; where a few cells changed, a patch is enough for pictures,
+// and the rest is built when there is nothing else to do. One thread, the renderer's.
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
-// A transfer function as the device reads it: a table for one length of step, plain or pre-integrated, and which stretches of
-// it show anything. Baked in double on the CPU, kept as long as it is the same.
+// A transfer function as the device reads it: a table for one length of step, plain or pre-integrated, and which
+// stretches of it show anything. Baked in double on the CPU, kept as long as it is the same.
 
 #include <optional>
 #include <span>

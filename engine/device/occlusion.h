@@ -1,14 +1,14 @@
 #pragma once
-// Local ambient occlusion of the bricks that are on the device: which of them are out of date, and the work that renews them,
-// in slices, nearest to the eye first. Its images have the slots of the density atlas, so they need no table of their own;
-// nothing exists on the device until a look asks for it.
+// Local ambient occlusion of the bricks that are on the device: which of them are out of date, and the work that renews
+// them, in slices, nearest to the eye first. Its images have the slots of the density atlas, so they need no table of
+// their own; nothing exists on the device until a look asks for it.
 //
 //   bricks come, painted voxels, cut     -> cells of those bricks, and values as far as light comes from them
 //   transfer function                    -> all cells, all values
 //   radius, rays, hemisphere             -> all values
 //
-// Values that are out of date stay until they are renewed; where there have never been any, all light arrives. Renewing what
-// is out of date gives the same bits as making all of it. One thread, the one that owns the memory.
+// Values that are out of date stay until they are renewed; where there have never been any, all light arrives. Renewing
+// what is out of date gives the same bits as making all of it. One thread, the one that owns the memory.
 
 #include <optional>
 #include <unordered_map>

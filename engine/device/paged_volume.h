@@ -3,11 +3,13 @@
 //
 //   view -> PageTree (which bricks, page_tree.h)
 //        -> rays mark what they visit -> wanted bricks, nearest first
-//        -> BrickStore (host budget, loader threads) -> atlas (device budget, least recently used is evicted) -> directory
+//        -> BrickStore (host budget, loader threads)
+//        -> atlas (device budget, least recently used is evicted) -> directory
 //
-// Only bricks that rays visit are requested: what is outside the view, empty, cut away or hidden behind something opaque
-// is not loaded. A missing brick is drawn from the finest coarser one there is; the coarsest levels are always there. While
-// the view rests a brick that is needed is never evicted, so nothing is loaded twice and the picture only gets better.
+// Only bricks that rays visit are requested: what is outside the view, empty, cut away or hidden behind something
+// opaque is not loaded. A missing brick is drawn from the finest coarser one there is; the coarsest levels are always
+// there. While the view rests a brick that is needed is never evicted, so nothing is loaded twice and the picture only
+// gets better.
 //
 // One thread, the one that owns the executor; nothing here waits for a loader except where it says so.
 
@@ -56,9 +58,9 @@ public:
     void want_around(const std::vector<int>& reach) override;
     void prefer(const VoxelBox& voxels) override;
 
-    /// Bricks that see the voxels, of all levels, are read anew: at once where they are on the device (but where those are
-    /// very many, only the coarse ones that are always there; the others come again like any that are missing), later
-    /// where they are not.
+    /// Bricks that see the voxels, of all levels, are read anew: at once where they are on the device (but where those
+    /// are very many, only the coarse ones that are always there; the others come again like any that are missing),
+    /// later where they are not.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 

@@ -1,7 +1,7 @@
 #pragma once
-// A volume with all of its bricks on the device: the atlas, the page table, the value range of every cell and the leap grid,
-// which is kept up to date with what is visible and painted. A volume whose bricks do not fit the device budget is refused
-// in words before any is read.
+// A volume with all of its bricks on the device: the atlas, the page table, the value range of every cell and the leap
+// grid, which is kept up to date with what is visible and painted. A volume whose bricks do not fit the device budget
+// is refused in words before any is read.
 //
 // One thread, the one that owns the executor.
 

@@ -1,6 +1,6 @@
 #pragma once
-// One loaded volume and all that goes with it on the device: density offsets, mask, ambient occlusion, surfaces, tables.
-// Built whole and destroyed whole.
+// One loaded volume and all that goes with it on the device: density offsets, mask, ambient occlusion, surfaces,
+// tables. Built whole and destroyed whole.
 //
 //   commands (paint, offsets, trace)  -> show()  -> what is on the device -+
 //   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> who shows pictures
@@ -39,8 +39,8 @@ public:
     /// and `options` make it.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
-    /// Such a scene would be resident, and finds room beside all that is on the device now. Fails where the device cannot
-    /// do what `options` ask for.
+    /// Such a scene would be resident, and finds room beside all that is on the device now. Fails where the device
+    /// cannot do what `options` ask for.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
@@ -56,13 +56,14 @@ public:
 
     /// All of the document's paint and offsets.
     void show(const Document& document);
-    /// What these changes are about, of which the document holds the result: paint, offsets and, once show_surfaces() has
-    /// been called, the trace. Returns whether paint or offsets are among them. Frames submitted later see it. Fails where
-    /// voxels cannot be read.
+    /// What these changes are about, of which the document holds the result: paint, offsets and, once show_surfaces()
+    /// has been called, the trace. Returns whether paint or offsets are among them. Frames submitted later see it.
+    /// Fails where voxels cannot be read.
     bool show(const Document& document, std::span<const Change> changes);
     /// Paint in these bricks. `within`: the voxels lie in this box.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
-    /// Voxels in these boxes have other offsets than before. Offsets raise intensities no higher than the volume's window.
+    /// Voxels in these boxes have other offsets than before. Offsets raise intensities no higher than the volume's
+    /// window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
     /// Opaque balls and rods that rays stop at: these, and those of the trace in the colours of `groups`. Fails as
@@ -109,7 +110,8 @@ public:
     /// The next slice of ambient occlusion in a graph that must be submitted.
     void add_occlusion(FrameGraph& graph, const Camera& camera, const Occlusion::Most& most);
 
-    /// What pictures go without (bricks that cannot be read, features without room), one sentence each, since the last call.
+    /// What pictures go without (bricks that cannot be read, features without room), one sentence each, since the last
+    /// call.
     std::vector<std::string> take_messages();
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// The opaque surfaces of a scene on the device, and what a camera adds to draw them. Nothing exists there while there are
-// none. One thread, the one that owns the memory.
+// The opaque surfaces of a scene on the device, and what a camera adds to draw them. Nothing exists there while there
+// are none. One thread, the one that owns the memory.
 
 #include <optional>
 

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 /// Each name takes a hundred bytes of memory, and a look at its file.
 constexpr int64_t MOST_FILES = 65536;
 
-/// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern comes from a stranger, so it never
-/// meets printf.
+/// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern comes from a stranger, so it
+/// never meets printf.
 struct Pattern {
     std::string before{}, after{};
     size_t width = 0;

@@ -16,10 +16,10 @@ namespace shvr {
 bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 
-/// The files that `field` names, in order, as paths. `rest` is what follows the field's line: the names of a list, one a
-/// line. Fails where their number is not one that voxels of `size` can be spread over equally: as many as slices; or as
-/// many as rows, or such that each holds a number of slices, where the number of axes of a file, the field's last word,
-/// says so.
+/// The files that `field` names, in order, as paths. `rest` is what follows the field's line: the names of a list, one
+/// a line. Fails where their number is not one that voxels of `size` can be spread over equally: as many as slices; or
+/// as many as rows, or such that each holds a number of slices, where the number of axes of a file, the field's last
+/// word, says so.
 std::vector<std::filesystem::path> data_files(const HeaderFields& fields, const char* field, std::string_view rest,
                                               const Size3& size);
 

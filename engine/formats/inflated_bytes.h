@@ -21,8 +21,8 @@ struct Inflation {
     int64_t kept_bytes = int64_t{32} << 20;
 };
 
-/// Nothing is decoded yet. Fails where the file begins with neither gzip nor zlib, or is so short that no deflate stream
-/// in it can hold what is wanted: at most 1032 bytes come out of one (zlib's technical notes).
+/// Nothing is decoded yet. Fails where the file begins with neither gzip nor zlib, or is so short that no deflate
+/// stream in it can hold what is wanted: at most 1032 bytes come out of one (zlib's technical notes).
 std::unique_ptr<VoxelBytes> bytes_of_deflated(Inflation inflation);
 
 /// Whether these are the first bytes of a gzip file.

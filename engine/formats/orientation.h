@@ -7,10 +7,11 @@
 
 namespace shvr {
 
-/// Sets `directions`, `origin` and `frame` of `info`, and warns where the axes are turned against the frame's or are not
-/// at right angles: the volume is drawn along its own axes. `steps`: its columns lead from voxel to voxel along x, y
-/// and z; finite and not 0. `origin`: the centre of voxel 0. `frame`: right-handed, "RAS", "LPS", or "" for one without
-/// a name. Axes that lie in one plane are left out, with a warning. Returns the spacing: the length of the steps.
+/// Sets `directions`, `origin` and `frame` of `info`, and warns where the axes are turned against the frame's or are
+/// not at right angles: the volume is drawn along its own axes. `steps`: its columns lead from voxel to voxel along x,
+/// y and z; finite and not 0. `origin`: the centre of voxel 0. `frame`: right-handed, "RAS", "LPS", or "" for one
+/// without a name. Axes that lie in one plane are left out, with a warning. Returns the spacing: the length of the
+/// steps.
 glm::dvec3 place(VolumeInfo& info, const glm::dmat3& steps, const glm::dvec3& origin, const std::string& frame);
 
 /// `source`, or, where its axes are left-handed, one that hands its voxels out in reverse order along one of them, with

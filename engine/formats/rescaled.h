@@ -26,8 +26,8 @@ VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
 void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
                     std::span<std::byte> intensities);
 
-/// `source`, which has one level, in its intensities; itself where nothing changes. A warning says where integers become
-/// floats.
+/// `source`, which has one level, in its intensities; itself where nothing changes. A warning says where integers
+/// become floats.
 std::unique_ptr<VolumeSource> rescaled(std::unique_ptr<VolumeSource> source, const Rescale& rescale);
 
 }  // namespace shvr

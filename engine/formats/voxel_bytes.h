@@ -31,8 +31,8 @@ struct InputFile {
 /// Fails for folders, pipes and devices, and never waits for one.
 InputFile open_input_file(const std::filesystem::path& path);
 
-/// The bytes of `file` from `offset` on. Read with pread, never mapped: a file cut short while it is open is an `Error`,
-/// not a signal.
+/// The bytes of `file` from `offset` on. Read with pread, never mapped: a file cut short while it is open is an
+/// `Error`, not a signal.
 std::unique_ptr<VoxelBytes> bytes_of_file(InputFile file, int64_t offset);
 
 /// `count` shares of `share_bytes` each, one after the other; `open(i)` opens the one of number i when it is needed. A

@@ -155,7 +155,8 @@ void Annotator::extend_stroke(const glm::dvec3& voxel)
     SHVR_CHECK(stroke_ && !stroke_->has_ended);
     const glm::dvec3 from = stroke_->last.value_or(voxel);
     const std::vector<glm::dvec3> more = stroke_positions(std::array{from, voxel});
-    // A segment starts where the previous one ended. A dab is a segment from a point to itself: two positions, one kept.
+    // A segment starts where the previous one ended. A dab is a segment from a point to itself: two positions, one
+    // kept.
     stroke_->positions.insert(stroke_->positions.end(), more.begin() + 1, more.end());
     stroke_->last = voxel;
 }

@@ -1,11 +1,11 @@
 #pragma once
-// Carries out annotation commands: asks the device what a brush selects, records the result in the history and brings the
-// changed voxels back to the device. Scripts, keys, menus and the stylus all go through here.
+// Carries out annotation commands: asks the device what a brush selects, records the result in the history and brings
+// the changed voxels back to the device. Scripts, keys, menus and the stylus all go through here.
 //
 //   PaintOp -> positions along the stroke -> RegionQuery (device) -> VoxelSelection -> records -> Work -> device
 //
-// A script paints a whole stroke and waits. A hand begins a stroke, extends it and ends it; what it covers is painted as
-// the device answers, as one command however many answers that took. One thread, the renderer's.
+// A script paints a whole stroke and waits. A hand begins a stroke, extends it and ends it; what it covers is painted
+// as the device answers, as one command however many answers that took. One thread, the renderer's.
 
 #include <optional>
 
@@ -27,8 +27,8 @@ public:
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
 
-    /// For saving, file names and the trace's selection. What changes annotation goes through the functions below, so that
-    /// the device shows it.
+    /// For saving, file names and the trace's selection. What changes annotation goes through the functions below, so
+    /// that the device shows it.
     Work& work() { return work_; }
     const Work& work() const { return work_; }
     const Document& document() const { return work_.document(); }
@@ -62,8 +62,8 @@ public:
     bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
     /// Ends it at once: what is painted stays, the rest is dropped.
     void drop_stroke();
-    /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the stroke
-    /// cannot go on (too large a brush, bricks or a journal that fail); then the rest of it is dropped.
+    /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the
+    /// stroke cannot go on (too large a brush, bricks or a journal that fail); then the rest of it is dropped.
     std::optional<VoxelBox> advance();
     /// How many voxels the last stroke that ended has changed, counted as `paint` does.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }

@@ -1,7 +1,7 @@
 #pragma once
-// Keeps the exact preview of a brush up to date while a hand moves it: the records that painting would make, not carried
-// out. One query is in flight at a time and nothing waits, so while the hand moves the preview lags by the time of an
-// answer; at rest it is exact. Where no preview is wanted nothing is asked. One thread, the annotator's.
+// Keeps the exact preview of a brush up to date while a hand moves it: the records that painting would make, not
+// carried out. One query is in flight at a time and nothing waits, so while the hand moves the preview lags by the time
+// of an answer; at rest it is exact. Where no preview is wanted nothing is asked. One thread, the annotator's.
 
 #include <memory>
 
@@ -10,8 +10,8 @@
 
 namespace shvr {
 
-/// The brush of a session's probe, for a dab where it is; what is not given is chosen for the volume, but for an automatic
-/// offset (with_offset).
+/// The brush of a session's probe, for a dab where it is; what is not given is chosen for the volume, but for an
+/// automatic offset (with_offset).
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
 /// What pictures of a session show of its probe, its brush's preview included. Waits for the device.
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator);

@@ -1,6 +1,6 @@
 #pragma once
-// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device answers and the
-// answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
+// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device answers and
+// the answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
 //
 // One thread, the renderer's.
 

@@ -56,7 +56,8 @@ void Screen::clear()
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel of any slice that shows all of the volume.
+    // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel
+    // of any slice that shows all of the volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
     const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();

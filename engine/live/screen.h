@@ -1,9 +1,9 @@
 #pragma once
 // What somebody looks at: the panes of a picture, each a View, that take turns at the device.
 //
-// Sketches come first, pane by pane, so that all of the screen follows the hand; then each pane is made sharp, the first
-// one first. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call waits for
-// the device but where it says so.
+// Sketches come first, pane by pane, so that all of the screen follows the hand; then each pane is made sharp, the
+// first one first. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call
+// waits for the device but where it says so.
 
 #include <memory>
 

@@ -309,8 +309,8 @@ void View::note(const std::string& pass, double ms)
     known->longest_ms = std::max(known->longest_ms, ms);
 }
 
-/// A picture costs twenty times more here than there, so the estimate rises at once and falls slowly: a graph that takes
-/// less time than it might is the smaller evil.
+/// A picture costs twenty times more here than there, so the estimate rises at once and falls slowly: a graph that
+/// takes less time than it might is the smaller evil.
 void View::learn(double ms, uint64_t pixels)
 {
     constexpr double FALL = 0.1;

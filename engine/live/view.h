@@ -1,7 +1,8 @@
 #pragma once
-// A picture that is made while somebody looks at it: coarse at once, then sharp, tile by tile, nearest to the probe first.
+// A picture that is made while somebody looks at it: coarse at once, then sharp, tile by tile, nearest to the probe
+// first.
 //
-//   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all of it is done
+//   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all is done
 //                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
@@ -9,8 +10,8 @@
 //   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
 // Everything is drawn in small graphs of about `step_ms` each, and no more than about `in_flight_ms` of them are on the
-// way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is
-// submitted when nothing changed. One thread, the renderer's; no call waits for the device.
+// way at a time, so that a user interface, a brush or a relevance pass on the same queue waits no longer than that.
+// Nothing is submitted when nothing changed. One thread, the renderer's; no call waits for the device.
 
 #include <chrono>
 #include <deque>
@@ -45,8 +46,8 @@ public:
     void show_probe(const std::optional<ProbeLook>& probe);
     /// These voxels look different: a person has changed them.
     void changed(const VoxelBox& voxels);
-    /// Paged bricks of them have arrived, finer than before. While more of them come, tiles that were drawn without them are
-    /// drawn again a few times a second.
+    /// Paged bricks of them have arrived, finer than before. While more of them come, tiles that were drawn without
+    /// them are drawn again a few times a second.
     void bricks_arrived(const VoxelBox& voxels);
     /// Their ambient occlusion has been renewed.
     void light_changed(const VoxelBox& voxels);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double MOST_SCALE = 8.0;
 
-/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; no more than `most`, and no
-/// coarser than is any use. Whole pictures take `ms`.
+/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; no more than `most`, and
+/// no coarser than is any use. Whole pictures take `ms`.
 double share_for(double ms, double target_ms, double most)
 {
     return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MOST_SCALE, most), most);

@@ -29,8 +29,9 @@ struct Camera {
     double height = 1.0;            ///< orthographic: height of the view, physical units
     double near_distance = 0.0;     ///< clip planes along the view direction, physical units; nothing behind the
     double far_distance = 0.0;      ///< eye is seen, whatever the projection; far 0 = no far plane
-    /// Off-axis views (Bourke 1999, "Calculating stereo pairs"): the middle of the picture lies so many heights of the view
-    /// to the right of the line from eye to target, at every depth. The picture's plane stays upright to that line.
+    /// Off-axis views (Bourke 1999, "Calculating stereo pairs"): the middle of the picture lies so many heights of the
+    /// view to the right of the line from eye to target, at every depth. The picture's plane stays upright to that
+    /// line.
     double shift_right = 0.0;
     bool operator==(const Camera&) const = default;
 };

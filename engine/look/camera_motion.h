@@ -1,6 +1,6 @@
 #pragma once
-// How a person moves a camera, and the way between points and pixels. Pure; any thread. Lengths are physical units of the
-// volume, angles are degrees. Pixels have x to the right and y down, and their centres at + 0.5.
+// How a person moves a camera, and the way between points and pixels. Pure; any thread. Lengths are physical units of
+// the volume, angles are degrees. Pixels have x to the right and y down, and their centres at + 0.5.
 
 #include <optional>
 
@@ -45,8 +45,8 @@ struct PixelBox {
 };
 /// The smallest box around both.
 PixelBox united(const PixelBox& a, const PixelBox& b);
-/// The pixels that may show something of a box (volume space), a pixel to spare; the whole picture where the box reaches
-/// behind the eye.
+/// The pixels that may show something of a box (volume space), a pixel to spare; the whole picture where the box
+/// reaches behind the eye.
 PixelBox pixels_of_box(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower,
                        const glm::dvec3& upper);
 /// The same of a ball.

@@ -1,6 +1,6 @@
 #pragma once
-// Colour groups override the transfer function where a voxel is painted. They form a tree: what is not set for a group comes
-// from its parent, and hiding a group hides all below it. Changing a group touches no voxel.
+// Colour groups override the transfer function where a voxel is painted. They form a tree: what is not set for a group
+// comes from its parent, and hiding a group hides all below it. Changing a group touches no voxel.
 
 #include <cstdint>
 #include <map>

@@ -84,8 +84,8 @@ private:
     std::vector<Stroke> strokes_;
 };
 
-/// Corners of what a camera sees: near 0 ... 3 and far 4 ... 7, each top left, top right, bottom left, bottom right. Without
-/// a far plane it ends where the volume does.
+/// Corners of what a camera sees: near 0 ... 3 and far 4 ... 7, each top left, top right, bottom left, bottom right.
+/// Without a far plane it ends where the volume does.
 std::array<glm::dvec3, 8> frustum_corners(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume)
 {
     const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;

@@ -1,7 +1,7 @@
 #pragma once
-// Lines over a picture: where the camera of an overview looks, where slices cut, and the probe where something hides it or
-// where it is out of sight. Made once, as straight strokes in pixels; the window draws them with its own means, pictures in
-// files with `draw_strokes`. Pure; any thread.
+// Lines over a picture: where the camera of an overview looks, where slices cut, and the probe where something hides it
+// or where it is out of sight. Made once, as straight strokes in pixels; the window draws them with its own means,
+// pictures in files with `draw_strokes`. Pure; any thread.
 
 #include <span>
 #include <vector>
@@ -43,8 +43,8 @@ struct OverlayScene {
 };
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
-/// The silhouette of a ball, as a closed line: the circle in which lines from the eye touch it. Empty where the eye lies
-/// inside it, or where some of it is seen beside or behind the eye.
+/// The silhouette of a ball, as a closed line: the circle in which lines from the eye touch it. Empty where the eye
+/// lies inside it, or where some of it is seen beside or behind the eye.
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
                                       double radius);
 

@@ -76,14 +76,14 @@ struct Pane {
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
-/// The panes of a picture, the one that `main` sees first. They cover the picture, but for a row or column where it does
-/// not divide. `probe_voxel`: what slices go through. A picture that is too small to be divided has one pane.
+/// The panes of a picture, the one that `main` sees first. They cover the picture, but for a row or column where it
+/// does not divide. `probe_voxel`: what slices go through. A picture that is too small to be divided has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// The cameras of two eyes, left and right. Off-axis, a point at the target's depth is seen at the same pixel by both and
-/// nothing is seen higher by one than by the other; with `toe_in`, and for orthographic cameras, which have no other
-/// parallax, the eyes turn about the target instead.
+/// The cameras of two eyes, left and right. Off-axis, a point at the target's depth is seen at the same pixel by both
+/// and nothing is seen higher by one than by the other; with `toe_in`, and for orthographic cameras, which have no
+/// other parallax, the eyes turn about the target instead.
 std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings);
 
 }  // namespace shvr

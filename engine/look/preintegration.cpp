@@ -9,8 +9,8 @@ namespace shvr {
 
 namespace {
 
-/// Extinction where the opacity of a reference length is 1 over a stretch of densities: no light gets through the smallest
-/// part of the shortest step, and differences of its integrals are still exact to 1e-8.
+/// Extinction where the opacity of a reference length is 1 over a stretch of densities: no light gets through the
+/// smallest part of the shortest step, and differences of its integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MOST_PARTS = 16;
 

@@ -1,7 +1,7 @@
 #pragma once
-// The surfaces of a scene, of which a few change at a time: a large hierarchy of boxes that loses some, followed by a small one
-// of those that came since, which is made anew. A search that has passed the first goes on with the second, so kernels need not
-// know. Plain data; one thread at a time.
+// The surfaces of a scene, of which a few change at a time: a large hierarchy of boxes that loses some, followed by a
+// small one of those that came since, which is made anew. A search that has passed the first goes on with the second,
+// so kernels need not know. Plain data; one thread at a time.
 
 #include <cstdint>
 #include <span>
@@ -21,9 +21,9 @@ public:
     /// Different keys. Fails as `surface_tree` does. `most_in_leaf` is for tests.
     SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf = SURFACES_IN_LEAF);
 
-    /// Those of `keys` go, where they are there, and `surfaces` come. False: nothing changed, since a new forest is as cheap.
-    /// Fails as `surface_tree` does, and then nothing changed. Memory and time follow what is small: the changes, and
-    /// MOST_ADDED.
+    /// Those of `keys` go, where they are there, and `surfaces` come. False: nothing changed, since a new forest is as
+    /// cheap. Fails as `surface_tree` does, and then nothing changed. Memory and time follow what is small: the
+    /// changes, and MOST_ADDED.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }

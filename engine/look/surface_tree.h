@@ -1,6 +1,6 @@
 #pragma once
-// Opaque surfaces of a scene as a person gives them, and as the device searches them: a hierarchy of boxes in depth-first
-// order with a way past each. Plain data; any thread.
+// Opaque surfaces of a scene as a person gives them, and as the device searches them: a hierarchy of boxes in
+// depth-first order with a way past each. Plain data; any thread.
 
 #include <cstdint>
 #include <span>
@@ -21,8 +21,8 @@ struct SurfaceLook {
     bool operator==(const SurfaceLook&) const = default;
 };
 
-/// What a surface is of: those of a session go by their place, then nodes and internodes of the trace by their numbers. Of two
-/// at the same length along a ray the one before is seen.
+/// What a surface is of: those of a session go by their place, then nodes and internodes of the trace by their numbers.
+/// Of two at the same length along a ray the one before is seen.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {

@@ -13,8 +13,8 @@ namespace {
 
 /// Pixels of one dispatch: bounds what a single submission costs on a slow device.
 constexpr glm::uvec2 TILE{128, 128};
-/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep rays that go the same way together; a CPU
-/// runs a row of pixels as one vector.
+/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep rays that go the same way together; a
+/// CPU runs a row of pixels as one vector.
 constexpr uint32_t GROUP_WIDTH_OF_GPU = 8, GROUP_WIDTH_OF_CPU = 16;
 /// Of a preview that lies behind something else, and in slices of what is below.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
@@ -71,8 +71,8 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// What one eye sees. What there is of a preview comes before the rays, so that they end at it, and over the picture that
-/// they make.
+/// What one eye sees. What there is of a preview comes before the rays, so that they end at it, and over the picture
+/// that they make.
 Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                   const PicturePart& part, Resource target)
 {

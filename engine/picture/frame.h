@@ -1,8 +1,8 @@
 #pragma once
-// A picture's frame: everything that is added to a graph to draw a part of a picture, in order. What is in brackets is there
-// only where there is something to do.
+// A picture's frame: everything that is added to a graph to draw a part of a picture, in order. What is in brackets is
+// there only where there is something to do.
 //
-//   volume     [brick_leap, upload page directory] clear reached, of paged bricks      | which bricks, how far rays leap
+//   volume     [brick_leap, upload page directory] clear reached, of paged bricks      | which bricks, how far rays go
 //              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] | of a resident volume
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
 //   tables     [upload transfer function] [upload groups]
@@ -30,8 +30,8 @@ struct PicturePart {
     glm::uvec2 target{0};         ///< texel that `begin` goes to
     glm::uvec2 detail_pixels{0};  ///< of the picture that decides how fine the bricks are; 0: this one
     std::optional<ProbeLook> probe{};
-    /// Paged bricks of these voxels are among those that the view needs, whatever the transfer function hides: for a shell,
-    /// which may lie where nothing else is seen (voxels_of_shell). Equal for all parts of a view.
+    /// Paged bricks of these voxels are among those that the view needs, whatever the transfer function hides: for a
+    /// shell, which may lie where nothing else is seen (voxels_of_shell). Equal for all parts of a view.
     std::optional<VoxelBox> always_shown{};
 };
 
@@ -40,15 +40,15 @@ struct Drawn {
     Resource target;
     DeviceVolume::Feedback feedback;
 };
-/// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float image: linear light, premultiplied,
-/// over the background. The graph must be submitted, and before any other that was made later.
+/// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float image: linear light,
+/// premultiplied, over the background. The graph must be submitted, and before any other that was made later.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false);
 /// Adds the passes that find what is seen at one pixel: position and 1, or 0, in the one texel of an image.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// Tells the volume what is looked at, as draw() does. Returns the distance between samples in reference lengths: samples of
-/// coarse bricks may lie farther apart.
+/// Tells the volume what is looked at, as draw() does. Returns the distance between samples in reference lengths:
+/// samples of coarse bricks may lie farther apart.
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
 /// What has to be computed before parts of this look are drawn, one short graph at a time; nothing when all is ready.
@@ -56,8 +56,8 @@ double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePa
 std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look);
 /// What makes pictures of it come sooner without making them different, for when nothing else is to be done; likewise.
 std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look);
-/// The next slice of the ambient occlusion that the look wants, nearest to the camera; nothing where it wants none or all is
-/// made. Likewise. Pictures are drawn with what is made so far.
+/// The next slice of the ambient occlusion that the look wants, nearest to the camera; nothing where it wants none or
+/// all is made. Likewise. Pictures are drawn with what is made so far.
 std::optional<FrameGraph> next_occlusion(Scene& scene, const Look& look, const Camera& camera,
                                          const Occlusion::Most& most);
 

@@ -13,8 +13,8 @@ public:
     PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options);
 
     bool is_done() const { return parts_.empty() && pane_ + 1 >= panes_.size(); }
-    /// Draws the next part, and waits for it. It waits for paged bricks, too: a part is drawn again until its rays visit
-    /// nothing that is not there, and one that needs more at once than there is room for is quartered.
+    /// Draws the next part, and waits for it. It waits for paged bricks, too: a part is drawn again until its rays
+    /// visit nothing that is not there, and one that needs more at once than there is room for is quartered.
     void step();
     /// Of all pixels, the share that is drawn.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }

@@ -1,6 +1,6 @@
 #pragma once
-// Owns the device, its memory and the executor of graphs, and the scene that is loaded. Makes whole pictures; frame.h is
-// what they are made of, picture_job.h how, and engine/live/view.h makes them while a person looks.
+// Owns the device, its memory and the executor of graphs, and the scene that is loaded. Makes whole pictures; frame.h
+// is what they are made of, picture_job.h how, and engine/live/view.h makes them while a person looks.
 //
 // One thread, the one that owns the device.
 
@@ -35,8 +35,8 @@ class Renderer {
 public:
     struct Options {
         gpu::DeviceOptions device;
-        /// Of the host's bytes (0: 2 GiB) half are for mapped memory, a quarter for bricks kept on the host and a quarter
-        /// for the coarser levels of files that have none.
+        /// Of the host's bytes (0: 2 GiB) half are for mapped memory, a quarter for bricks kept on the host and a
+        /// quarter for the coarser levels of files that have none.
         gpu::Budget budget;
         int threads = 0;  ///< workers that build bricks; 0: one a core
     };
@@ -51,9 +51,9 @@ public:
     uint64_t host_bytes() const;
     uint64_t peak_host_bytes() const;
 
-    /// Makes a scene of a volume, in place of the one before. Of `settings` sampling and paging decide how the device holds
-    /// the bricks. `with_occlusion`: they leave room for ambient occlusion. Where this fails the scene before stays if
-    /// both find room beside each other; otherwise it had to go first, and there is none.
+    /// Makes a scene of a volume, in place of the one before. Of `settings` sampling and paging decide how the device
+    /// holds the bricks. `with_occlusion`: they leave room for ambient occlusion. Where this fails the scene before
+    /// stays if both find room beside each other; otherwise it had to go first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false);
     bool has_scene() const { return scene_ != nullptr; }
@@ -63,8 +63,8 @@ public:
 
     /// The picture of `session` (its look and its panes) from `camera`. Waits for it.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
-    /// What is seen at a pixel: where its ray becomes half opaque, in volume space. `probe`: as it is shown beside it. Waits
-    /// for the device.
+    /// What is seen at a pixel: where its ray becomes half opaque, in volume space. `probe`: as it is shown beside it.
+    /// Waits for the device.
     std::optional<glm::dvec3> pick(const Look& look, const Camera& camera, const glm::uvec2& pixels,
                                    const glm::uvec2& pixel, const std::optional<ProbeLook>& probe = {});
 

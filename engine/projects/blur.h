@@ -1,8 +1,8 @@
 #pragma once
 // One dimension of a separable filter with symmetric weights, for import_prepare.cpp. Any thread may call these.
 //
-// Sums are taken from the middle outwards, both neighbours at a time, so that a mirrored volume gives the mirrored result
-// bit for bit.
+// Sums are taken from the middle outwards, both neighbours at a time, so that a mirrored volume gives the mirrored
+// result bit for bit.
 
 #include <cstddef>
 #include <cstring>
@@ -11,7 +11,8 @@
 
 namespace shvr {
 
-/// Rows are filtered in blocks of this many numbers, which compilers keep in registers; buffers are a multiple of it long.
+/// Rows are filtered in blocks of this many numbers, which compilers keep in registers; buffers are a multiple of it
+/// long.
 inline constexpr size_t BLUR_BLOCK = 16;
 
 inline constexpr size_t padded_length(size_t length)
@@ -19,7 +20,8 @@ inline constexpr size_t padded_length(size_t length)
     return (length + BLUR_BLOCK - 1) / BLUR_BLOCK * BLUR_BLOCK;
 }
 
-/// out[i] = weights[0] * middle[i] + sum over k of weights[k] * (before[k - 1][i] + after[k - 1][i]) for i in 0 ... length
+/// out[i] = weights[0] * middle[i] + sum over k of weights[k] * (before[k - 1][i] + after[k - 1][i]) for i in 0 ...
+/// length
 /// - 1. `length` is a multiple of BLUR_BLOCK; `before` and `after` hold weights.size() - 1 rows.
 template <class Number>
 void filter_rows(std::span<const Number> weights, const Number* middle, const Number* const* before,

@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// Voxels of one level below a chunk, and the range of level 0 below each. Rows are IMPORT_CHUNK voxels long whatever the
-/// extent, so that loops over them have a length that compilers know; `side` rows make a slice.
+/// Voxels of one level below a chunk, and the range of level 0 below each. Rows are IMPORT_CHUNK voxels long whatever
+/// the extent, so that loops over them have a length that compilers know; `side` rows make a slice.
 template <class T>
 struct ImportCube {
     explicit ImportCube(int64_t rows) : side(rows), values(static_cast<size_t>(rows * rows * IMPORT_CHUNK)) {}

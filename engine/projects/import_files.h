@@ -19,8 +19,8 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
                               const LabelImage* labels);
 std::string import_session();
 
-/// `folder` without dots. Fails where it is there and is no label image that may be replaced, or where it is to be one of an
-/// image's labels and the image's list of them cannot be read. Makes the folder that it is in.
+/// `folder` without dots. Fails where it is there and is no label image that may be replaced, or where it is to be one
+/// of an image's labels and the image's list of them cannot be read. Makes the folder that it is in.
 std::filesystem::path label_image_target(const std::filesystem::path& folder);
 /// Whether it is IMAGE/labels/NAME of an OME-Zarr image.
 bool belongs_to_image(const std::filesystem::path& target);

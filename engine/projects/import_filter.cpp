@@ -36,7 +36,8 @@ void widen(const T* from, Number<T>* to, size_t length)
     for (; i < length; ++i) to[i] = static_cast<Number<T>>(from[i]);
 }
 
-/// Adding and taking away 1.5 * 2^23 (2^52) rounds to nearest, ties to even, whatever a type of up to 16 (32) bits holds.
+/// Adding and taking away 1.5 * 2^23 (2^52) rounds to nearest, ties to even, whatever a type of up to 16 (32) bits
+/// holds.
 template <class T>
 T to_voxel(Number<T> number)
 {
@@ -242,8 +243,8 @@ private:
         return planes_[static_cast<size_t>(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
-    /// Rows of a slice, from the first of `planes_`, along z. `of` chooses what of a plane, `instead` stands for it where
-    /// a plane does not have it.
+    /// Rows of a slice, from the first of `planes_`, along z. `of` chooses what of a plane, `instead` stands for it
+    /// where a plane does not have it.
     void filter_z(int64_t z, int64_t row, std::vector<Number<T>> Plane<T>::*of, Number<T>* out) const
     {
         const auto row_of = [&](int64_t at) {

@@ -2,16 +2,16 @@
 // What is done to a volume's voxels before they are kept, slab by slab: cut out a box, reverse intensities, blur, make
 // smaller, in this order.
 //
-// Reversed integers are the type's smallest plus its largest value minus the voxel (255 - v, -1 - v); reversed floats are
-// the volume's own smallest plus largest finite value minus the voxel.
+// Reversed integers are the type's smallest plus its largest value minus the voxel (255 - v, -1 - v); reversed floats
+// are the volume's own smallest plus largest finite value minus the voxel.
 //
-// The blur is a Gaussian sampled at voxel centres, to int(4 sigma + 0.5) voxels on each side, normalised in double, along
-// x, then y, then z. Beyond the box that was cut out, its outermost voxels go on. Intermediate sums are float for types of
-// 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. Voxels that are NaN or infinite
-// stay as they are and do not spread: their neighbours are the weighted mean of the finite ones.
+// The blur is a Gaussian sampled at voxel centres, to int(4 sigma + 0.5) voxels on each side, normalised in double,
+// along x, then y, then z. Beyond the box that was cut out, its outermost voxels go on. Intermediate sums are float for
+// types of 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. Voxels that are NaN
+// or infinite stay as they are and do not spread: their neighbours are the weighted mean of the finite ones.
 //
-// A voxel of a volume made N times smaller is the mean of N^3 voxels, at the end of those that there are; rounding and NaN
-// as above. So the size is rounded up.
+// A voxel of a volume made N times smaller is the mean of N^3 voxels, at the end of those that there are; rounding and
+// NaN as above. So the size is rounded up.
 
 #include <memory>
 #include <optional>

@@ -1,12 +1,12 @@
 #pragma once
 // The levels of a volume, made while its level 0 goes by in chunks of 64^3 voxels.
 //
-// A voxel of level l + 1 is the mean of the 2^3 voxels of level l it stands for, of those that there are at the volume's
-// end, and of the finite ones; integers are rounded to nearest, ties to even; of labels it is the most frequent one
-// (halving.h). Since 64 is 2^6, a chunk alone decides its
-// voxels of the six levels above it. Those of levels 1 to 5 are gathered until 64 slices of a level are complete; higher
-// levels are small and kept whole. So memory depends on the size of a slice, not on the number of slices: some 43 bytes
-// for every voxel of a slice of 16 bits.
+// A voxel of level l + 1 is the mean of the 2^3 voxels of level l it stands for, of those that there are at the
+// volume's end, and of the finite ones; integers are rounded to nearest, ties to even; of labels it is the most
+// frequent one (halving.h). Since 64 is 2^6, a chunk alone decides its
+// voxels of the six levels above it. Those of levels 1 to 5 are gathered until 64 slices of a level are complete;
+// higher levels are small and kept whole. So memory depends on the size of a slice, not on the number of slices: some
+// 43 bytes for every voxel of a slice of 16 bits.
 //
 // For every level and every brick of 32^3 voxels, the smallest and largest finite value of level 0 below the brick and
 // one voxel of its level around it are found on the way.

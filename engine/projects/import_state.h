@@ -1,6 +1,6 @@
 #pragma once
-// What an import needs to go on after it was stopped, in one file that is checked as a whole: pieces of bytes in a fixed
-// order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
+// What an import needs to go on after it was stopped, in one file that is checked as a whole: pieces of bytes in a
+// fixed order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
 
 #include <cstring>
 #include <filesystem>

@@ -1,8 +1,8 @@
 #pragma once
 // Makes a project of a volume: an OME-Zarr 0.4 image with all its levels, and what project.h lists.
 //
-// The source is gone through once, slab by slab; memory depends on the size of a slice, not on their number. Chunks have
-// 64^3 voxels, are compressed with blosc (zstd, bytes shuffled), and are not written where all their voxels are 0.
+// The source is gone through once, slab by slab; memory depends on the size of a slice, not on their number. Chunks
+// have 64^3 voxels, are compressed with blosc (zstd, bytes shuffled), and are not written where all their voxels are 0.
 // The project appears whole: until then it is PROJECT.part, with a state from which the same call goes on after it was
 // stopped, killed, or the disk was full. Equal input gives equal bytes, whether in one go or in several.
 
@@ -43,8 +43,8 @@ struct LabelImage {
     };
     std::vector<Color> colors{};
     std::string source{};  ///< the image they are of, as a path from the folder of labels; empty: not said
-    /// The hash of that image's voxels (content_hash.h), by which a mask is told from those of other images of its size;
-    /// empty: not said.
+    /// The hash of that image's voxels (content_hash.h), by which a mask is told from those of other images of its
+    /// size; empty: not said.
     std::string painted_on{};
 };
 

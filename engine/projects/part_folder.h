@@ -1,7 +1,7 @@
 #pragma once
-// A folder that appears whole or not at all: it is made beside its place, as NAME.part, and renamed at the end. What was
-// begun and not finished stays there, so that it can be gone on with. One process at a time works on it: the folder is
-// locked, and the lock of a process that died is gone with it.
+// A folder that appears whole or not at all: it is made beside its place, as NAME.part, and renamed at the end. What
+// was begun and not finished stays there, so that it can be gone on with. One process at a time works on it: the folder
+// is locked, and the lock of a process that died is gone with it.
 
 #include <filesystem>
 #include <optional>
@@ -45,7 +45,8 @@ private:
     std::optional<FileDescriptor> lock_;
 };
 
-/// Writes a whole file into a folder that is not in its place yet: not synced, not atomic. Makes the folders on its way.
+/// Writes a whole file into a folder that is not in its place yet: not synced, not atomic. Makes the folders on its
+/// way.
 void write_part_file(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace shvr

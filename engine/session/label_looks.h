@@ -1,6 +1,7 @@
 #pragma once
-// The looks of colour groups in the label image that a mask is kept in (OME-Zarr 0.4, image-label: colors and properties).
-// Colours are sRGB of 8 bits a channel there, alpha the opacity; the tree of groups and what is hidden have no place in it.
+// The looks of colour groups in the label image that a mask is kept in (OME-Zarr 0.4, image-label: colors and
+// properties). Colours are sRGB of 8 bits a channel there, alpha the opacity; the tree of groups and what is hidden
+// have no place in it.
 
 #include <filesystem>
 #include <string>
@@ -15,9 +16,9 @@ namespace shvr {
 /// Of the groups that are painted or set up, ascending.
 std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask);
 
-/// Gives each group that `groups` does not define its look in the label image `mask`, if that differs from the default. Labels
-/// above 255 are not groups. Does nothing if `mask` is not a label image. Returns a sentence for each list with entries that
-/// are malformed.
+/// Gives each group that `groups` does not define its look in the label image `mask`, if that differs from the default.
+/// Labels above 255 are not groups. Does nothing if `mask` is not a label image. Returns a sentence for each list with
+/// entries that are malformed.
 std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Groups& groups);
 
 }  // namespace shvr

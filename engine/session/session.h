@@ -49,8 +49,8 @@ struct Session {
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;  ///< for bare voxels
     OpenOptions open_options;             ///< what to take from files that hold more than one volume
-    /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and in a
-    /// session that was only read. Not written.
+    /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and
+    /// in a session that was only read. Not written.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
@@ -105,8 +105,8 @@ Session parse_session(const std::string& text, const std::filesystem::path& fold
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
 
-/// Where the darker of two classes of voxels ends, the air around a scanned object (Otsu's threshold, but never less than
-/// half of all voxels), and where nine tenths of the rest lie below.
+/// Where the darker of two classes of voxels ends, the air around a scanned object (Otsu's threshold, but never less
+/// than half of all voxels), and where nine tenths of the rest lie below.
 struct TissueRange {
     double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
 };
@@ -122,8 +122,8 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
-/// Writes what `parse_session` reads: every key, paths inside `folder` (if that is a project's shvr: inside the project)
-/// relative to it and others absolute. Colours are rounded to the 8 bits of their spelling.
+/// Writes what `parse_session` reads: every key, paths inside `folder` (if that is a project's shvr: inside the
+/// project) relative to it and others absolute. Colours are rounded to the 8 bits of their spelling.
 std::string to_text(const Session& session, const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -1,15 +1,15 @@
 #pragma once
-// The keys of a session file, each stated once: its name, the value it stands for, its range, unit and meaning. Its default
-// is the value of a new `Session`. `fields` visits them in the order in which they are written; reading, writing, --set and
-// the table of README.md are visitors:
+// The keys of a session file, each stated once: its name, the value it stands for, its range, unit and meaning. Its
+// default is the value of a new `Session`. `fields` visits them in the order in which they are written; reading,
+// writing, --set and the table of README.md are visitors:
 //
 //   void fields(Fields& f, Light& light)
 //   {
 //       f.number("ambient", light.ambient, {0.0, 10.0}, {"share of the colour that is always seen"});
 //       ...
 //
-// To add a key: a member with its default, a line in session_keys*.cpp, and its row in README.md, which the test of this
-// table prints. Any thread.
+// To add a key: a member with its default, a line in session_keys*.cpp, and its row in README.md, which the test of
+// this table prints. Any thread.
 
 #include <concepts>
 #include <functional>
@@ -30,8 +30,8 @@ struct About {
     bool is_required = false;
 };
 
-/// Visits values by their keys. A value that is optional, or a text or path that is empty, is not written; what is not in a
-/// file keeps the value it has.
+/// Visits values by their keys. A value that is optional, or a text or path that is empty, is not written; what is not
+/// in a file keeps the value it has.
 class Fields {
 public:
     using Visit = std::function<void(Fields&)>;

@@ -1,5 +1,5 @@
-// "--set key=value": dotted keys into the JSON of a session. What the value is, the table of keys says: a text is taken as it
-// stands, anything else is JSON.
+// "--set key=value": dotted keys into the JSON of a session. What the value is, the table of keys says: a text is taken
+// as it stands, anything else is JSON.
 
 #include <charconv>
 

@@ -1,5 +1,6 @@
 #pragma once
-// Transfer functions that fit any volume, from assets/transfer_functions (its README.md describes the files). Any thread.
+// Transfer functions that fit any volume, from assets/transfer_functions (its README.md describes the files). Any
+// thread.
 
 #include <string>
 #include <vector>

@@ -16,8 +16,8 @@ namespace {
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr size_t BINS = 256;
 
-/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice where that is too large. Where
-/// voxels lie together in blocks, slabs are as thick as those, and of rows of whole blocks.
+/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice where that is too large.
+/// Where voxels lie together in blocks, slabs are as thick as those, and of rows of whole blocks.
 template <class T, class Take>
 void for_each_slab(const VolumeSource& source, const Take& take)
 {

@@ -1,5 +1,5 @@
-// The program is killed at any moment of its work, 200 times in the same folder: what is found is what was done up to some
-// step, and the steps that are gone are of the last moments.
+// The program is killed at any moment of its work, 200 times in the same folder: what is found is what was done up to
+// some step, and the steps that are gone are of the last moments.
 
 #include <sys/mman.h>
 #include <sys/wait.h>

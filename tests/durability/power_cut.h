@@ -1,6 +1,6 @@
 #pragma once
-// What a disk may hold after the power was cut: of the data of a file, what was synced, and of what came later any part,
-// in pieces of 512 bytes, in any order; of a folder's entries, those that were synced, and any of the later ones.
+// What a disk may hold after the power was cut: of the data of a file, what was synced, and of what came later any
+// part, in pieces of 512 bytes, in any order; of a folder's entries, those that were synced, and any of the later ones.
 // After SQLite's crash tests: what a file system promises, and no more.
 
 #include <map>

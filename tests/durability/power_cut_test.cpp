@@ -1,5 +1,5 @@
-// The power is cut at any moment of work and saving: no state is unreadable or mixed, and nothing that was acknowledged is
-// gone. The same proof on a disk that lies about syncing must fail.
+// The power is cut at any moment of work and saving: no state is unreadable or mixed, and nothing that was acknowledged
+// is gone. The same proof on a disk that lies about syncing must fail.
 
 #include <algorithm>
 #include <fstream>

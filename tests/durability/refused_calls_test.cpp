@@ -1,5 +1,5 @@
-// Every call with which a save, or the journal, changes files fails once, in every way a disk has: the files are the old or
-// the new ones, whole; work is still there; and the next try succeeds.
+// Every call with which a save, or the journal, changes files fails once, in every way a disk has: the files are the
+// old or the new ones, whole; work is still there; and the next try succeeds.
 
 #include <cerrno>
 #include <chrono>

@@ -71,7 +71,8 @@ FileCall write_call(int file, const void* bytes, size_t count, uint64_t at)
     return {FileCall::Kind::write, path_of(file), {}, at, {begin, begin + count}};
 }
 
-/// Nothing is synced: these tests do not depend on the disk under them, and a machine syncs a few hundred times a second.
+/// Nothing is synced: these tests do not depend on the disk under them, and a machine syncs a few hundred times a
+/// second.
 int sync_call(int file)
 {
     const std::string path = path_of(file);

@@ -1,6 +1,6 @@
 #pragma once
-// Every call with which this program changes files, seen and, where a test wants it, refused. The linker puts these in the
-// place of the system's (-Wl,--wrap=...), so the product knows nothing of them and has no way around.
+// Every call with which this program changes files, seen and, where a test wants it, refused. The linker puts these in
+// the place of the system's (-Wl,--wrap=...), so the product knows nothing of them and has no way around.
 //
 // One test at a time; calls may come from any thread.
 

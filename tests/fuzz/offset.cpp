@@ -1,5 +1,5 @@
-// A .offset file: the first three bytes are the sides of the volume it is for, the fourth says its type, the rest is the
-// file.
+// A .offset file: the first three bytes are the sides of the volume it is for, the fourth says its type, the rest is
+// the file.
 
 #include "engine/annotation/files/offset_export.h"
 #include "engine/annotation/files/offset_file.h"

@@ -1,4 +1,5 @@
-// The tables of a project's shvr/ folder, and its record. The first bytes say which, and how many elements are expected.
+// The tables of a project's shvr/ folder, and its record. The first bytes say which, and how many elements are
+// expected.
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-// What features cost, and that they go together. A scene pays for what is in it: an unused feature has no pass, no byte and
-// no bit; any two of them draw without a word of the validation layer.
+// What features cost, and that they go together. A scene pays for what is in it: an unused feature has no pass, no byte
+// and no bit; any two of them draw without a word of the validation layer.
 
 #include <algorithm>
 #include <cmath>

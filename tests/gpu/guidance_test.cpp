@@ -1,5 +1,6 @@
-// The touch from end to end, without a window and without a clock: a hand follows a vessel in a noisy scan, relevance comes
-// from the device's compute pass, some milliseconds late, and the servo's force draws the hand to the vessel's middle.
+// The touch from end to end, without a window and without a clock: a hand follows a vessel in a noisy scan, relevance
+// comes from the device's compute pass, some milliseconds late, and the servo's force draws the hand to the vessel's
+// middle.
 
 #include <array>
 #include <cmath>

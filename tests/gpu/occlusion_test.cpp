@@ -1,5 +1,5 @@
-// Local ambient occlusion as the device makes it: its values against the definition in double, and what makes them stale. What
-// the definition is worth is for tests/unit/device/occlusion_test.cpp.
+// Local ambient occlusion as the device makes it: its values against the definition in double, and what makes them
+// stale. What the definition is worth is for tests/unit/device/occlusion_test.cpp.
 
 #include "engine/passes/occlusion.h"
 

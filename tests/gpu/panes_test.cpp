@@ -147,7 +147,8 @@ TEST_CASE_FIXTURE(OnDevice, "off-axis and toed-in rays are those of the referenc
         check_below("left", error(session, left), 2e-5);
         check_below("right", error(session, right), 2e-5);
     }
-    // A point in space is drawn where `project` has it: the reference uses the same rays, so this ties both to the camera.
+    // A point in space is drawn where `project` has it: the reference uses the same rays, so this ties both to the
+    // camera.
     load(volume_of({40, 33, 50}, [](const glm::dvec3& voxel) {
         return glm::distance(voxel, glm::dvec3(30.5, 8.5, 40.5)) < 1.0 ? 60000.0 : 0.0;
     }));

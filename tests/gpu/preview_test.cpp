@@ -1,5 +1,5 @@
-// The preview of a brush: the set is the one that is painted, whatever the brush, and looking at it changes nothing; what
-// pictures show of it is that set, held against boxes that are met in double on the CPU.
+// The preview of a brush: the set is the one that is painted, whatever the brush, and looking at it changes nothing;
+// what pictures show of it is that set, held against boxes that are met in double on the CPU.
 
 #include <random>
 #include <thread>

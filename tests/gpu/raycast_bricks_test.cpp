@@ -92,8 +92,8 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000
 
 TEST_CASE_FIXTURE(OnDevice, "where brick borders fall changes no bit")
 {
-    // The same voxels in three places, so that brick borders run through them elsewhere. Camera, planes and steps are such
-    // that every position is exact in float, so that nothing but the bricks is different.
+    // The same voxels in three places, so that brick borders run through them elsewhere. Camera, planes and steps are
+    // such that every position is exact in float, so that nothing but the bricks is different.
     const TestVolume inner = noise_volume({40, 40, 40}, 11);
     const glm::ivec3 whole(80);
     Session session = plain_session(busy_points(), {40, 40});

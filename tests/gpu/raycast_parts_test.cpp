@@ -47,7 +47,8 @@ TEST_CASE_FIXTURE(OnDevice, "the probe hides what is behind it, and nothing else
     Session session = plain_session({{20000.0, RED, 0.1}, {65535.0, RED, 0.2}}, {65, 65});
     session.light = {.shaded = false, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
     const ProbeLook probe{.center = {20, 20, 20}, .radius = 10.0, .color = {0.2, 0.4, 0.6}};
-    // A pixel is one voxel wide: the ball covers those whose centre is within its radius, half in front of the volume too.
+    // A pixel is one voxel wide: the ball covers those whose centre is within its radius, half in front of the volume
+    // too.
     for (const glm::dvec3& direction : cube_directions()) {
         const Camera camera = camera_along(volume(), direction, 65.0);
         const ImageF image = renderer().render(session, camera, {.probe = probe}).image;

@@ -1,5 +1,5 @@
-// The panes that a person looks at come to rest on the picture that `shvr render` makes, share the device, and do no more
-// than that takes.
+// The panes that a person looks at come to rest on the picture that `shvr render` makes, share the device, and do no
+// more than that takes.
 
 #include "engine/live/screen.h"
 

@@ -1,5 +1,5 @@
-// The thin-shell iso-surface around the probe against roots found in double precision. What a pixel tells of where its ray
-// was stopped is its share of distance blending, which is linear in the depth.
+// The thin-shell iso-surface around the probe against roots found in double precision. What a pixel tells of where its
+// ray was stopped is its share of distance blending, which is linear in the depth.
 
 #include <cmath>
 #include <random>

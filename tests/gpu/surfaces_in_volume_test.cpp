@@ -1,4 +1,5 @@
-// Opaque balls and the probe in a volume: what lies before them, and what the ray caster makes of them in all its variants.
+// Opaque balls and the probe in a volume: what lies before them, and what the ray caster makes of them in all its
+// variants.
 
 #include <algorithm>
 #include <cmath>

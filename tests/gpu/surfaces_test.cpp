@@ -14,8 +14,8 @@ using namespace shvr::test;
 
 namespace {
 
-/// The signed distance of a point from a surface, and its gradient. A rod is all balls between its two: of those, the ball
-/// that is nearest is found with the slope of the tangent cone.
+/// The signed distance of a point from a surface, and its gradient. A rod is all balls between its two: of those, the
+/// ball that is nearest is found with the slope of the tangent cone.
 struct Distance {
     double value = 1e300;
     glm::dvec3 normal{0.0};
@@ -42,8 +42,8 @@ struct Ray {
     glm::dvec3 at(double s) const { return origin + s * direction; }
 };
 
-/// Where a ray enters a surface whose radii are `grown` larger; infinity where it does not. Distance from a convex body is a
-/// convex function along a line.
+/// Where a ray enters a surface whose radii are `grown` larger; infinity where it does not. Distance from a convex body
+/// is a convex function along a line.
 double entry(const SurfaceLook& surface, const Ray& ray, double grown)
 {
     const auto distance = [&](double s) { return distance_from(surface, ray.at(s)).value - grown; };

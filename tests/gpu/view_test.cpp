@@ -1,5 +1,5 @@
-// The view that a person looks at: it must come to rest on the picture that `shvr render` makes, and do no more than that
-// takes.
+// The view that a person looks at: it must come to rest on the picture that `shvr render` makes, and do no more than
+// that takes.
 
 #include <cstring>
 #include <random>

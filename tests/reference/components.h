@@ -26,8 +26,8 @@ std::vector<uint32_t> flood_words(const BrushRegion& region, const OpenVoxel& op
 /// not belong to the region (no voxel outside the volume does). A neighbour that belongs but is not open makes no edge.
 std::vector<uint32_t> speckle_words(const BrushRegion& region, const OpenVoxel& open, int connectivity);
 
-/// Of every voxel of a whole volume, x fastest: 0 where it is not open, else the number of its component, which count from 1
-/// in the order of their first voxels.
+/// Of every voxel of a whole volume, x fastest: 0 where it is not open, else the number of its component, which count
+/// from 1 in the order of their first voxels.
 std::vector<uint32_t> component_labels(const Size3& size, const OpenVoxel& open, int connectivity);
 
 }  // namespace shvr::reference

@@ -1,6 +1,6 @@
 #pragma once
-// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines what the device makes, cell by cell, and as
-// the sum over equal steps that it stands for. Lengths are in voxels of the finest axis.
+// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines what the device makes, cell by cell, and
+// as the sum over equal steps that it stands for. Lengths are in voxels of the finest axis.
 
 #include <functional>
 #include <vector>
@@ -42,8 +42,8 @@ double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays,
 
 /// Opacity of one unit anywhere.
 using FieldOpacity = std::function<double(const glm::dvec3&)>;
-/// (1 / M) sum over m of the product over i < m of (1 - a_i), the mean over directions. Sample i lies at (i + 1) steps, and
-/// samples nearer than `first` are not taken.
+/// (1 / M) sum over m of the product over i < m of (1 - a_i), the mean over directions. Sample i lies at (i + 1) steps,
+/// and samples nearer than `first` are not taken.
 double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dvec3>& directions, double radius,
                           int steps, double first, double lift, const glm::dvec3& position, const OcclusionSide& side);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Annotation at random, for tests of what must hold whatever a person does: commands of all kinds on a small volume, and a
-// number that tells two documents apart. Equal seeds, equal commands.
+// Annotation at random, for tests of what must hold whatever a person does: commands of all kinds on a small volume,
+// and a number that tells two documents apart. Equal seeds, equal commands.
 
 #include <cstdint>
 #include <random>

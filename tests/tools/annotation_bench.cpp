@@ -1,5 +1,6 @@
-// What annotating costs: a stroke on a device, the picture after it, undoing it, its journal, a node more in a long trace, and ten
-// thousand strokes on a volume of 1024^3 voxels. Times are of this machine, and of this run; bytes and voxels are always the same.
+// What annotating costs: a stroke on a device, the picture after it, undoing it, its journal, a node more in a long
+// trace, and ten thousand strokes on a volume of 1024^3 voxels. Times are of this machine, and of this run; bytes and
+// voxels are always the same.
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// What drawing 10,000 rods costs, with how many of them in a leaf of the hierarchy, and with every one asked (a minute).
+// What drawing 10,000 rods costs, with how many of them in a leaf of the hierarchy, and with every one asked (a
+// minute).
 //
 //   cmake --build build/release --target bench_surfaces
 

@@ -59,7 +59,8 @@ public:
     {
         const ProbeSettings& probe = opened.session.probe;
         TraceEffect effect = in_words([&] {
-            return effect_of(op, trace(), {opened.source->info().spacing, probe.brush.radius_voxels, probe.brush.group});
+            const BrushSettings& brush = probe.brush;
+            return effect_of(op, trace(), {opened.source->info().spacing, brush.radius_voxels, brush.group});
         });
         if (effect.selection)
             opened.annotator->work().select_trace(std::move(*effect.selection));

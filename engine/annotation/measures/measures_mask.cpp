@@ -1,5 +1,6 @@
-// The topology of a mask, slice by slice, over rows of bits. Runs of equal voxels are what union-find joins (Rosenfeld and
-// Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays); the Euler characteristic counts cells by population counts.
+// The topology of a mask, slice by slice, over rows of bits. Runs of equal voxels are what union-find joins (Rosenfeld
+// and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays); the Euler characteristic counts cells by population
+// counts.
 
 #include <algorithm>
 #include <bit>
@@ -150,8 +151,8 @@ private:
         return slice;
     }
 
-    /// Cells between `last` and `next`, and those of `next` that lie within the slice. A cell is there where a cube that it
-    /// bounds is. Bit x of a shifted word stands for the plane between x - 1 and x.
+    /// Cells between `last` and `next`, and those of `next` that lie within the slice. A cell is there where a cube
+    /// that it bounds is. Bit x of a shifted word stands for the plane between x - 1 and x.
     void count_cells(const Slice& last, const Slice& next)
     {
         for (int64_t y = 1; y < size_.y; ++y) {

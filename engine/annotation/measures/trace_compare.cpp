@@ -105,8 +105,8 @@ private:
         return covers(s, ways_between(near_[s], from->second, to->second));
     }
 
-    /// The internodes of all ways from one node to the other that stay among `internodes` and pass no other paired node;
-    /// empty where there is none.
+    /// The internodes of all ways from one node to the other that stay among `internodes` and pass no other paired
+    /// node; empty where there is none.
     std::vector<uint32_t> ways_between(const std::vector<uint32_t>& internodes, uint32_t from, uint32_t to) const
     {
         std::set<uint32_t> reached{from}, passed;

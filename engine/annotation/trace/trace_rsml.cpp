@@ -1,7 +1,7 @@
-// RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io): every
-// tree is a plant; its first axis follows the longest way from the root, and what branches off is a root of its own below
-// the one it branches off from, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
-// `resolution` pixels to the unit.
+// RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io):
+// every tree is a plant; its first axis follows the longest way from the root, and what branches off is a root of its
+// own below the one it branches off from, beginning at the branch. Geometry is in pixels: voxels along x, on all three
+// axes, with `resolution` pixels to the unit.
 
 #include <algorithm>
 #include <map>

@@ -1,10 +1,10 @@
 // Reading RSML (trace_rsml.cpp writes it): metadata's unit and resolution, and of each root its polyline, its functions
-// "diameter" and "group" along the polyline, and its roots. Elements and attributes beyond these are passed over, as other
-// programs have many. A root below another one begins at the parent's node where its first point lies, or is joined to the
-// nearest one of them. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution` of them make
-// one `unit`. A unit that is "pixel" is a voxel along x, and so it is where neither is stated; one that is left out is the
-// volume's, and a resolution that is left out is 1. Lengths come out in the volume's unit. Where no diameter is stated, a
-// radius is one pixel.
+// "diameter" and "group" along the polyline, and its roots. Elements and attributes beyond these are passed over, as
+// other programs have many. A root below another one begins at the parent's node where its first point lies, or is
+// joined to the nearest one of them. All numbers are pixels (https://rootsystemml.github.io/format/metadata):
+// `resolution` of them make one `unit`. A unit that is "pixel" is a voxel along x, and so it is where neither is
+// stated; one that is left out is the volume's, and a resolution that is left out is 1. Lengths come out in the
+// volume's unit. Where no diameter is stated, a radius is one pixel.
 
 #include <memory>
 #include "engine/annotation/trace/trace_forms.h"

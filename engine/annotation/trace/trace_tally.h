@@ -1,6 +1,6 @@
 #pragma once
-// What a trace adds up to, kept while it changes: lengths by group, and how many segments there are. A change costs as much
-// as the internodes of its nodes; one that splits or joins segments, about as much as the shorter of the two.
+// What a trace adds up to, kept while it changes: lengths by group, and how many segments there are. A change costs as
+// much as the internodes of its nodes; one that splits or joins segments, about as much as the shorter of the two.
 //
 // Not thread safe: part of a TraceGraph.
 

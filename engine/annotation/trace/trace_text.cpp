@@ -1,6 +1,6 @@
-// The thesis's text (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each node and
-// "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its place among the nodes of
-// the file, from 0; nodes that were deleted have none. Blank lines and other spacing are read, too.
+// The thesis's text (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each node
+// and "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its place among the
+// nodes of the file, from 0; nodes that were deleted have none. Blank lines and other spacing are read, too.
 
 #include <algorithm>
 

@@ -31,9 +31,9 @@ constexpr int64_t MOST_FRAMES = 65536;
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MOST_EXPANSION = 1000;
 
-/// Held while GDCM works. It says nothing to anybody meanwhile: it would write to standard error, and the decoders in it
-/// by C's `stderr`, which points to nowhere for so long (the GNU C library lets it be assigned; file descriptor 2, where
-/// sanitizers and C++ write, is left alone).
+/// Held while GDCM works. It says nothing to anybody meanwhile: it would write to standard error, and the decoders in
+/// it by C's `stderr`, which points to nowhere for so long (the GNU C library lets it be assigned; file descriptor 2,
+/// where sanitizers and C++ write, is left alone).
 class Turn {
 public:
     Turn() : lock_(mutex())
@@ -128,7 +128,8 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// Where values of one frame may be: in the file, or in groups of values (PS3.3, C.7.6.16) of the frame or of all frames.
+/// Where values of one frame may be: in the file, or in groups of values (PS3.3, C.7.6.16) of the frame or of all
+/// frames.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)

@@ -1,6 +1,6 @@
 #pragma once
-// One DICOM file as GDCM reads it: what it says of its slices, and their pixels. GDCM is seen by this file's .cpp alone.
-// GDCM keeps process-wide state, so its calls take turns; any thread may call these.
+// One DICOM file as GDCM reads it: what it says of its slices, and their pixels. GDCM is seen by this file's .cpp
+// alone. GDCM keeps process-wide state, so its calls take turns; any thread may call these.
 
 #include <filesystem>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // The lengths that a DICOM file states, against what it holds, without reading a value (PS3.5, 7.1 to 7.5). GDCM
-// believes lengths: it takes up to 4 GiB of memory for a value before it finds that the file ends, and follows sequences
-// in sequences until its stack is full. What passes here it can read. Any thread may call this.
+// believes lengths: it takes up to 4 GiB of memory for a value before it finds that the file ends, and follows
+// sequences in sequences until its stack is full. What passes here it can read. Any thread may call this.
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 // MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines whose last one,
-// ElementDataFile, says where the voxels are: in another file or in many (MHD), or right behind it (LOCAL, MHA), bare or
-// behind zlib.
+// ElementDataFile, says where the voxels are: in another file or in many (MHD), or right behind it (LOCAL, MHA), bare
+// or behind zlib.
 
 #include <cmath>
 #include <utility>
@@ -60,8 +60,8 @@ void refuse_what_is_not_supported(const HeaderFields& fields)
 }
 
 /// Columns are the directions of x, y and z. MetaImage names no frame; where it says what the axes are to a patient, it
-/// is that of ITK, which writes most of these files: LPS. The letters themselves are left alone, since programs disagree
-/// whether they say where axes come from or where they lead.
+/// is that of ITK, which writes most of these files: LPS. The letters themselves are left alone, since programs
+/// disagree whether they say where axes come from or where they lead.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     const char* const matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

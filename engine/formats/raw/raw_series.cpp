@@ -1,5 +1,5 @@
-// Bare voxels laid out as a person says: in one file, or one slice a file, as scanners and toolkits number them (head.1,
-// head.2, ... or slice000.raw, slice001.raw, ...).
+// Bare voxels laid out as a person says: in one file, or one slice a file, as scanners and toolkits number them
+// (head.1, head.2, ... or slice000.raw, slice001.raw, ...).
 
 #include <algorithm>
 #include <utility>
@@ -79,8 +79,8 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     return slices;
 }
 
-/// As many files as there are slices, counted on from the last number in the name of the first one, which holds `bytes`;
-/// none where it has no number.
+/// As many files as there are slices, counted on from the last number in the name of the first one, which holds
+/// `bytes`; none where it has no number.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

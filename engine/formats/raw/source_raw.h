@@ -16,8 +16,8 @@ struct RawVoxels {
 
     std::filesystem::path file{};
     int64_t offset_bytes = 0;  ///< AT_END: the voxels are the last bytes of the file
-    /// Nothing: not stated. Little-endian is taken, with a warning; it says so where neighbours are more alike the other
-    /// way round.
+    /// Nothing: not stated. Little-endian is taken, with a warning; it says so where neighbours are more alike the
+    /// other way round.
     std::optional<bool> big_endian = false;
     bool is_deflated = false;   ///< gzip or zlib, from `offset_bytes` of the file on
     int64_t skip_bytes = 0;     ///< where deflated: decoded bytes before the voxels

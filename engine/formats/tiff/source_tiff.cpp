@@ -1,5 +1,5 @@
-// TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and OME-TIFF; and
-// (source_tiff_folder.cpp) a folder of such files, one slice each.
+// TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and OME-TIFF;
+// and (source_tiff_folder.cpp) a folder of such files, one slice each.
 //
 // x runs to the right, y down, z in the order of pages: right-handed, as the voxels of all formats here. Pages whose
 // Orientation is a mirrored one are mirrored back.

@@ -1,5 +1,5 @@
-// A folder of TIFFs, one slice in each, in the order of the numbers in their names. Files of other kinds are left alone;
-// two series in one folder are not guessed apart.
+// A folder of TIFFs, one slice in each, in the order of the numbers in their names. Files of other kinds are left
+// alone; two series in one folder are not guessed apart.
 
 #include <tiffio.h>
 

@@ -19,8 +19,8 @@ struct TiffSlice {
     int64_t shift_bytes = 0;
 };
 
-/// Decoded blocks, at most `MOST_BYTES` of them, at least the last one. Any thread may use it; two threads that want the
-/// same block decode it once.
+/// Decoded blocks, at most `MOST_BYTES` of them, at least the last one. Any thread may use it; two threads that want
+/// the same block decode it once.
 class TiffBlockCache {
 public:
     static constexpr size_t MOST_BYTES = size_t{64} << 20;

@@ -18,8 +18,8 @@ struct TiffDescription {
 
     /// 1 each where nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
     int64_t slices = 1, channels = 1, frames = 1;
-    /// The page (from 0) of slice z, channel c, frame t at z + slices * (c + channels * t). Empty: as ImageJ orders them,
-    /// channels fastest, then slices, then frames.
+    /// The page (from 0) of slice z, channel c, frame t at z + slices * (c + channels * t). Empty: as ImageJ orders
+    /// them, channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
     std::vector<std::string> channel_names{};  ///< may be fewer than channels, and ""
@@ -34,8 +34,8 @@ struct TiffDescription {
 /// Whether the file is read as one of several: then an OME-TIFF may speak of the others.
 enum class TiffRole { whole, slice };
 
-/// `samples` of each pixel belong to as many channels of an OME-TIFF. Fails where the description is of a known kind, but
-/// broken, or, in the role of the whole, speaks of more than this file.
+/// `samples` of each pixel belong to as many channels of an OME-TIFF. Fails where the description is of a known kind,
+/// but broken, or, in the role of the whole, speaks of more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 
 /// Spacing and unit, in `info`, with a warning for all that had to be assumed. `page` is the first one.

@@ -27,8 +27,9 @@ enum Tag : uint16_t {
     TILE_BYTE_COUNTS = 325,
 };
 
-/// Fields in which pages of one kind agree: subfile types, size, bits, compression, meaning, order of bits, orientation,
-/// samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format, sub-sampling.
+/// Fields in which pages of one kind agree: subfile types, size, bits, compression, meaning, order of bits,
+/// orientation, samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format,
+/// sub-sampling.
 constexpr std::array<bool, 531> TELLS_KIND = [] {
     std::array<bool, 531> tells{};
     for (const int tag :

@@ -1,8 +1,8 @@
 #pragma once
 // A TIFF file and its chain of directories, without libtiff: libtiff needs some microseconds for each directory, and a
-// file may have a million. What this finds is enough to know how many pages there are, which of them are alike and where
-// they start; libtiff (tiff_page.h) reads one page of each kind at opening, and others when their voxels are read.
-// Nothing changes after construction; any thread may read.
+// file may have a million. What this finds is enough to know how many pages there are, which of them are alike and
+// where they start; libtiff (tiff_page.h) reads one page of each kind at opening, and others when their voxels are
+// read. Nothing changes after construction; any thread may read.
 
 #include <array>
 #include <filesystem>

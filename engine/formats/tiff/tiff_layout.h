@@ -1,7 +1,7 @@
 #pragma once
-// What one page holds and how: size, samples, compression, and its blocks (strips or tiles). Everything a page states of
-// its blocks is held against the file before memory is taken for them. Any thread may call these; a TiffPage belongs to
-// one thread at a time.
+// What one page holds and how: size, samples, compression, and its blocks (strips or tiles). Everything a page states
+// of its blocks is held against the file before memory is taken for them. Any thread may call these; a TiffPage belongs
+// to one thread at a time.
 
 #include "engine/formats/tiff/tiff_page.h"
 #include "engine/volume/volume.h"

@@ -1,5 +1,5 @@
-// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels says how large the stack is, how far apart its voxels are
-// and in which order its planes follow; TiffData says which page holds which plane.
+// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels says how large the stack is, how far apart its voxels
+// are and in which order its planes follow; TiffData says which page holds which plane.
 
 #include <cmath>
 #include <pugixml.hpp>

@@ -1,7 +1,7 @@
 #pragma once
-// One page of a TIFF as libtiff sees it. libtiff is shown a file whose header points at that page, so opening a page costs
-// the same wherever it lies, and nothing is shared between two of them but the file: each thread opens its own. What
-// libtiff has to say goes into our sentences, never to the terminal.
+// One page of a TIFF as libtiff sees it. libtiff is shown a file whose header points at that page, so opening a page
+// costs the same wherever it lies, and nothing is shared between two of them but the file: each thread opens its own.
+// What libtiff has to say goes into our sentences, never to the terminal.
 
 #include <array>
 #include <memory>

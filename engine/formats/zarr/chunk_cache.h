@@ -26,8 +26,8 @@ public:
         auto operator<=>(const Key&) const = default;
     };
 
-    /// The block, from `make` where it is not here. What `make` throws is thrown on and not remembered: those who waited
-    /// for it try themselves.
+    /// The block, from `make` where it is not here. What `make` throws is thrown on and not remembered: those who
+    /// waited for it try themselves.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
     int64_t bytes() const;  ///< held now; above the budget only by what is the latest block alone

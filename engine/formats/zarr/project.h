@@ -8,8 +8,9 @@
 //   PROJECT/shvr/session.json     engine/session/session.h
 //
 // Files with a level are tables, one element a brick or chunk, x fastest; 64 bytes of header, then the elements in a
-// zstd frame. Header: "SHVRTAB1", kind (8 bytes), level and bytes of an element (4 each), counts x, y, z (8 each), bytes
-// of the frame (8), XXH3-64 of the 56 bytes before and the elements (8); little-endian. Any thread may call these.
+// zstd frame. Header: "SHVRTAB1", kind (8 bytes), level and bytes of an element (4 each), counts x, y, z (8 each),
+// bytes of the frame (8), XXH3-64 of the 56 bytes before and the elements (8); little-endian. Any thread may call
+// these.
 
 #include <filesystem>
 #include <span>

@@ -1,6 +1,6 @@
 #pragma once
-// What a project's folder knows of its volume besides the voxels, as far as it can be read; nothing of it is needed. For
-// source_ome_zarr.cpp.
+// What a project's folder knows of its volume besides the voxels, as far as it can be read; nothing of it is needed.
+// For source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>
@@ -16,8 +16,8 @@ struct ProjectKnowledge {
     std::vector<std::vector<std::byte>> ranges{};  ///< by level; may be empty
 };
 
-/// Puts what the record says of the volume into `info`, and makes `volumes`, its levels, expect their checksums. What is
-/// damaged is left out, with a warning: it costs what it hits, not the image.
+/// Puts what the record says of the volume into `info`, and makes `volumes`, its levels, expect their checksums. What
+/// is damaged is left out, with a warning: it costs what it hits, not the image.
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 

@@ -191,8 +191,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // Its first voxel lies in the middle of those it stands for. Where it is put on the first of them, that is taken
-        // for the lack of a translation, which older programs do not write.
+        // Its first voxel lies in the middle of those it stands for. Where it is put on the first of them, that is
+        // taken for the lack of a translation, which older programs do not write.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];

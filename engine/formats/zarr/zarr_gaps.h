@@ -3,10 +3,11 @@
 //
 // Levels of others need not be means of each other, so a part of a coarse level is a gap only where all that it stands
 // for, down to level 0, is one. That is eight times as many chunks a level: a question that would take more than
-// MOST_FILES is not answered. In chunks of 64^3 voxels that is so for bricks of level 4 and above; in chunks of 32^3, of
-// level 3 and above.
+// MOST_FILES is not answered. In chunks of 64^3 voxels that is so for bricks of level 4 and above; in chunks of 32^3,
+// of level 3 and above.
 //
-// A file is looked for once, for some microseconds, and what was found is kept in a byte a chunk. Any thread may call it.
+// A file is looked for once, for some microseconds, and what was found is kept in a byte a chunk. Any thread may call
+// it.
 
 #include <atomic>
 #include <memory>
@@ -24,9 +25,9 @@ public:
     /// `levels` are those of one image, the finest first, and must outlive it.
     explicit ZarrGaps(const std::vector<ZarrVolume>& levels);
 
-    /// The range of the values of `box`, a part of `level`, and of all it stands for in finer levels, where none of their
-    /// chunks is stored: of the fill values, lower > upper where none is finite. Nothing where one is stored, or cannot
-    /// be looked for.
+    /// The range of the values of `box`, a part of `level`, and of all it stands for in finer levels, where none of
+    /// their chunks is stored: of the fill values, lower > upper where none is finite. Nothing where one is stored, or
+    /// cannot be looked for.
     std::optional<ValueRange> range(int level, const VoxelBox& box) const;
 
 private:

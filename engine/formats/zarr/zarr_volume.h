@@ -1,9 +1,9 @@
 #pragma once
 // A volume inside a Zarr array of version 2: three of its axes, at fixed places along the others, chunk by chunk.
 //
-// A chunk that is not there holds the fill value; one that cannot be read or decoded is an `Error` with its path. Chunks
-// at the end of an axis are as large as all others, and what lies beyond the array is never looked at. Any thread may
-// call it.
+// A chunk that is not there holds the fill value; one that cannot be read or decoded is an `Error` with its path.
+// Chunks at the end of an axis are as large as all others, and what lies beyond the array is never looked at. Any
+// thread may call it.
 
 #include <filesystem>
 #include <functional>

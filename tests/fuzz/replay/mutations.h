@@ -8,7 +8,8 @@
 
 namespace shvr::fuzz {
 
-/// Lengths to which a seed is cut: every one of a small seed, `most` spread over a larger one, more of them at its start.
+/// Lengths to which a seed is cut: every one of a small seed, `most` spread over a larger one, more of them at its
+/// start.
 std::vector<size_t> cuts_of(size_t length, size_t most);
 
 /// `seed` with a value of very deep nesting before each of its first values of JSON.

@@ -1,5 +1,5 @@
-// What ambient occlusion means, without a device: closed forms, for the sum over steps and for the few looks that stand for
-// it. Whether the device makes these values is for tests/gpu/occlusion_test.cpp.
+// What ambient occlusion means, without a device: closed forms, for the sum over steps and for the few looks that stand
+// for it. Whether the device makes these values is for tests/gpu/occlusion_test.cpp.
 
 #include "engine/passes/occlusion.h"
 

@@ -61,7 +61,8 @@ bool same_bytes(const Value& a, const Value& b)
     return std::memcmp(&a, &b, sizeof(Value)) == 0;
 }
 
-/// What a search that opens every box comes by, in any order; every surface in all of the boxes that were opened for it.
+/// What a search that opens every box comes by, in any order; every surface in all of the boxes that were opened for
+/// it.
 std::vector<gpu::Surface> found_in(const std::vector<gpu::SurfaceNode>& nodes, const std::vector<gpu::Surface>& list)
 {
     std::vector<gpu::Surface> found;

@@ -1,5 +1,5 @@
-// What decides in a comparison of traces, case by case: which node stands for which branch or end, what stays near, which
-// ways there are, and what counts as an error. trace_score_test.cpp compares whole trees.
+// What decides in a comparison of traces, case by case: which node stands for which branch or end, what stays near,
+// which ways there are, and what counts as an error. trace_score_test.cpp compares whole trees.
 
 #include <cmath>
 #include <vector>

@@ -291,7 +291,8 @@ TEST_CASE("RSML in another unit of length is converted to the volume's, by its r
     const TraceSpace in_mm{{40, 30, 20}, {0.5, 0.25, 1.5}, "mm"};
     CHECK(is_scaled(read(unit("um") + resolution, in_mm), 0.25e-3));
     CHECK(is_scaled(read(unit("inch") + resolution, in_mm), 25.4 / 4.0));
-    // Pixels are voxels along x, and so are numbers of which nothing is said; a resolution without a unit has the volume's.
+    // Pixels are voxels along x, and so are numbers of which nothing is said; a resolution without a unit has the
+    // volume's.
     for (const char* pixel : {"pixel", "Pixels", "px"}) CHECK(is_scaled(read(unit(pixel), SPACE), 0.5));
     CHECK(is_scaled(read("", SPACE), 0.5));
     CHECK(is_scaled(read(unit("pixel") + "<resolution>2</resolution>", SPACE), 0.25));

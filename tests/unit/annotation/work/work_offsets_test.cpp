@@ -1,5 +1,5 @@
-// Offsets as readers of voxels see them: components of a raised volume against a breadth-first search, and where offsets
-// are found.
+// Offsets as readers of voxels see them: components of a raised volume against a breadth-first search, and where
+// offsets are found.
 
 #include "engine/annotation/work/work_offsets.h"
 

@@ -162,7 +162,8 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
 
 TEST_CASE("floats with a predictor are read in either byte order")
 {
-    // As Adobe's technical note 3 says, by hand: of a row first all highest bytes, then the next ones; then differences.
+    // As Adobe's technical note 3 says, by hand: of a row first all highest bytes, then the next ones; then
+    // differences.
     const TemporaryFolder folder;
     for (const int samples : {1, 3}) {
         TiffSpec spec{.width = 7, .height = 1, .bits = 32, .format = SAMPLEFORMAT_IEEEFP, .samples = samples};

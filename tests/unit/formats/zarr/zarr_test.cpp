@@ -387,7 +387,8 @@ TEST_CASE("ome-zarr: where a level's size was rounded down, its last voxels stan
 
 namespace {
 
-/// An image whose levels have `side`, side / 2, ... voxels along each axis, in uncompressed chunks, none of which is there.
+/// An image whose levels have `side`, side / 2, ... voxels along each axis, in uncompressed chunks, none of which is
+/// there.
 class Sparse : public TemporaryFolder {
 public:
     Sparse(int64_t side, int64_t chunk, const std::string& type, const std::vector<Json>& fills)
