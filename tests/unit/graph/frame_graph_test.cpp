@@ -455,9 +455,10 @@ size_t count_hazards(const std::vector<Event>& events)
 Event anything_in_flight(uint64_t object)
 {
     Event event;
-    for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER}) event.accesses.push_back({object, stage, true, true});
-    for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER, STAGE_HOST})
+    for (const Stages stage : {STAGE_COMPUTE, STAGE_TRANSFER}) {
+        event.accesses.push_back({object, stage, true, true});
         event.accesses.push_back({object, stage, false, true});
+    }
     return event;
 }
 
