@@ -45,8 +45,8 @@ public:
     };
     virtual std::span<const std::byte> add(const Chunk& chunk, int worker) = 0;
 
-    /// Whether the slices of `level` (1 ... 5) that are complete once `slices` of level 0 have been added include a new
-    /// layer of chunks, which begins at `slice`. Higher levels are complete at the end.
+    /// Whether a layer of chunks of `level` (1 ... 5) is complete as soon as `slices` slices of level 0 have been
+    /// added. Higher levels are complete at the end.
     bool completes_layer(int level, int64_t slices) const;
     /// Makes what needs the whole volume: levels above the sixth. Call after the last chunk.
     virtual void finish() = 0;

@@ -22,7 +22,7 @@ public:
         put(std::as_bytes(std::span(elements)));
     }
 
-    /// Replaces the file atomically; all files written before are then on the disk.
+    /// Replaces the file atomically; on return its content is on the disk.
     void write(const std::filesystem::path& file) const;
 
 private:
