@@ -18,9 +18,8 @@ bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 
 /// The files that `field` names, in order, as paths. `rest` is the text after the field's line: the names of a list,
-/// one per line. Fails unless the files can share voxels of `size` equally: there must be as many files as slices; or
-/// as many as rows, or a divisor of the number of slices, if the field's last word, the number of axes of a file, says
-/// so.
+/// one per line. Fails unless the number of files suits `size`: one per slice; or, if the field's last word (the number
+/// of axes of a file) says so, one per row, or one for each equal number of slices.
 std::vector<std::filesystem::path> data_files(const HeaderFields& fields, const char* field, std::string_view rest,
                                               const Size3& size);
 
