@@ -29,7 +29,7 @@ struct ImportCube {
     std::vector<T> values, lower, upper;
 };
 
-/// Level 0 needs ranges only if it contains NaN; such voxels have an empty range.
+/// Level 0 needs ranges only if it contains non-finite voxels, which have an empty range.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {

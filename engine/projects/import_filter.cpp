@@ -242,8 +242,8 @@ private:
         return planes_[static_cast<size_t>(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
-    /// Filters rows of a slice, from the first of `planes_`, along z. `of` selects a member of the plane; `instead`
-    /// replaces it for planes without it.
+    /// Filters rows of a slice, from the first of `planes_`, along z. `of` selects a member of the plane; for
+    /// planes without it, all its numbers count as 1.
     void filter_z(int64_t z, int64_t row, std::vector<Number<T>> Plane<T>::*of, Number<T>* out) const
     {
         const auto row_of = [&](int64_t at) {

@@ -79,8 +79,8 @@ VolumeStatistics measure_integers(const VolumeSource& source)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Outliers are few and far: at most this share of the voxels at each end, or one of a thousand or more; and this many
-/// times the range of all others away.
+/// Outliers are few: at most this share of the voxels at each end, or one of a thousand or more. And they are far: this
+/// many times the range of all other voxels away.
 constexpr double OUTLIER_SHARE = 1e-5;
 constexpr int64_t FEWEST_VOXELS = 1000;
 constexpr double OUTLIER_DISTANCE = 4.0;

@@ -271,7 +271,7 @@ TiffDirectories read_directories(const TiffFile& file)
     StripCheck strips(file);
     KindFinder kind;
     uint64_t directory_bytes = 0;
-    // Brent's cycle detection: remembers a page, and a new one each time the distance from it has doubled.
+    // Brent's cycle detection: remembers a page, and replaces it at every power of two.
     uint64_t remembered = 0;
     for (uint64_t offset = file.first_directory(); offset != 0; offset = reader.next()) {
         const size_t page = directories.pages.size() + 1;
