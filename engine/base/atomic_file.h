@@ -1,6 +1,6 @@
 #pragma once
-// Saving without a moment at which the old content is gone and the new one is not there yet: a temporary file in the
-// same folder is written, synced and renamed over the old one, then the folder is synced. Any thread may call it.
+// Saves a file such that either the old or the new content is there at any moment: a temporary file in the same folder
+// is written, synced and renamed over the old one, then the folder is synced. Any thread may call it.
 
 #include <cstddef>
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace shvr {
 
-/// Makes `path` a file with exactly this content. A file that was there keeps its permissions; a symbolic link is
-/// replaced, not followed; what is no regular file (a folder, /dev/null) is refused. Fails with the path and the
-/// system's reason; then the temporary file is gone and the old file untouched, byte for byte. The one exception is
-/// said in its message: the folder could not be synced after the rename.
+/// Makes `path` a file with exactly this content. An existing file keeps its permissions; a symbolic link is replaced,
+/// not followed; anything but a regular file (a folder, /dev/null) is refused. Fails with the path and the system's
+/// reason; the temporary file is then removed and the old file untouched, byte for byte. The one exception, which the
+/// message states: the folder could not be synced after the rename.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace shvr

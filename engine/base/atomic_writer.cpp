@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Permissions of the file that will be replaced, if there is one.
+/// Permissions of the file to be replaced, if it exists.
 std::optional<mode_t> permissions_of_old_file(const fs::path& path)
 {
     if (!path.has_filename()) fail("'", path.string(), "': cannot be written; expected the name of a file");
@@ -60,7 +60,7 @@ void AtomicWriter::append(std::span<const std::byte> content)
         const ssize_t count = ::write(descriptor_.number(), content.data(), content.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) refuse(errno);
-        // Some network file systems say "nothing written" where they mean "full".
+        // Some network file systems report "nothing written" for "full".
         if (count == 0) refuse(ENOSPC);
         content = content.subspan(static_cast<size_t>(count));
     }
@@ -90,7 +90,7 @@ void AtomicWriter::read_back(int64_t offset, std::span<std::byte> content) const
 
 void AtomicWriter::commit()
 {
-    // File systems without permissions refuse this, and then there are none to keep.
+    // File systems without permissions refuse this; then there is nothing to keep.
     if (old_permissions_ && ::fchmod(descriptor_.number(), *old_permissions_) != 0 && errno != EPERM &&
         errno != ENOTSUP) {
         refuse(errno);
@@ -105,8 +105,8 @@ void AtomicWriter::commit()
 
 FileDescriptor AtomicWriter::create()
 {
-    // The name does not contain the target's, which may be as long as names can be. A file of that name was left by a
-    // dead process with our number.
+    // The name does not contain the target's, which may have the maximum length already. An existing file of that name
+    // was left by a dead process with our process id.
     static std::atomic<unsigned> count = 0;
     while (true) {
         temporary_ = target_.parent_path() / sentence(".shvr-", ::getpid(), "-", count++, ".tmp");

@@ -1,6 +1,6 @@
 #pragma once
-// Writing a file so that it is either all there or not there: the bytes go into a temporary file beside the target,
-// which is synced and renamed over it at the end. Without `commit` the target stays as it was and the temporary goes.
+// Writes a file all or nothing: the bytes go into a temporary file beside the target, which is synced and renamed over
+// it at the end. Without `commit` the target stays as it was and the temporary file is removed.
 //
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
 
@@ -15,24 +15,24 @@
 
 namespace shvr {
 
-/// Makes a new or renamed file survive a power cut: syncs the folder that holds it.
+/// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
 class AtomicWriter {
 public:
-    /// Refuses what is neither a regular file nor absent. A symbolic link will be replaced, not followed.
+    /// Refuses an existing path that is not a regular file. A symbolic link will be replaced, not followed.
     explicit AtomicWriter(const std::filesystem::path& path);
     ~AtomicWriter();
     AtomicWriter(const AtomicWriter&) = delete;
     AtomicWriter& operator=(const AtomicWriter&) = delete;
 
     void append(std::span<const std::byte> content);
-    /// For formats that go back and change what they wrote. Not together with `append`.
+    /// For formats that patch what they have written. Not together with `append`.
     void write_at(int64_t offset, std::span<const std::byte> content);
-    /// Fails where not so much was written.
+    /// Fails if fewer bytes were written.
     void read_back(int64_t offset, std::span<std::byte> content) const;
-    /// Syncs, renames, and syncs the folder, so that the new file survives a power cut. Keeps the old one's
-    /// permissions.
+    /// Syncs, renames, and syncs the folder, so that the new file survives a power cut. Keeps the permissions of the
+    /// old file.
     void commit();
 
 private:

@@ -1,9 +1,9 @@
 #pragma once
-// Errors of the world and errors of ours.
+// Errors of the outside world, and our own bugs.
 //
 // `fail(...)` throws `Error` with one sentence: subject, value found, value expected. It is caught only in `main`, at
-// the edge of a job and in the application. `SHVR_CHECK` guards what can only be our own mistake; it stays on in
-// release, prints both sides and aborts. Any thread may call either.
+// the edge of a job and in the application. `SHVR_CHECK` asserts what only a bug of ours can break; it stays on in
+// release, prints the claim and the values and aborts. Any thread may call either.
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// The world's mistake: a file, an argument, a device. `what()` is one sentence for the person at the keyboard.
+/// The cause is outside the program: a file, an argument, a device. `what()` is one sentence for the user.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -25,7 +25,7 @@ public:
     using Error::Error;
 };
 
-/// A comparison or gate that did not hold (exit status 3).
+/// A comparison or gate that failed (exit status 3).
 class GateError : public Error {
 public:
     using Error::Error;

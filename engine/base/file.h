@@ -1,6 +1,6 @@
 #pragma once
-// Reading whole files, with words for everything that is not one. Only regular files are read: opening a FIFO would
-// wait for ever and /dev/zero never ends. The size is checked before memory is taken. Any thread may call these.
+// Reads whole files, with a clear message for anything that is not a regular file: opening a FIFO would block for ever
+// and /dev/zero never ends. The size is checked before memory is allocated. Any thread may call these.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace shvr {
 
-/// The whole file. Fails where there is none, where it is no regular file, cannot be read, holds more than `max_bytes`
-/// or became shorter meanwhile.
+/// The whole file. Fails if it is missing, not a regular file, unreadable, larger than `max_bytes`, or shrinks while it
+/// is read.
 std::vector<std::byte> read_file(const std::filesystem::path& path, int64_t max_bytes);
-/// The same bytes as text; neither encoding nor line ends are changed.
+/// The same bytes as text; encoding and line ends are unchanged.
 std::string read_text(const std::filesystem::path& path, int64_t max_bytes);
 
-/// Whether there is a regular file; whatever keeps that from being known means no.
+/// Whether it is a regular file; false if that cannot be determined.
 bool is_file(const std::filesystem::path& path);
 
-/// "No space left on device" for ENOSPC; unlike strerror free of shared state.
+/// "No space left on device" for ENOSPC; unlike strerror, without shared state.
 std::string reason_of(int error_number);
 
 /// Owns a POSIX file descriptor.

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// Neither infinite nor NaN, along any axis.
+/// Whether no component is infinite or NaN.
 inline bool is_finite(const glm::dvec3& vector)
 {
     return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);

@@ -9,7 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/plane.h"
 
-// Names of constants, where short, are those of the paper.
+// Short names of constants are those of the paper.
 
 namespace shvr {
 namespace {
@@ -31,7 +31,7 @@ const glm::dmat3 RGB_TO_XYZ = make_rgb_to_xyz();
 const glm::dmat3 XYZ_TO_RGB = glm::inverse(RGB_TO_XYZ);
 const glm::dvec3 WHITE = RGB_TO_XYZ * glm::dvec3(1.0);
 
-/// The linear opponent space in which contrast sensitivity is known.
+/// The linear opponent space in which contrast sensitivity was measured.
 glm::dvec3 ycxcz_of_rgb(const glm::dvec3& rgb)
 {
     const glm::dvec3 xyz = RGB_TO_XYZ * rgb / WHITE;
@@ -77,8 +77,8 @@ Planes ycxcz_planes(const Image8& image)
 
 // ---- Colour difference ----------------------------------------------------------------------------------------------
 
-/// Sensitivity of the eye to contrast in one channel, as a sum of Gaussians a sqrt(pi/b) exp(-pi^2 d^2 / b) of the
-/// distance d in degrees.
+/// The eye's contrast sensitivity in one channel, as a sum of Gaussians a sqrt(pi/b) exp(-pi^2 d^2 / b) of the distance
+/// d in degrees.
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
@@ -86,7 +86,7 @@ constexpr Sensitivity ACHROMATIC{1.0, 0.0047, 0.0, 1e-5};
 constexpr Sensitivity RED_GREEN{1.0, 0.0053, 0.0, 1e-5};
 constexpr Sensitivity BLUE_YELLOW{34.1, 0.04, 13.5, 0.025};
 
-/// The sum is scaled so that its weights in the plane add up to 1; each of its Gaussians is separable.
+/// The sum is normalised so that its weights in the plane add up to 1; each of its Gaussians is separable.
 Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double pixels_per_degree)
 {
     const auto sigma_of = [&](double b) { return std::sqrt(b / 2.0) / std::numbers::pi * pixels_per_degree; };
@@ -123,14 +123,14 @@ glm::dvec3 hunt_lab_at(const Planes& ycxcz, size_t pixel)
     return hunt_lab_of_rgb(glm::clamp(rgb_of_ycxcz(color), 0.0, 1.0));
 }
 
-/// HyAB distance, compressed: large differences count less than in proportion.
+/// HyAB distance, compressed: large differences count less than proportionally.
 double color_distance(const glm::dvec3& a, const glm::dvec3& b)
 {
     constexpr double QC = 0.7;
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), QC);
 }
 
-/// 0..largest becomes 0..1, of which the distances below PC * largest take PT.
+/// Maps 0..largest to 0..1; distances below PC * largest map to 0..PT.
 double remapped(double distance, double largest)
 {
     constexpr double PC = 0.4, PT = 0.95;
@@ -140,7 +140,7 @@ double remapped(double distance, double largest)
 
 // ---- Feature difference ---------------------------------------------------------------------------------------------
 
-/// Strength of edges and of points (thin lines, dots) in the brightness before any blur.
+/// Strength of edges and of points (thin lines, dots) in the unblurred brightness.
 struct Features {
     Plane edges, points;
 };
@@ -153,7 +153,7 @@ void balance(std::vector<double>& weights)
     for (double& weight : weights) weight /= weight > 0.0 ? above : below;
 }
 
-/// Length of the vector of the two filtered pictures: `derivative` across and along the rows, `smooth` the other way.
+/// Length of the vector of two filtered pictures: `derivative` along x with `smooth` along y, and the other way round.
 Plane magnitude(const Plane& plane, const std::vector<double>& derivative, const std::vector<double>& smooth)
 {
     Plane result = filtered(plane, derivative, smooth);

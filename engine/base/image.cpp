@@ -10,7 +10,7 @@ namespace {
 
 uint8_t byte_of(double share)
 {
-    // Written so that NaN ends as 0; lround has no defined value for it.
+    // Written so that NaN becomes 0; lround is undefined for it.
     if (!(share > 0.0)) return 0;
     return static_cast<uint8_t>(std::lround(std::min(share, 1.0) * 255.0));
 }

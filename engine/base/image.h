@@ -1,6 +1,6 @@
 #pragma once
-// Pictures in memory, and the way from light to bytes. Compositing happens in linear light; sRGB is applied once, here,
-// on the way out. Plain values; any thread may use its own.
+// Pictures in memory, and the conversion from light to bytes. Compositing happens in linear light; sRGB is applied
+// once, here, on output. Plain values; any thread may use its own.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace shvr {
 
-/// What files hold: 8-bit sRGB with straight (not premultiplied) alpha, RGBA, rows from the top.
+/// Pictures as files store them: 8-bit sRGB with straight (not premultiplied) alpha, RGBA, rows from the top.
 struct Image8 {
     int width = 0, height = 0;
     std::vector<uint8_t> rgba;  ///< 4 * width * height
     bool operator==(const Image8&) const = default;
 };
 
-/// What the renderer makes: linear light, RGB premultiplied by alpha, unclamped, rows from the top.
+/// Pictures as the renderer makes them: linear light, RGB premultiplied by alpha, unclamped, rows from the top.
 struct ImageF {
     int width = 0, height = 0;
     std::vector<float> rgba;  ///< 4 * width * height
@@ -24,14 +24,14 @@ struct ImageF {
 
 /// The exact piecewise curve of IEC 61966-2-1 from linear light to sRGB, both in 0..1; not clamped.
 double srgb_encode(double linear);
-/// The inverse. Where the pieces meet, the standard's rounded constants leave 3e-9 between the two.
+/// The inverse. The standard's rounded constants leave a gap of 3e-9 where the pieces meet.
 double srgb_decode(double encoded);
 
 /// Un-premultiplies, clamps to 0..1, encodes and rounds to nearest. Alpha is not encoded. A pixel whose alpha rounds to
 /// 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` tells whether there is any.
 Image8 to_image8(const ImageF& image);
 
-/// Values (not pixels) that are NaN or infinite. A picture with any is wrong; the caller says so.
+/// Counts values (not pixels) that are NaN or infinite. Any such value is a defect, which the caller reports.
 size_t count_not_finite(const ImageF& image);
 
 }  // namespace shvr

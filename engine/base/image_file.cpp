@@ -18,10 +18,10 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// The largest pictures hold 1 GiB of pixels, which noise does not compress.
+// The largest pictures hold 1 GiB of pixels, which do not compress if they are noise.
 constexpr int64_t LARGEST_PNG_FILE = int64_t{2} << 30;
 
-// No deflate stream grows by more.
+// The maximum expansion of a deflate stream.
 constexpr int64_t LARGEST_DEFLATE_RATIO = 1032;
 
 constexpr size_t SIGNATURE_BYTES = 8;
@@ -35,7 +35,7 @@ int64_t number_at(Bytes file, size_t offset)
     return number;
 }
 
-/// Bits a pixel from the depth and colour type in the header; nothing where the type does not exist.
+/// Bits per pixel from the depth and colour type in the header; nothing if the type does not exist.
 std::optional<int64_t> bits_of_pixel(Bytes file)
 {
     const auto depth = std::to_integer<int64_t>(file[24]);
@@ -57,7 +57,7 @@ void check_size(int64_t width, int64_t height, std::string_view name)
     }
 }
 
-/// libpng stops reading after the last row; a file cut in its last bytes would pass.
+/// libpng stops reading after the last row, so it would accept a file whose last bytes are missing.
 void check_chunks(Bytes file, std::string_view name)
 {
     for (size_t start = SIGNATURE_BYTES; start + CHUNK_FRAME_BYTES <= file.size();) {
@@ -67,7 +67,7 @@ void check_chunks(Bytes file, std::string_view name)
     fail(name, ": ends after ", file.size(), " bytes; expected an IEND chunk");
 }
 
-/// Everything that is checked before the pixels take memory.
+/// All checks made before memory is allocated for the pixels.
 void check_file(Bytes file, std::string_view name)
 {
     static constexpr std::array<std::byte, SIGNATURE_BYTES> SIGNATURE{std::byte{0x89}, std::byte{'P'},  std::byte{'N'},
@@ -88,7 +88,7 @@ void check_file(Bytes file, std::string_view name)
     check_chunks(file, name);
 }
 
-/// libpng's simplified interface, which reports errors by return value, so that no longjmp passes our destructors.
+/// libpng's simplified interface, which reports errors by return value, so no longjmp skips our destructors.
 struct PngImage {
     png_image image{};
 
@@ -108,7 +108,7 @@ Image8 decode_png(Bytes file, std::string_view name)
         fail(name, ": is not a valid PNG file: ", png.image.message);
     }
     png.image.format = PNG_FORMAT_RGBA;
-    // Otherwise 16-bit files without a gAMA chunk count as linear, which hardly any of them is.
+    // Without this flag, 16-bit files without a gAMA chunk count as linear, which hardly any of them is.
     png.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     Image8 decoded{static_cast<int>(png.image.width), static_cast<int>(png.image.height),
                    std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
@@ -152,14 +152,14 @@ void write_pfm(const std::filesystem::path& path, const ImageF& image)
     const auto row_values = 4 * static_cast<size_t>(image.width);
     const auto rows = static_cast<size_t>(image.height);
     SHVR_CHECK(image.rgba.size() == row_values * rows, image.rgba.size(), " != ", row_values * rows);
-    // The sign of the scale tells the byte order: negative is little endian.
+    // The sign of the scale gives the byte order: negative is little-endian.
     const char* scale = std::endian::native == std::endian::little ? "-1.0" : "1.0";
     const std::string header = sentence("PF\n", image.width, " ", image.height, "\n", scale, "\n");
     constexpr size_t PIXEL_BYTES = 3 * sizeof(float);
     std::vector<std::byte> file(header.size() + PIXEL_BYTES * (row_values / 4) * rows);
     std::memcpy(file.data(), header.data(), header.size());
     std::byte* next = file.data() + header.size();
-    for (size_t row = rows; row-- > 0;) {  // from the bottom
+    for (size_t row = rows; row-- > 0;) {  // from the bottom up
         for (size_t at = row * row_values; at < (row + 1) * row_values; at += 4) {
             std::memcpy(next, &image.rgba[at], PIXEL_BYTES);
             next += PIXEL_BYTES;

@@ -35,7 +35,7 @@ Plane luma_of(const Image8& image)
     return luma;
 }
 
-/// Mean over the window around each pixel of the product of both.
+/// The mean over the window around each pixel of the product of both planes.
 Plane window_means(Plane a, const Plane& b, const std::vector<double>& window)
 {
     std::transform(a.values.begin(), a.values.end(), b.values.begin(), a.values.begin(), std::multiplies());
@@ -70,7 +70,7 @@ double ssim_of(const Plane& a, const Plane& b)
 PixelDifference compare_pixels(const Image8& a, const Image8& b)
 {
     check_comparable(a, b);
-    // Integers, so that the result does not depend on the order of summation.
+    // Integers, so the result does not depend on the order of summation.
     std::array<int64_t, 4> sums{};
     int64_t sum_of_squares = 0, over_1 = 0, over_4 = 0;
     int largest = 0;
@@ -131,7 +131,7 @@ std::optional<std::string> why_not_within(const PixelDifference& difference, con
 {
     std::string reasons;
     const auto check = [&](const char* what, double found, double limit, const char* unit) {
-        // Written so that NaN is over every limit.
+        // Written so that NaN exceeds every limit.
         if (found <= limit) return;
         if (!reasons.empty()) reasons += "; ";
         reasons += sentence(what, " is ", found, unit, ", expected at most ", limit, unit);

@@ -1,7 +1,7 @@
 #pragma once
-// How much two pictures of the same size differ: numbers to report, and tolerances to hold a picture to. Everything
-// compares the stored bytes, sRGB with straight alpha; nothing is composited. Alpha counts as a fourth channel where a
-// comment says "all channels"; SSIM and FLIP see RGB only. Any thread may call these.
+// How much two pictures of the same size differ: numbers to report, and tolerances for gates. Everything compares the
+// stored bytes, sRGB with straight alpha; nothing is composited. Alpha counts as a fourth channel where a comment says
+// "all channels"; SSIM and FLIP use RGB only. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -10,30 +10,30 @@
 
 namespace shvr {
 
-/// What is cheap to compute and good to gate on.
+/// Metrics that are cheap to compute and suitable for gates.
 struct PixelDifference {
     double max_abs = 0.0;           ///< 8-bit levels, all channels
     double rmse = 0.0;              ///< 8-bit levels, all channels
-    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); nothing where the pictures are equal (it is infinite)
-    double mean_error = 0.0;        ///< |mean of the signed difference| / 255, largest of all channels: a tint
-    double fraction_over_1 = 0.0;   ///< of the pixels, those where any channel differs by more than 1 level
+    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); nothing if the pictures are equal (it is infinite)
+    double mean_error = 0.0;        ///< |mean of the signed difference| / 255, maximum over all channels: a tint
+    double fraction_over_1 = 0.0;   ///< fraction of pixels with any channel off by more than 1 level
     double fraction_over_4 = 0.0;   ///< the same for 4 levels
 };
 
 struct ImageDifference : PixelDifference {
     /// Mean structural similarity of luma (0.2126, 0.7152, 0.0722 of encoded RGB), Wang et al. 2004: windows of 11 x 11
-    /// pixels, Gaussian of sigma 1.5, only windows inside the picture. Where none fits, all pixels count and the
-    /// picture goes on with its outermost ones. 1 where the pictures are equal.
+    /// pixels, Gaussian of sigma 1.5, only windows inside the picture. If none fits, windows around all pixels count
+    /// and the picture's border is repeated. 1 if the pictures are equal.
     double ssim = 1.0;
     double flip_mean = 0.0;  ///< flip.h, at the default distance
-    double flip_p99 = 0.0;   ///< at least 99 % of the pixels are at or below it
+    double flip_p99 = 0.0;   ///< 99th percentile
 };
 
-/// Both fail where the sizes differ, and name them.
+/// Both fail if the sizes differ, and state them.
 PixelDifference compare_pixels(const Image8& a, const Image8& b);
 ImageDifference compare(const Image8& a, const Image8& b);
 
-/// Opaque picture of |a - b| * gain, for eyes. A difference of alpha shows as grey.
+/// Opaque picture of |a - b| * gain, for viewing. A difference in alpha shows as grey.
 Image8 difference_picture(const Image8& a, const Image8& b, double gain = 16.0);
 
 struct Tolerance {
@@ -42,10 +42,10 @@ struct Tolerance {
     double max_mean_error = 0.0;       ///< as PixelDifference::mean_error
 };
 inline constexpr Tolerance EXACT_TOLERANCE{};
-/// The same arithmetic on another driver or processor. The mean catches a tiny bias that is everywhere.
+/// For the same arithmetic on another driver or processor. The mean catches a tiny bias that is everywhere.
 inline constexpr Tolerance TIGHT_TOLERANCE{.max_abs = 2.0, .max_fraction_over_1 = 0.0005, .max_mean_error = 1e-4};
 
-/// Every limit that is exceeded, with the value found; nothing where all hold.
+/// Every limit that is exceeded, with the value found; nothing if none is.
 std::optional<std::string> why_not_within(const PixelDifference& difference, const Tolerance& tolerance);
 
 }  // namespace shvr

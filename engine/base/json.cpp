@@ -16,9 +16,9 @@ using nlohmann::json;
 
 constexpr size_t LONGEST_QUOTE = 60;
 constexpr size_t LONGEST_REASON = 200;
-constexpr double LARGEST_WHOLE = 9007199254740992.0;  // 2^53: above it a double no longer tells neighbours apart
+constexpr double LARGEST_WHOLE = 9007199254740992.0;  // 2^53: above it, doubles cannot represent every whole number
 
-/// At most LONGEST_QUOTE bytes, cut between characters of UTF-8.
+/// At most LONGEST_QUOTE bytes, never cutting a UTF-8 character.
 std::string shortened(std::string text)
 {
     if (text.size() <= LONGEST_QUOTE) return text;
@@ -27,7 +27,7 @@ std::string shortened(std::string text)
     return text.substr(0, end) + "...";
 }
 
-/// On one line; JSON escapes all control characters but the last one.
+/// On one line; JSON escapes all control characters except DEL.
 std::string shown(const json& value)
 {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -42,8 +42,7 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// What the parser says is wrong, without what it would have expected there, in printable ASCII: it quotes bytes as
-/// they are.
+/// The parser's error, without what it expected there, in printable ASCII: it quotes bytes unchanged.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
@@ -55,9 +54,9 @@ std::string reason_of(const json::exception& error)
     return reason;
 }
 
-/// Goes through a text and refuses what is not JSON, and what the parser itself lets pass: depth, and a key given
-/// twice, of which it would silently keep the last. A pass of its own: given to the parser as its callback, it would
-/// make that one search the whole of an array at the end of each element.
+/// Checks a text and refuses what is not JSON, and two things the parser itself accepts: deep nesting, and repeated
+/// keys, of which it would silently keep the last. This is a separate pass: as the parser's callback, it would make the
+/// parser search a whole array at the end of each element.
 class Strictness : public nlohmann::json_sax<json> {
 public:
     Strictness(const std::string& origin, const JsonLimits& limits) : origin_(&origin), limits_(limits) {}
@@ -100,7 +99,7 @@ private:
 
     const std::string* origin_;
     JsonLimits limits_;
-    std::vector<std::set<std::string>> keys_;  ///< of each level that is open
+    std::vector<std::set<std::string>> keys_;  ///< of each open level
 };
 
 std::string joined(const std::string& before, const std::string& name)
@@ -108,7 +107,7 @@ std::string joined(const std::string& before, const std::string& name)
     return before.empty() ? name : before + "." + name;
 }
 
-/// The key of `wanted`, which is looked for in and below `value`; nothing where it is not there.
+/// The key of `wanted`, searched for in and below `value`; nothing if it is not there.
 std::optional<std::string> key_below(const json& value, const json* wanted, const std::string& key)
 {
     if (&value == wanted) return key;
@@ -149,7 +148,7 @@ NumberRange above_zero(double lower, double upper)
 JsonDocument::JsonDocument(std::string_view text, std::string origin, const JsonLimits& limits)
     : origin_(std::move(origin))
 {
-    // The parser would take a zero byte for the end.
+    // The parser would take a zero byte for the end of the text.
     if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
         fail(origin_, ": is not JSON: byte ", zero + 1, " is zero; expected ", limits.expected);
     Strictness strictness(origin_, limits);
@@ -290,7 +289,7 @@ int64_t JsonNode::whole(int64_t lower, int64_t upper) const
 {
     std::optional<int64_t> whole;
     if (exists() && value_->is_number_integer()) {
-        // What does not fit into int64_t is unsigned.
+        // Numbers beyond int64_t are stored as unsigned.
         const bool fits = !value_->is_number_unsigned() || value_->get<uint64_t>() <= uint64_t{INT64_MAX};
         if (fits) whole = value_->get<int64_t>();
     } else if (is_number()) {

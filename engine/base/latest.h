@@ -1,14 +1,14 @@
 #pragma once
-// The latest value, from one thread to another, without a lock: three slots, of which the writer owns one, the reader
-// owns one, and the third is exchanged. Neither side ever waits or allocates; values the reader did not take in time
-// are lost, by design. (The triple buffer; see also farbot's RealtimeObject.)
+// Passes the latest value from one thread to another without a lock, in three slots: the writer owns one, the reader
+// owns one, and they exchange the third. Neither side ever waits or allocates; values that the reader did not take in
+// time are lost, by design. (The triple buffer; see also farbot's RealtimeObject.)
 //
 //     Latest<Pose> latest;
 //     latest.writing() = pose; latest.publish();      // writer: any number of fields, then publish
 //     if (latest.take()) use(latest.value());         // reader: value() stays as it is until the next take()
 //
-// One writing and one reading thread. Copying T must not throw; what a slot holds before it is written is T{} or,
-// later, some older value, so a writer must set every field.
+// One writing and one reading thread. Copying T must not throw. Before it is written, a slot holds T{} or, later, some
+// older value, so a writer must set every field.
 
 #include <array>
 #include <atomic>
@@ -27,7 +27,7 @@ public:
         publish();
     }
 
-    /// True where something was published since the last call; value() is then the latest.
+    /// True if something was published since the last call; value() is then the latest.
     bool take() noexcept
     {
         if (!(shared_.load(std::memory_order_relaxed) & FRESH)) return false;
@@ -38,11 +38,11 @@ public:
 
 private:
     static constexpr uint32_t SLOT = 3;   ///< bits of a slot's index
-    static constexpr uint32_t FRESH = 4;  ///< the shared slot holds what the reader has not seen
+    static constexpr uint32_t FRESH = 4;  ///< the reader has not taken the shared slot yet
     static_assert(std::atomic<uint32_t>::is_always_lock_free);
 
     std::array<T, 3> slots_{};
-    // On lines of their own: otherwise both threads would fight over one.
+    // On separate cache lines, to avoid false sharing between the threads.
     alignas(64) uint32_t writer_ = 0;
     alignas(64) std::atomic<uint32_t> shared_{1};
     alignas(64) uint32_t reader_ = 2;

@@ -1,6 +1,6 @@
 #pragma once
-// One channel of a picture as doubles, and separable filters over it: what the metrics compute with. Plain values; any
-// thread may use its own.
+// One channel of a picture as doubles, and separable filters over it, for the metrics. Plain values; any thread may use
+// its own.
 
 #include <cstddef>
 #include <span>
@@ -19,11 +19,11 @@ struct Plane {
     {}
 };
 
-/// Correlation with `across` along rows and `down` along columns; both have odd lengths, their middle is the pixel
-/// itself. Beyond the border the picture goes on with its outermost pixels.
+/// Correlation with `across` along rows and `down` along columns; both have odd lengths, and their middle is the pixel
+/// itself. The picture's border is repeated outwards.
 Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down);
 
-/// exp(-x^2 / (2 sigma^2)) for x = -radius..radius, scaled to a sum of 1.
+/// exp(-x^2 / (2 sigma^2)) for x = -radius..radius, normalised to a sum of 1.
 std::vector<double> gaussian_weights(double sigma, int radius);
 
 }  // namespace shvr

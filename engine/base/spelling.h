@@ -1,6 +1,6 @@
 #pragma once
-// How the values of an enumeration are spelled in files and messages, once for each: a table beside the enumeration,
-// and a function `spellings_of(Enumeration)` that gives it, which is found by the type of its argument.
+// How the values of an enumeration are spelled in files and messages, in one place: a table beside the enumeration, and
+// a function `spellings_of(Enumeration)` that returns it and is found by argument-dependent lookup.
 //
 //   enum class Paging { automatic, always, never };
 //   inline constexpr Spelling<Paging> PAGINGS[] = {{Paging::automatic, "automatic"}, ...};

@@ -1,5 +1,5 @@
 #pragma once
-// Text that comes from strangers: trimmed, split, read strictly as numbers, and made safe to quote in a message. Any
+// Handles untrusted text: trims it, splits it, parses numbers strictly, and makes it safe to quote in a message. Any
 // thread.
 
 #include <cstdint>
@@ -21,21 +21,21 @@ inline bool is_digit(char character)
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text);
-/// Whether it would change what a terminal does.
+/// Whether it contains control characters, which terminals interpret.
 bool has_controls(std::string_view text);
-/// With a question mark for each such character.
+/// With each such character replaced by a question mark.
 std::string printable(std::string_view text);
 /// For messages: in quotes, at most 60 characters, no control characters.
 std::string in_quotes(std::string_view text);
-/// The text up to the next line end, which is taken off `rest` as well; "\r\n" counts as one.
+/// The text up to the next line end, removed from `rest` together with that line end; "\r\n" counts as one.
 std::string_view take_line(std::string_view& rest);
 
 std::optional<int64_t> whole_of(std::string_view word);
 std::optional<double> number_of(std::string_view word);  ///< may be NaN or infinite
 
-/// The shortest digits that are read back as the same number.
+/// The shortest digits that parse back to the same number.
 std::string digits_of(double value);
-std::string digits_of(const glm::dvec3& value);  ///< with spaces between
+std::string digits_of(const glm::dvec3& value);  ///< separated by spaces
 std::string digits_of(const glm::i64vec3& value);
 
 }  // namespace shvr

@@ -7,9 +7,9 @@ namespace shvr {
 class WorkPool::Batch {
 public:
     Task run;
-    int64_t next = 0;     ///< the first task that has not begun
-    int64_t end = 0;      ///< tasks from here on are none, or dropped
-    int64_t running = 0;  ///< begun and not finished
+    int64_t next = 0;     ///< the first task not yet begun
+    int64_t end = 0;      ///< later tasks do not exist or were dropped
+    int64_t running = 0;  ///< begun but not finished
     std::exception_ptr failure;
 
     bool is_finished() const { return next >= end && running == 0; }
@@ -55,7 +55,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
     const auto is_finished = [&] { return batch->is_finished(); };
     for (;;) {
         if (!poll_) finished_.wait(lock, is_finished);
-        // Where every batch is shorter than the interval, it is over at some time nevertheless.
+        // Checked against the clock, so that batches shorter than the interval get polled too.
         const bool is_due = poll_ && std::chrono::steady_clock::now() >= polled_ + POLL_INTERVAL;
         if (!is_due && finished_.wait_until(lock, polled_ + POLL_INTERVAL, is_finished)) break;
         lock.unlock();
@@ -68,7 +68,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
         polled_ = std::chrono::steady_clock::now();
         lock.lock();
         if (!failure) continue;
-        // What its tasks use may go away with the caller.
+        // Drops the tasks not yet begun: the caller may free what they use.
         batch->end = std::min(batch->end, batch->next);
         finished_.wait(lock, is_finished);
         std::rethrow_exception(failure);

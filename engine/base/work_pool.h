@@ -1,10 +1,9 @@
 #pragma once
-// Worker threads for long work that is cut into many small tasks. Tasks come in batches; a batch that is urgent goes
-// before those that are not. The first exception of a batch drops the tasks of it that have not begun, and is thrown to
-// whoever waits.
+// Worker threads for long work that is split into many small tasks. Tasks come in batches; urgent batches run before
+// others. The first exception in a batch drops its tasks that have not begun, and is rethrown to the waiting thread.
 //
-// One thread owns the pool: it starts batches and waits for them. A task may use everything that outlives its batch;
-// `worker` (0 ... workers() - 1) tells which scratch memory is its own.
+// One thread owns the pool: it starts batches and waits for them. A task may use anything that outlives its batch;
+// `worker` (0 ... workers() - 1) selects its own scratch memory.
 
 #include <chrono>
 #include <condition_variable>
@@ -23,11 +22,11 @@ class WorkPool {
 public:
     using Task = std::function<void(int64_t task, int worker)>;
 
-    /// `poll` is called every 50 ms by a thread that waits, for one batch or for many short ones; what it throws ends
-    /// the batch that is waited for and is thrown on.
-    /// `before_task` is called by workers before every task; what it throws is as if the task had thrown it.
+    /// A waiting thread calls `poll` every 50 ms, whether it waits for one batch or many short ones; an exception from
+    /// `poll` ends the batch being waited for and is rethrown. Workers call `before_task` before every task; an
+    /// exception from it counts as one from the task.
     explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
-    /// Drops what has not begun, and waits for the rest.
+    /// Drops tasks that have not begun, and waits for the rest.
     ~WorkPool();
     WorkPool(const WorkPool&) = delete;
 
@@ -37,7 +36,7 @@ public:
     class Batch;
     std::shared_ptr<Batch> start(int64_t tasks, Task run, Urgency urgency = Urgency::normal);
     void wait(const std::shared_ptr<Batch>& batch);
-    /// Both.
+    /// Starts a batch and waits for it.
     void run(int64_t tasks, Task run, Urgency urgency = Urgency::urgent)
     {
         wait(start(tasks, std::move(run), urgency));

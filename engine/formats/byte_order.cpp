@@ -39,7 +39,7 @@ uint64_t swapped64(uint64_t bits)
     return __builtin_bswap64(bits);
 }
 
-/// Of how many pairs of neighbours along x the two are nearer to each other in one byte order than in the other.
+/// Counts the pairs of neighbours along x that are closer to each other in one byte order than in the other.
 struct Votes {
     int64_t little = 0;
     int64_t big = 0;
@@ -89,7 +89,7 @@ void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
 
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes)
 {
-    constexpr int64_t ROWS = 64;  // through the middle: the first slices may be air
+    constexpr int64_t ROWS = 64;  // from the middle: the first slices may be air
     constexpr int64_t MOST_VOXELS = 4096;
     Votes votes;
     const auto voxel_bytes = static_cast<int64_t>(bytes_of(info.type));

@@ -1,5 +1,5 @@
 #pragma once
-// Which way round the bytes of a voxel are. Any thread may call these.
+// The byte order of voxels. Any thread may call these.
 
 #include <span>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace shvr {
 
-/// Turns each group of `voxel_bytes` (1, 2, 4 or 8) round.
+/// Reverses each group of `voxel_bytes` bytes (1, 2, 4 or 8).
 void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes);
 
-/// What to say where nobody states the byte order and little-endian is taken. `bytes` (or null: do not look) holds the
-/// voxels of `info`, x fastest; where neighbours are much more often nearer to each other in the other order, the
-/// sentence says so, as a guess.
+/// The warning for files that do not state their byte order and are read as little-endian. `bytes` (null: do not look)
+/// holds the voxels of `info`, x fastest; if neighbours are much more often closer to each other in the other order,
+/// the warning says so, as a guess.
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes);
 
 }  // namespace shvr

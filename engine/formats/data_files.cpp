@@ -10,11 +10,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Each name takes a hundred bytes of memory, and a look at its file.
+/// Each name takes a hundred bytes of memory and a lookup of its file.
 constexpr int64_t MOST_FILES = 65536;
 
-/// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern comes from a stranger, so it
-/// never meets printf.
+/// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern is untrusted, so it is never
+/// passed to printf.
 struct Pattern {
     std::string before{}, after{};
     size_t width = 0;
@@ -64,7 +64,7 @@ fs::path path_of(const HeaderFields& fields, const char* field, const std::strin
     return fields.path().parent_path() / name;
 }
 
-/// The words of "a pattern with spaces%03d.raw 1 93 1 2": the pattern, and up to four numbers behind it.
+/// The words of "a pattern with spaces%03d.raw 1 93 1 2": the pattern, and up to four numbers after it.
 std::vector<std::string_view> split_pattern(std::string_view text)
 {
     std::vector<std::string_view> numbers;
@@ -114,7 +114,7 @@ std::vector<fs::path> files_of_list(const HeaderFields& fields, const char* fiel
     return files;
 }
 
-/// How many axes each file has, where the field's last word says it ("2", or "2D" as MetaImage writes it).
+/// The number of axes of each file, if the field's last word states it ("2", or "2D" as MetaImage writes it).
 int64_t axes_of_a_file(const HeaderFields& fields, const char* field, const std::vector<std::string_view>& words,
                        size_t index)
 {

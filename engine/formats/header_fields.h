@@ -1,7 +1,6 @@
 #pragma once
-// What the readers of text headers share: the head of a file, fields by name, spacing and unit.
-// Every refusal is one sentence: file, field, value found, value expected. Any thread may call
-// these.
+// Shared by the readers of text headers: the start of a file, fields by name, spacing and unit. Every refusal is one
+// sentence: file, field, value found, value expected. Any thread may call these.
 
 #include <filesystem>
 #include <map>
@@ -15,19 +14,19 @@
 
 namespace shvr {
 
-/// No header is longer.
+/// The maximum length of a header.
 inline constexpr size_t LONGEST_HEADER = size_t{1} << 20;
 
-/// The first bytes of a file, at most `max_bytes`. Fails where it is no regular file or cannot be read.
+/// The first bytes of a file, at most `max_bytes`. Fails if it is not a regular file or cannot be read.
 std::string read_head(const std::filesystem::path& path, size_t max_bytes = LONGEST_HEADER);
 
-/// The fields of one header. Names are matched without regard to case.
+/// The fields of one header. Names are case-insensitive.
 class HeaderFields {
 public:
     explicit HeaderFields(std::filesystem::path path) : path_(std::move(path)) {}
 
     const std::filesystem::path& path() const { return path_; }
-    /// Fails where the field is there already.
+    /// Fails if the field exists already.
     void add(std::string_view name, std::string_view value);
 
     bool has(const char* name) const { return find(name) != nullptr; }
@@ -38,7 +37,7 @@ public:
     int64_t whole(const char* name, int64_t fallback, int64_t lower, int64_t upper) const;
     std::vector<double> numbers(const char* name, size_t count) const;
     Size3 size(const char* name) const;                                ///< required, each 1 ... 2^20
-    std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< as `size`, of `count` axes
+    std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< like `size`, for `count` axes
     VoxelType type(const char* name) const;                            ///< required
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0

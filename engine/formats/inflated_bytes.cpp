@@ -23,7 +23,7 @@ constexpr size_t INPUT_BYTES = 65536;
 constexpr int ANY_WRAPPING = 15 + 32;
 constexpr int GZIP_WRAPPING = 15 + 16;
 
-/// A decoder somewhere in the compressed bytes. A copy goes on from where the original stands.
+/// A decoder at some position in the compressed bytes. A copy continues from the original's position.
 class Decoder {
 public:
     Decoder(const InputFile& file, int64_t offset) : file_(file), input_at_(offset)
@@ -45,7 +45,7 @@ public:
 
     int64_t output_at() const { return output_at_; }
 
-    /// The next bytes. Fewer come back where the stream ends.
+    /// Decodes the next bytes; fewer at the end of the stream.
     size_t decode(std::span<std::byte> bytes)
     {
         size_t done = 0;
@@ -57,7 +57,7 @@ public:
         return done;
     }
 
-    /// Compares the checksum, where nothing but that is left.
+    /// Verifies the checksum, if only that is left.
     void finish()
     {
         std::byte left_over{};
@@ -105,7 +105,7 @@ private:
         stream_.avail_in = static_cast<uInt>(count);
     }
 
-    /// gzip files may follow each other; anything else behind the end is left alone, as gzip does.
+    /// gzip files may be concatenated; like gzip, ignores anything else after the end.
     void begin_next_member()
     {
         std::array<std::byte, 2> next{};
@@ -116,10 +116,10 @@ private:
 
     const InputFile& file_;
     z_stream stream_{};
-    int64_t input_at_ = 0;  ///< of the byte behind `input_`
+    int64_t input_at_ = 0;  ///< position of the byte after `input_`
     int64_t output_at_ = 0;
     bool has_ended_ = false;
-    std::vector<Bytef> input_;  ///< empty in a state that is only kept
+    std::vector<Bytef> input_;  ///< empty in saved states
 };
 
 class InflatedBytes final : public VoxelBytes {
@@ -161,7 +161,7 @@ private:
         const std::lock_guard lock(mutex_);
         const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Chunk& c) { return c.number == number; });
         if (found != kept_.end()) {
-            std::rotate(kept_.begin(), found, found + 1);  // the one used last comes first
+            std::rotate(kept_.begin(), found, found + 1);  // most recently used first
             return kept_.front().bytes;
         }
         go_before(number);
@@ -169,12 +169,12 @@ private:
             while (chunk_of(decoder_->output_at()) < number) decode_next();
             return decode_next();
         } catch (...) {
-            decoder_.reset();  // it is in the middle of something
+            decoder_.reset();  // it stopped in the middle of a chunk
             throw;
         }
     }
 
-    /// Puts the decoder at the beginning of chunk `number` or of one before it, as near as there is one.
+    /// Moves the decoder to the start of chunk `number`, or of the nearest earlier chunk with a saved state.
     void go_before(int64_t number) const
     {
         const int64_t state = std::min(number / chunks_between_states_, static_cast<int64_t>(states_.size()) - 1);
@@ -207,13 +207,13 @@ private:
     }
 
     Inflation inflation_;
-    int64_t end_;  ///< in decoded bytes, as all offsets here
+    int64_t end_;  ///< in decoded bytes, like all offsets here
     int64_t chunk_bytes_;
     int64_t chunks_between_states_;
     size_t most_kept_;
 
     mutable std::mutex mutex_;
-    mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: nowhere
+    mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: not positioned
     mutable std::vector<std::unique_ptr<const Decoder>> states_;
     mutable std::vector<Chunk> kept_;
 };
@@ -258,10 +258,10 @@ std::string inflated_head(const std::filesystem::path& path, size_t max_bytes)
     Decoder decoder(file, 0);
     size_t done = 0;
     try {
-        // One by one, so that what comes before a damaged byte is known.
+        // Byte by byte, to find exactly what precedes a damaged byte.
         while (done < max_bytes && decoder.decode(bytes.subspan(done, 1)) == 1) ++done;
     } catch (const Error&) {
-        // Its reader will say what is wrong.
+        // The file's reader will report the problem.
     }
     head.resize(done);
     return head;

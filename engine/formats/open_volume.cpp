@@ -13,10 +13,10 @@ namespace {
 struct Reader {
     const char* name;
     std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
-    bool reads_folders = false;  ///< others are not asked about one
+    bool reads_folders = false;  ///< others are not tried on folders
 };
 
-/// In this order: a header is asked before the bare voxels that it may describe.
+/// In this order: headers are tried before the raw voxels that they may describe.
 constexpr Reader READERS[] = {
     {"OME-Zarr", open_ome_zarr, true},
     {"TIFF", open_tiff, true},
@@ -27,7 +27,7 @@ constexpr Reader READERS[] = {
     {"RAW with a side-car", open_raw_with_side_car},
 };
 
-/// Pictures take squares and quotients of spacings. Sessions have the same limits.
+/// Rendering computes squares and quotients of spacings. Sessions have the same limits.
 void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
 {
     constexpr double LEAST = 1e-12;
@@ -98,7 +98,7 @@ RawLayout parse_raw_layout(const std::string& text)
 
 bool is_address(std::string_view path)
 {
-    // RFC 3986: a scheme is a letter, and then letters, digits, "+", "-" and ".".
+    // RFC 3986: a scheme is a letter, followed by letters, digits, "+", "-" and ".".
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto belongs = [&](char c) {
         return is_letter(c) || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';

@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Below this, axes are what rounding in the file's numbers makes of straight ones.
+/// Smaller rotations are taken for rounding errors in the file's numbers.
 constexpr double LEAST_TURN_DEGREES = 0.05;
 constexpr double LEAST_SHEAR_DEGREES = 0.1;
 
@@ -25,7 +25,7 @@ std::string with_one_decimal(double number)
     return sentence(std::fixed, std::setprecision(1), number);
 }
 
-/// The axis of the frame that `direction` is nearest to.
+/// The axis of the frame that is nearest to `direction`.
 int nearest_axis(const glm::dvec3& direction)
 {
     const glm::dvec3 size = glm::abs(direction);
@@ -37,7 +37,7 @@ void warn_of_turn(VolumeInfo& info)
     double most = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec3& direction = info.directions[axis];
-        // As arcs near 0 need: acos of nearly 1 knows no small angles.
+        // By atan2, since acos near 1 cannot resolve small angles.
         const double along = std::abs(direction[nearest_axis(direction)]);
         const double across = std::sqrt(std::max(0.0, glm::dot(direction, direction) - along * along));
         most = std::max(most, degrees_of(std::atan2(across, along)));
@@ -92,7 +92,7 @@ public:
         mirrored.lower[axis_] = info().size[axis_] - box.upper[axis_];
         mirrored.upper[axis_] = info().size[axis_] - box.lower[axis_];
         source_->read(mirrored, voxels);
-        // Runs of `run_bytes` that follow each other along the axis are exchanged, front with back.
+        // Swaps consecutive runs of `run_bytes` along the axis, front with back.
         const Size3 extent = box.size();
         auto run_bytes = static_cast<int64_t>(bytes_of(info().type));
         for (int axis = 0; axis < axis_; ++axis) run_bytes *= extent[axis];

@@ -1,6 +1,6 @@
 #pragma once
-// The readers that `open_volume` asks in turn. Each looks at the file and says "not mine" (null), gives the volume, or
-// fails: "mine, but broken". Any thread may call them.
+// The readers that `open_volume` tries in turn. Each looks at the file and returns null ("not mine"), returns the
+// volume, or fails ("mine, but broken"). Any thread may call them.
 
 #include "engine/volume/source.h"
 
@@ -24,7 +24,7 @@ std::unique_ptr<VolumeSource> open_nifti(const std::filesystem::path& path, cons
 /// DICOM: a folder of slices, one slice of a series, or one file of many frames.
 std::unique_ptr<VolumeSource> open_dicom(const std::filesystem::path& path, const OpenOptions& options);
 
-/// Bare voxels described by what lies beside them, or the side-car itself (source_side_car.cpp lists what is known).
+/// Raw voxels described by a file beside them, or that side-car itself (source_side_car.cpp lists the known ones).
 std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace shvr

@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Voxels pass through doubles in blocks of this many.
+/// Voxels are converted through doubles in blocks of this many.
 constexpr size_t BLOCK = 512;
 
 template <class T>
@@ -20,7 +20,7 @@ ValueRange range_of()
     return {double{std::numeric_limits<T>::min()}, double{std::numeric_limits<T>::max()}};
 }
 
-/// Of integers.
+/// The range of an integer type.
 ValueRange range_of(VoxelType type)
 {
     switch (type) {
@@ -59,8 +59,8 @@ public:
     {
         const VoxelType stored = source_->info().type;
         const size_t count = voxels.size() / bytes_of(info().type);
-        // Stored voxels are not larger: they are read to the end of the same memory, and none is overwritten before its
-        // turn.
+        // Stored voxels are not larger, so they are read into the end of the same memory; none is overwritten before it
+        // is used.
         const std::span<std::byte> tail = voxels.last(count * bytes_of(stored));
         source_->read(box, tail);
         rescale_voxels(stored, tail, rescale_, info().type, voxels);

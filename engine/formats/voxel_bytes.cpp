@@ -55,7 +55,7 @@ private:
         std::shared_ptr<const VoxelBytes> bytes{};
     };
 
-    /// As many as threads may read different parts, and a volume of a thousand slices keeps no thousand files open.
+    /// Enough for threads that read different parts, without keeping a thousand files open for a thousand slices.
     static constexpr size_t MOST_OPEN = 16;
 
     std::shared_ptr<const VoxelBytes> part(size_t number) const
@@ -69,7 +69,7 @@ private:
             if (parts_.size() == MOST_OPEN) parts_.pop_back();
             found = parts_.insert(parts_.end(), {number, std::move(opened)});
         }
-        std::rotate(parts_.begin(), found, found + 1);  // the one used last comes first
+        std::rotate(parts_.begin(), found, found + 1);  // most recently used first
         return parts_.front().bytes;
     }
 
@@ -98,7 +98,7 @@ size_t InputFile::read_some(int64_t offset, std::span<std::byte> buffer) const
 
 InputFile open_input_file(const std::filesystem::path& path)
 {
-    // Without O_NONBLOCK, opening a FIFO waits for a writer before we can see that it is one.
+    // Without O_NONBLOCK, opening a FIFO blocks until a writer comes, before we can see that it is one.
     InputFile file{.path = path, .descriptor = FileDescriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK))};
     if (!file.descriptor) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

@@ -1,6 +1,6 @@
 #pragma once
-// The bytes in which a file keeps its voxels, one after the other: bare in a file, deflated, or spread over several
-// files. source_raw.cpp makes voxels of them.
+// The bytes in which a file stores its voxels, one after the other: raw in a file, deflated, or spread over several
+// files. source_raw.cpp turns them into voxels.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@ namespace shvr {
 class VoxelBytes {
 public:
     virtual ~VoxelBytes() = default;
-    /// Fills `bytes` with those from `offset` on. Throws `Error` where they are not there. Any thread may call it.
+    /// Fills `bytes` from `offset` on. Throws `Error` if the data ends before. Any thread may call it.
     virtual void read(int64_t offset, std::span<std::byte> bytes) const = 0;
 };
 
@@ -25,18 +25,19 @@ struct InputFile {
     FileDescriptor descriptor;
     int64_t bytes = 0;
 
-    /// Reads what there is of `bytes` from `offset` on; the number of bytes read is smaller at the end of the file.
+    /// Reads what exists of the bytes from `offset` on; returns the number of bytes read, which is smaller at the end
+    /// of the file.
     size_t read_some(int64_t offset, std::span<std::byte> buffer) const;
 };
-/// Fails for folders, pipes and devices, and never waits for one.
+/// Fails for folders, pipes and devices, and never blocks on one.
 InputFile open_input_file(const std::filesystem::path& path);
 
-/// The bytes of `file` from `offset` on. Read with pread, never mapped: a file cut short while it is open is an
+/// The bytes of `file` from `offset` on. Read with pread, never mapped: truncating the file while it is open causes an
 /// `Error`, not a signal.
 std::unique_ptr<VoxelBytes> bytes_of_file(InputFile file, int64_t offset);
 
-/// `count` shares of `share_bytes` each, one after the other; `open(i)` opens the one of number i when it is needed. A
-/// few are kept open.
+/// `count` parts of `share_bytes` each, one after the other; `open(i)` opens part i when it is needed. A few are kept
+/// open.
 std::unique_ptr<VoxelBytes> bytes_of_parts(size_t count, int64_t share_bytes,
                                            std::function<std::unique_ptr<VoxelBytes>(size_t)> open);
 

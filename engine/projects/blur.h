@@ -1,8 +1,8 @@
 #pragma once
 // One dimension of a separable filter with symmetric weights, for import_prepare.cpp. Any thread may call these.
 //
-// Sums are taken from the middle outwards, both neighbours at a time, so that a mirrored volume gives the mirrored
-// result bit for bit.
+// Sums run from the middle outwards, adding both neighbours at a time, so a mirrored volume gives the mirrored result
+// bit for bit.
 
 #include <cstddef>
 #include <cstring>
@@ -11,8 +11,8 @@
 
 namespace shvr {
 
-/// Rows are filtered in blocks of this many numbers, which compilers keep in registers; buffers are a multiple of it
-/// long.
+/// Rows are filtered in blocks of this many numbers, which the compiler keeps in registers; buffer lengths are a
+/// multiple of it.
 inline constexpr size_t BLUR_BLOCK = 16;
 
 inline constexpr size_t padded_length(size_t length)
@@ -21,8 +21,7 @@ inline constexpr size_t padded_length(size_t length)
 }
 
 /// out[i] = weights[0] * middle[i] + sum over k of weights[k] * (before[k - 1][i] + after[k - 1][i]) for i in 0 ...
-/// length
-/// - 1. `length` is a multiple of BLUR_BLOCK; `before` and `after` hold weights.size() - 1 rows.
+/// length - 1. `length` is a multiple of BLUR_BLOCK; `before` and `after` hold weights.size() - 1 rows.
 template <class Number>
 void filter_rows(std::span<const Number> weights, const Number* middle, const Number* const* before,
                  const Number* const* after, Number* out, size_t length)
@@ -52,8 +51,8 @@ void filter_rows(std::span<const Number> weights, const Number* middle, const Nu
     }
 }
 
-/// Along one row. `row` points at its first number and has weights.size() - 1 more on both sides, and is readable up to
-/// padded_length(length) beyond.
+/// Along one row. `row` points at its first number; weights.size() - 1 more precede and follow the row, which is
+/// readable up to padded_length(length) beyond.
 template <class Number>
 void filter_row(std::span<const Number> weights, const Number* row, Number* out, size_t length)
 {

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// What one worker reads at a time from a source that does not care.
+/// Bytes that one worker reads at a time from a source without a preferred block size.
 constexpr int64_t TASK_BYTES = int64_t{1} << 20;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// The part of a source that is imported, reversed where that is wanted. For import_prepare.cpp and import_filter.cpp.
-// One thread at a time, the one that owns the pool.
+// The part of a source that is imported, optionally reversed. For import_prepare.cpp and import_filter.cpp. One thread
+// at a time, the one that owns the pool.
 
 #include <span>
 
@@ -11,15 +11,15 @@ namespace shvr {
 
 class ImportBox {
 public:
-    /// `source` must outlive it. Floats that are to be reversed are measured first.
+    /// `source` must outlive it. Floats to be reversed are measured first.
     ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses);
 
     VoxelType type() const { return source_.info().type; }
     Size3 size() const { return box_.size(); }
-    /// Of the source.
+    /// The block size of the source.
     Size3 block() const { return source_.block(); }
 
-    /// Voxels of `part`, which is counted from the box's first voxel, x fastest; read by all workers.
+    /// Reads the voxels of `part`, counted from the box's first voxel, x fastest, with all workers.
     void read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const;
 
 private:
@@ -30,7 +30,7 @@ private:
     const VolumeSource& source_;
     VoxelBox box_;
     bool reverses_;
-    double ends_ = 0.0;  ///< sum of the smallest and the largest value of floats that are reversed
+    double ends_ = 0.0;  ///< smallest plus largest value, for reversing floats
 };
 
 }  // namespace shvr

@@ -14,7 +14,7 @@ using Bytes = std::span<const std::byte>;
 
 bool is_empty(Bytes chunk)
 {
-    // Compared with itself, one byte on.
+    // Compares the chunk with itself, shifted by one byte.
     return chunk[0] == std::byte{0} && std::memcmp(chunk.data(), chunk.data() + 1, chunk.size() - 1) == 0;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The chunks of all levels of a project that is being made, as files in its folder, and their checksums.
+// The chunks of all levels of a project under construction, as files in its folder, and their checksums.
 
 #include <atomic>
 #include <filesystem>
@@ -16,27 +16,27 @@ public:
     ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
                  const ZarrCompressor& compressor, int workers);
 
-    /// Compresses and writes the voxels of a chunk; there is no file where all of them are 0. Different chunks may be
-    /// written at once, by different workers.
+    /// Compresses and writes the voxels of a chunk; writes no file if all of them are 0. Different workers may write
+    /// different chunks at once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
 
     int levels() const { return static_cast<int>(levels_.size()); }
     Size3 counts(int level) const { return of(level).volume.counts(); }
     const ZarrMetadata& metadata(int level) const { return of(level).volume.metadata(); }
-    /// By ZarrVolume::index_of; 0 where there is no file.
+    /// Indexed by ZarrVolume::index_of; 0 if there is no file.
     const std::vector<uint64_t>& checksums(int level) const { return of(level).checksums; }
 
     int64_t all() const;                      ///< chunks
-    int64_t stored() const;                   ///< those that have a file
-    int64_t bytes() const { return bytes_; }  ///< of all files
+    int64_t stored() const;                   ///< chunks that have a file
+    int64_t bytes() const { return bytes_; }  ///< total size of the files
 
-    /// While nothing is written.
+    /// Only while nothing is being written.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
 private:
     struct Level {
-        ZarrVolume volume;  ///< names and places; nothing is read through it
+        ZarrVolume volume;  ///< for names and places; nothing is read through it
         std::vector<uint64_t> checksums;
     };
     const Level& of(int level) const { return levels_[static_cast<size_t>(level)]; }

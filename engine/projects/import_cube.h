@@ -1,5 +1,5 @@
 #pragma once
-// A chunk of a volume that is being imported, and the levels above it. For import_pyramid.cpp.
+// A chunk of a volume being imported, and the levels above it. For import_pyramid.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// Voxels of one level below a chunk, and the range of level 0 below each. Rows are IMPORT_CHUNK voxels long whatever
-/// the extent, so that loops over them have a length that compilers know; `side` rows make a slice.
+/// The voxels of one level below a chunk, and the range of level 0 below each. Rows are always IMPORT_CHUNK voxels
+/// long, so that loops over them have a length known at compile time; `side` rows make a slice.
 template <class T>
 struct ImportCube {
     explicit ImportCube(int64_t rows) : side(rows), values(static_cast<size_t>(rows * rows * IMPORT_CHUNK)) {}
@@ -25,11 +25,11 @@ struct ImportCube {
 
     int64_t side;
     Size3 extent{0};
-    bool has_ranges = false;  ///< otherwise a voxel is its own range
+    bool has_ranges = false;  ///< if false, each voxel is its own range
     std::vector<T> values, lower, upper;
 };
 
-/// Voxels of level 0 need ranges only where one is no number; such voxels have an empty one.
+/// Level 0 needs ranges only if it contains non-finite voxels, which have an empty range.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {
@@ -46,7 +46,7 @@ void find_own_ranges(ImportCube<T>& cube)
     }
 }
 
-/// `rows` lie in the values of `fine`.
+/// `rows` point into the values of `fine`.
 template <class T>
 void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lower, T* upper)
 {

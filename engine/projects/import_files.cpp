@@ -19,10 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Another layout of what an import writes, or of its state.
+/// Increment when the layout of an import's files or of its state changes.
 constexpr int LAYOUT = 2;
 
-/// The array's order: z, y, x.
+/// In the array's order: z, y, x.
 Json zyx(const glm::dvec3& vector)
 {
     return {vector.z, vector.y, vector.x};
@@ -58,7 +58,7 @@ void describe_labels(const LabelImage& labels, Json& attributes)
     if (!labels.painted_on.empty()) attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
 }
 
-/// The attributes in IMAGE/labels/.zattrs; empty where there is no such file.
+/// The attributes in IMAGE/labels/.zattrs; empty if there is no such file.
 Json listed_labels(const fs::path& folder)
 {
     std::error_code ignored;
@@ -70,7 +70,7 @@ Json listed_labels(const fs::path& folder)
     return attributes.value();
 }
 
-/// The file and what bears its name beside it (headers lead to other files), or what the folder holds.
+/// The file and the files beside it with the same stem (headers refer to other files), or the content of the folder.
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;
@@ -110,7 +110,7 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = static_cast<double>(int64_t{1} << level);
-        // The centre of voxel 0, which is the middle of the voxels it stands for. Turned axes have no place here.
+        // The centre of voxel 0, which is the middle of the voxels it covers. Rotated axes cannot be expressed here.
         glm::dvec3 translation = 0.5 * (factor - 1.0) * info.spacing;
         if (info.directions == glm::dmat3(1.0)) translation += info.origin;
         datasets.push_back({{"path", std::to_string(level)},

@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Memory for voxels as the source gives them, and for slices that wait for the blur along z.
+/// Memory for voxels as read from the source, and for slices waiting for the blur along z.
 constexpr int64_t READ_BYTES = int64_t{32} << 20;
 constexpr int64_t PLANE_BYTES = int64_t{96} << 20;
 constexpr int64_t TASK_ROWS = 8;
@@ -21,7 +21,7 @@ constexpr int64_t TASK_ROWS = 8;
 template <class T>
 using Number = std::conditional_t<std::is_integral_v<T> && sizeof(T) <= 2, float, double>;
 
-/// Rows of T to rows of numbers and back, in blocks whose length compilers know.
+/// Converts rows of T to rows of numbers and back, in blocks of a length known at compile time.
 template <class T>
 void widen(const T* from, Number<T>* to, size_t length)
 {
@@ -36,8 +36,8 @@ void widen(const T* from, Number<T>* to, size_t length)
     for (; i < length; ++i) to[i] = static_cast<Number<T>>(from[i]);
 }
 
-/// Adding and taking away 1.5 * 2^23 (2^52) rounds to nearest, ties to even, whatever a type of up to 16 (32) bits
-/// holds.
+/// Adding and subtracting 1.5 * 2^23 (2^52) rounds to nearest, ties to even, for every value of a type of up to 16 (32)
+/// bits.
 template <class T>
 T to_voxel(Number<T> number)
 {
@@ -73,12 +73,11 @@ bool all_finite(std::span<const T> voxels)
     return true;
 }
 
-/// A slice that is blurred along x and y, rows padded_length(size.x) apart.
+/// A slice blurred along x and y, rows padded_length(size.x) apart.
 template <class T>
 struct Plane {
     std::vector<Number<T>> values;
-    // Where a voxel is not finite: the blurred share of finite voxels, by which values are to be divided, and the slice
-    // as it was.
+    // If a voxel is not finite: the blurred share of finite voxels, which divides the values, and the original slice.
     std::vector<Number<T>> shares;
     std::vector<T> original;
 };
@@ -132,7 +131,7 @@ private:
 
     // ---- Along x and y, slice by slice ----
 
-    /// Planes `lower` to `upper` are there; those that were are kept.
+    /// Makes planes `lower` to `upper`, keeping those that exist already.
     void make_planes(int64_t lower, int64_t upper, WorkPool& pool)
     {
         const int64_t end = first_plane_ + static_cast<int64_t>(planes_.size());
@@ -165,7 +164,7 @@ private:
         }
     }
 
-    /// Memory that was used before need not be fetched from the system.
+    /// Reusing memory saves allocating it from the system.
     Plane<T> take_spare()
     {
         if (spare_.empty()) return {};
@@ -205,7 +204,7 @@ private:
         const auto around = static_cast<size_t>(reach(0));
         const auto rows_in = static_cast<size_t>(upper_row - lower_row);
         out.resize(pitch_ * static_cast<size_t>(upper_row_ - lower_row_));
-        // Without a blur along y the rows are the plane already.
+        // Without a blur along y the rows already form the plane.
         std::vector<Number<T>>& rows = reach(1) > 0 ? scratch.rows : out;
         rows.resize(pitch_ * rows_in);
         scratch.line.resize(2 * around + pitch_ + BLUR_BLOCK);
@@ -236,15 +235,15 @@ private:
         }
     }
 
-    // ---- Along z, and together ----
+    // ---- Along z, and combined ----
 
     const Plane<T>& plane_at(int64_t z) const
     {
         return planes_[static_cast<size_t>(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
-    /// Rows of a slice, from the first of `planes_`, along z. `of` chooses what of a plane, `instead` stands for it
-    /// where a plane does not have it.
+    /// Filters rows of a slice, from the first of `planes_`, along z. `of` selects a member of the plane; for
+    /// planes without it, all its numbers count as 1.
     void filter_z(int64_t z, int64_t row, std::vector<Number<T>> Plane<T>::*of, Number<T>* out) const
     {
         const auto row_of = [&](int64_t at) {
@@ -262,7 +261,7 @@ private:
         filter_rows<Number<T>>(weights_[2], row_of(z), before, after, out, pitch_);
     }
 
-    /// A row of a slice, blurred, NaN where it stays so.
+    /// A blurred row of a slice, with NaN where the source has NaN.
     void blurred_row(int64_t z, int64_t row, std::vector<Number<T>>& out, std::vector<Number<T>>& shares) const
     {
         filter_z(z, row, &Plane<T>::values, out.data());
@@ -333,7 +332,7 @@ private:
     std::array<std::vector<Number<T>>, 3> weights_;
     std::vector<Number<T>> ones_;
 
-    int64_t lower_row_ = 0, upper_row_ = 0;  ///< of the box, that the planes hold
+    int64_t lower_row_ = 0, upper_row_ = 0;  ///< of the box; those that the planes hold
     int64_t first_plane_ = 0;
     std::deque<Plane<T>> planes_;
     std::vector<Plane<T>> spare_;

@@ -1,5 +1,5 @@
 #pragma once
-// Voxels that are blurred or made smaller before they are kept. For import_prepare.cpp, whose header says how.
+// Blurs or shrinks voxels before they are stored. For import_prepare.cpp, whose header gives the details.
 
 #include <memory>
 
@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// `info` is that of what comes out.
+/// `info` describes the result.
 std::unique_ptr<Preparation> make_filter(VolumeInfo info, const ImportBox& box, const PreparationOptions& options);
 
 }  // namespace shvr

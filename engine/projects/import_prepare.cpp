@@ -21,7 +21,7 @@ VolumeInfo info_after(const VolumeSource& source, const PreparationOptions& opti
     return info;
 }
 
-/// Nothing but cut and reversed.
+/// Only crops and reverses.
 class DirectPreparation final : public Preparation {
 public:
     DirectPreparation(VolumeInfo info, const ImportBox& box) : Preparation(std::move(info)), box_(box) {}

@@ -1,17 +1,17 @@
 #pragma once
-// What is done to a volume's voxels before they are kept, slab by slab: cut out a box, reverse intensities, blur, make
-// smaller, in this order.
+// Processing of a volume's voxels before they are stored, slab by slab, in this order: crop to a box, reverse
+// intensities, blur, shrink.
 //
 // Reversed integers are the type's smallest plus its largest value minus the voxel (255 - v, -1 - v); reversed floats
 // are the volume's own smallest plus largest finite value minus the voxel.
 //
 // The blur is a Gaussian sampled at voxel centres, to int(4 sigma + 0.5) voxels on each side, normalised in double,
-// along x, then y, then z. Beyond the box that was cut out, its outermost voxels go on. Intermediate sums are float for
-// types of 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. Voxels that are NaN
-// or infinite stay as they are and do not spread: their neighbours are the weighted mean of the finite ones.
+// along x, then y, then z. The outermost voxels of the cropped box are repeated outwards. Intermediate sums are float
+// for types of 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. NaN and infinite
+// voxels stay as they are and do not spread: their neighbours are the weighted mean of the finite ones.
 //
-// A voxel of a volume made N times smaller is the mean of N^3 voxels, at the end of those that there are; rounding and
-// NaN as above. So the size is rounded up.
+// A voxel of a volume made N times smaller is the mean of N^3 voxels, or of those that exist at the volume's end;
+// rounding and NaN as above. So the size is rounded up.
 
 #include <memory>
 #include <optional>
@@ -32,7 +32,7 @@ struct PreparationOptions {
 inline constexpr double LARGEST_SIGMA = 100.0;
 inline constexpr int LARGEST_DOWNSCALE = 64;
 
-/// "cropped to ..., reversed": what `options` do, empty where they do nothing.
+/// "cropped to ..., reversed": describes `options`; empty if they change nothing.
 std::string to_text(const PreparationOptions& options);
 
 /// The weights of a Gaussian from its middle outwards; both sides together sum to 1. {1} for a sigma of 0.
@@ -42,11 +42,11 @@ class Preparation {
 public:
     virtual ~Preparation() = default;
 
-    /// What comes out: size, spacing and origin of what is left.
+    /// The result: its size, spacing and origin.
     const VolumeInfo& info() const { return info_; }
 
-    /// Voxels of the result, x fastest: the rows `rows` (all of them where memory allows) of the slices from `lower` to
-    /// `upper`. Fastest where slices are asked for once and in order, with the same rows. One thread at a time, the one
+    /// Voxels of the result, x fastest: the rows `rows` (all of them if memory allows) of the slices from `lower` to
+    /// `upper`. Fastest if slices are requested once and in order, with the same rows. One thread at a time, the one
     /// that owns the pool.
     struct Slab {
         int64_t lower = 0, upper = 0;          ///< z
@@ -61,8 +61,8 @@ private:
     VolumeInfo info_;
 };
 
-/// Fails where the box does not lie inside the volume. `source` must outlive the result. Floats that are to be reversed
-/// are measured first.
+/// Fails if the box does not lie inside the volume. `source` must outlive the result. Floats to be reversed are
+/// measured first.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options);
 
 }  // namespace shvr

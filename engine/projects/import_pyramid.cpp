@@ -13,7 +13,7 @@ namespace {
 
 constexpr int REACH = IMPORT_REACH;
 
-/// The slices of a level that are there: 64 of them, or the whole level.
+/// The slices of a level held in memory: 64 of them, or the whole level.
 template <class T>
 struct Window {
     Window(const Size3& size_of_volume, int level)
@@ -28,7 +28,7 @@ struct Window {
         upper.resize(values.size());
     }
 
-    /// Where a voxel of the level lies in the window.
+    /// The index in the window of a voxel of the level.
     size_t at(int64_t x, int64_t y, int64_t z) const
     {
         return static_cast<size_t>(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
@@ -36,7 +36,7 @@ struct Window {
 
     Size3 size;
     bool is_whole;
-    bool keeps_ranges;  ///< the six levels above are made of it
+    bool keeps_ranges;  ///< the six levels above are made from it
     int64_t slices;
     std::vector<T> values, lower, upper;
 };
@@ -139,7 +139,7 @@ private:
 
     const Window<T>& window_of(int level) const { return windows_[static_cast<size_t>(level - 1)]; }
 
-    /// Every row from `put`, 0 beyond the extent.
+    /// Fills every row with `put`; 0 outside the extent.
     template <class Put>
     static void fill(ImportCube<T>& cube, const Size3& extent, const Put& put)
     {
@@ -156,7 +156,7 @@ private:
         }
     }
 
-    /// The six levels above the cube of level `base` that lies in the worker's scratch memory.
+    /// Makes the six levels above the cube of level `base` in the worker's scratch memory.
     void cascade(int base, const Size3& origin, int worker)
     {
         std::vector<ImportCube<T>>& cubes = scratch_[static_cast<size_t>(worker)].cubes;
@@ -170,7 +170,7 @@ private:
         }
     }
 
-    /// Chunks do not overlap, so neither do the places they write to.
+    /// Chunks do not overlap, so neither do the regions they write.
     static void store(const ImportCube<T>& cube, const Size3& origin, Window<T>& window)
     {
         for (int64_t z = 0; z < cube.extent.z; ++z) {

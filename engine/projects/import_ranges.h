@@ -1,5 +1,5 @@
 #pragma once
-// The ranges of the bricks of a level, found while its chunks go by. For import_pyramid.cpp.
+// The ranges of the bricks of a level, found while its chunks stream through. For import_pyramid.cpp.
 
 #include <algorithm>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// The smallest and the largest finite value; `lower > upper` where there is none.
+/// The smallest and the largest finite value; `lower > upper` if there is none.
 template <class T>
 struct ImportRange {
     T lower = std::numeric_limits<T>::max();
@@ -24,7 +24,7 @@ struct ImportRange {
     }
 };
 
-/// Of all bricks of a level. Different cubes may be added at once.
+/// The ranges of all bricks of a level. Different cubes may be added at once.
 template <class T>
 class ImportRanges {
 public:
@@ -61,7 +61,7 @@ public:
 private:
     static constexpr int64_t BRICK = gpu::BRICK_SIZE;
 
-    /// The part of a cube, along one axis, that belongs to a brick and the voxel around it.
+    /// The part of a cube, along one axis, inside a brick and the voxel around it.
     struct Segment {
         int64_t brick, begin, end;
     };

@@ -1,6 +1,6 @@
 #pragma once
-// What an import needs to go on after it was stopped, in one file that is checked as a whole: pieces of bytes in a
-// fixed order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
+// What an import needs to resume after an interruption, in one file with one checksum: pieces of bytes in a fixed
+// order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
 
 #include <cstring>
 #include <filesystem>
@@ -22,7 +22,7 @@ public:
         put(std::as_bytes(std::span(elements)));
     }
 
-    /// Replaces the file at once; what was written before is on the disk then.
+    /// Replaces the file atomically; on return its content is on the disk.
     void write(const std::filesystem::path& file) const;
 
 private:
@@ -31,13 +31,13 @@ private:
 
 class StateReader {
 public:
-    /// Fails where the file is damaged or of another version.
+    /// Fails if the file is damaged or of another version.
     explicit StateReader(const std::filesystem::path& file);
 
-    /// The next piece; fails where there is none.
+    /// The next piece; fails if there is none.
     std::span<const std::byte> take();
     std::string take_text();
-    /// Into elements that are there already: fails where their number is another.
+    /// Fills existing elements; fails if the file has another number of them.
     template <class T>
     void take_all(std::vector<T>& elements)
     {

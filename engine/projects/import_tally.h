@@ -1,6 +1,6 @@
 #pragma once
-// What an import learns of the voxels of level 0 while they go by: the hash of every slice, and how often each value
-// occurs, for types of 8 and 16 bits.
+// What an import gathers about level 0 while it streams through: the hash of every slice and, for types of 8 and 16
+// bits, how often each value occurs.
 
 #include <cstdint>
 #include <optional>
@@ -16,20 +16,20 @@ namespace shvr {
 
 class ImportTally {
 public:
-    /// Rows may come of `slices_at_once` slices between two calls of `finish`.
+    /// Between two calls of `finish`, rows of up to `slices_at_once` slices may arrive.
     ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers);
 
-    /// The next rows of slice `slice`. Rows of different slices may be added at once, by different workers.
+    /// The next rows of slice `slice`. Different workers may add rows of different slices at once.
     void add(int64_t slice, std::span<const std::byte> rows, int worker);
-    /// All rows of the slices from `lower` to `upper` were added.
+    /// Call once all rows of the slices from `lower` to `upper` have been added.
     void finish(int64_t lower, int64_t upper);
 
-    /// Of the whole volume, once all slices are finished.
+    /// The hash of the whole volume, once all slices are finished.
     std::string content_hash() const;
-    /// Nothing where there are too many values to count each.
+    /// Nothing if the type has too many values to count each.
     std::optional<VolumeStatistics> statistics() const;
 
-    /// Where no slice is begun and not finished.
+    /// Only while no slice is partly added.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
@@ -39,9 +39,9 @@ private:
 
     VoxelType type_;
     std::vector<SliceHash> hashes_;     ///< by slice
-    std::vector<SliceHasher> hashers_;  ///< of slices that are begun, by the remainder of their number
+    std::vector<SliceHasher> hashers_;  ///< of unfinished slices, by slice number modulo the number of hashers
     std::vector<std::vector<int64_t>>
-        counts_;  ///< by worker, then by the value's bits; no values where there are too many
+        counts_;  ///< by worker, then by the value's bits; empty if the type has too many values
 };
 
 }  // namespace shvr

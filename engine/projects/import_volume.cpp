@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::span<const std::byte>;
 
-/// Rows of a slab of 64 slices that are held at once, twice: one lot is read while the other is compressed.
+/// Rows of a slab of 64 slices held at once, twice: one batch is read while the previous one is compressed.
 constexpr int64_t SLAB_BYTES = int64_t{64} << 20;
-/// The state is written when this many times the time it takes has gone by, so that it costs 5 %.
+/// The state is written each time this multiple of its writing time has passed, so that it costs 5 %.
 constexpr double STATE_INTERVAL = 20.0;
 
 double seconds_since(Clock::time_point begin)
@@ -36,7 +36,7 @@ int thread_count(int wanted)
     return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// What would make new numbers of labels is refused.
+/// Refuses processing that would create new label numbers.
 void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 {
     if (info.type == VoxelType::float32 || info.type == VoxelType::float64)
@@ -118,7 +118,7 @@ private:
         preparation_->read(slab, buffers_[place], pool_);
     }
 
-    /// Its chunks into files and levels, and its slices into hashes and counts.
+    /// Starts writing its chunks and levels, and hashing and counting its slices.
     std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
     {
         const std::byte* const voxels = buffers_[place].data();
@@ -178,7 +178,7 @@ private:
         });
     }
 
-    // ---- What is kept between runs ----
+    // ---- State kept between runs ----
 
     void begin_anew()
     {
@@ -189,7 +189,7 @@ private:
         slabs_done_ = 0;
     }
 
-    /// What it tells of is on the disk already.
+    /// Everything it refers to is on the disk already.
     void write_state()
     {
         StateWriter state;
@@ -201,13 +201,13 @@ private:
         state.write(folder_.state());
     }
 
-    /// True where there was something to go on with. A state of something else, or a damaged one, is cleared.
+    /// True if there was a state to resume. Clears a damaged state, or one of another import.
     bool resume(const std::vector<std::string>& warnings)
     {
         report_.warnings = warnings;
         std::error_code ignored;
         const bool is_begun = fs::exists(folder_.state(), ignored);
-        // Labels are made of what changes without a trace in any file.
+        // Labels come from sources whose changes leave no trace in any file.
         if (is_begun && !options_.label_image) {
             folder_.clear_temporary();
             try {
@@ -278,7 +278,7 @@ private:
                                                        .elements = {checksums.begin(), checksums.end()}}));
         }
         ProjectRecord record{.info = info_, .levels = pyramid_->levels()};
-        // Types with too many values to count each are measured in what was written, which needs no source.
+        // Types with too many values to count each are measured in the written project, without the source.
         const std::optional<VolumeStatistics> counted = tally_->statistics();
         record.statistics = counted ? *counted : measure(*open_ome_zarr(folder_.path(), {}));
         record.content_hash = tally_->content_hash();
@@ -306,7 +306,7 @@ private:
     }
     void write_text(const fs::path& file, const std::string& text) { write(file, std::as_bytes(std::span(text))); }
 
-    // ---- While others work ----
+    // ---- While workers are busy ----
 
     void stop_where_asked() const
     {
@@ -335,7 +335,7 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
-    PartFolder folder_;  ///< made last: where one of the above fails, there is none
+    PartFolder folder_;  ///< created last: if anything above fails, no folder is made
     int threads_;
     ImportReport report_;
 
@@ -343,8 +343,8 @@ private:
     std::unique_ptr<ImportChunks> chunks_;
     std::unique_ptr<ImportTally> tally_;
     int64_t slabs_done_ = 0;
-    int64_t other_bytes_ = 0;  ///< of files that are no chunks
-    int64_t rows_ = 0;         ///< of a slab that are held at once
+    int64_t other_bytes_ = 0;  ///< of files other than chunks
+    int64_t rows_ = 0;         ///< of a slab, held at once
     std::array<std::vector<std::byte>, 2> buffers_;
 
     int64_t chunks_of_plane_ = 0;
@@ -353,7 +353,7 @@ private:
     Clock::time_point begin_{}, told_{}, state_written_{};
     double state_seconds_ = 0.0;
 
-    WorkPool pool_;  ///< last: its tasks use all of the above
+    WorkPool pool_;  ///< last: its tasks use all members above
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without a slash at its end, whose parent would be itself.
+/// Without a trailing slash, with which a path would be its own parent.
 fs::path plain(const fs::path& path)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
@@ -55,7 +55,7 @@ FileDescriptor locked(const fs::path& folder)
     FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!descriptor) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
     if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) == 0) return descriptor;
-    // Some network file systems know no locks.
+    // Some network file systems do not support locks.
     if (errno != EWOULDBLOCK) return descriptor;
     fail(folder.string(), ": another process is working on it; expected to be the only one");
 }
@@ -78,7 +78,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that somebody else calls so is not ours to clear. Ours has the state, or is hardly begun.
+    // A folder that merely has that name is not ours to clear. Ours has the state, or has hardly begun.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
@@ -125,9 +125,9 @@ void PartFolder::sync() const
 void PartFolder::finish()
 {
     sync();
-    refuse_target();  // again: the work took a while
+    refuse_target();  // checked again: the work took a while
     if (is_there(target_) && !is_empty_folder(target_)) {
-        // One moment, in which names are exchanged, and none in which there is no project.
+        // Exchanges the names atomically, so that a project exists at every moment.
         if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
             refuse_write(target_, errno);
         }
@@ -138,9 +138,9 @@ void PartFolder::finish()
         refuse_write(target_, errno);
     }
     part_ = target_;
-    std::error_code ignored;  // it does no harm there
+    std::error_code ignored;  // leaving it there does no harm
     fs::remove(state(), ignored);
-    fs::remove(state().parent_path(), ignored);  // where it is empty
+    fs::remove(state().parent_path(), ignored);  // only if it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
     if (parent && ::fsync(parent.number()) != 0 && errno != EINVAL && errno != EACCES) {
@@ -171,11 +171,11 @@ void write_part_file(const fs::path& path, std::span<const std::byte> content)
     while (!content.empty()) {
         const ssize_t count = ::write(file.number(), content.data(), content.size());
         if (count < 0 && errno == EINTR) continue;
-        // Some network file systems say "nothing written" where they mean "full".
+        // Some network file systems report "nothing written" for "full".
         if (count <= 0) refuse_write(path, count < 0 ? errno : ENOSPC);
         content = content.subspan(static_cast<size_t>(count));
     }
-    // The disk begins now instead of when all is to be synced. Where that cannot be asked for, nothing is lost.
+    // Starts writing to the disk now rather than at the final sync. A failure here loses nothing.
     static_cast<void>(::sync_file_range(file.number(), 0, 0, SYNC_FILE_RANGE_WRITE));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// A folder that appears whole or not at all: it is made beside its place, as NAME.part, and renamed at the end. What
-// was begun and not finished stays there, so that it can be gone on with. One process at a time works on it: the folder
-// is locked, and the lock of a process that died is gone with it.
+// A folder that appears complete or not at all: it is built beside its final place, as NAME.part, and renamed at the
+// end. Unfinished work stays there, so that it can be resumed. One process at a time works on it: the folder is locked,
+// and the lock is released if the process dies.
 
 #include <filesystem>
 #include <optional>
@@ -14,27 +14,27 @@ namespace shvr {
 
 class PartFolder {
 public:
-    /// Makes NAME.part where it is not there yet, and locks it. Fails where `target` is there already and is no empty
-    /// folder; with `overwrites` only where it is neither a project nor another Zarr folder. Fails where NAME.part is
-    /// something else than an import left, or another process works on it.
+    /// Creates NAME.part if it does not exist yet, and locks it. Fails if `target` exists and is not an empty folder;
+    /// with `overwrites`, only if it is neither a project nor another Zarr folder. Fails if NAME.part was not left by
+    /// an import, or if another process works on it.
     PartFolder(const std::filesystem::path& target, bool overwrites);
 
     const std::filesystem::path& path() const { return part_; }
-    /// Of the target.
+    /// The name of the target.
     std::string name() const { return target_.filename().string(); }
-    /// Where the state is kept; there is none at first.
+    /// The path of the saved state; at first there is no such file.
     std::filesystem::path state() const;
 
-    /// Takes away everything in it.
+    /// Deletes all its content.
     void clear() const;
-    /// Takes away what a process that died was just writing.
+    /// Deletes temporary files left by a process that died while writing.
     void clear_temporary() const;
-    /// What was written so far is on the disk when this returns (with all else that waits for this file system).
+    /// Returns once everything written so far is on the disk (including any other pending writes to this file system).
     void sync() const;
-    /// Puts the folder in its place, in exchange for what was there, and takes the state away. The folder is the target
-    /// then.
+    /// Moves the folder to the target's place, replacing what was there, and deletes the state. The folder then is the
+    /// target.
     void finish();
-    /// Takes away what was begun, as far as that can be.
+    /// Deletes unfinished work, as far as possible.
     void abandon();
 
 private:
@@ -45,8 +45,7 @@ private:
     std::optional<FileDescriptor> lock_;
 };
 
-/// Writes a whole file into a folder that is not in its place yet: not synced, not atomic. Makes the folders on its
-/// way.
+/// Writes a whole file into a folder that is still being built: not synced, not atomic. Creates parent folders.
 void write_part_file(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// The name of a brick: its level and its place in the grid of that level's bricks.
+// Identifies a brick: its level and its position in that level's grid of bricks.
 
 #include <cstddef>
 #include <functional>
@@ -11,7 +11,7 @@ namespace shvr {
 
 struct BrickKey {
     int level = 0;
-    glm::ivec3 brick{0};  ///< gpu::BRICK_SIZE voxels of the level a side; up to 2^15 of them along an axis
+    glm::ivec3 brick{0};  ///< bricks of gpu::BRICK_SIZE voxels a side; at most 2^15 along an axis
     bool operator==(const BrickKey&) const = default;
 };
 
@@ -23,13 +23,13 @@ struct BrickKeyHash {
     }
 };
 
-/// The brick of the next coarser level that holds it.
+/// The brick of the next coarser level that contains it.
 inline BrickKey parent_of(const BrickKey& key)
 {
     return {key.level + 1, key.brick / 2};
 }
 
-/// What it stands for, in voxels of level 0, cut at the volume's border.
+/// The voxels of level 0 that it covers, clipped to the volume.
 inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
 {
     const int64_t side = int64_t{gpu::BRICK_SIZE} << key.level;

@@ -64,7 +64,7 @@ std::string content_hash(const VolumeSource& source)
     const HashedSource hashed(source);
     const Size3 size = source.info().size;
     const int64_t row_bytes = size.x * static_cast<int64_t>(bytes_of(source.info().type));
-    // Whole blocks along z at once, so that a chunked source decodes nothing twice.
+    // Whole blocks along z, so that a chunked source decodes nothing twice.
     const int64_t slices = std::min(size.z, source.block().z);
     const int64_t rows = std::clamp<int64_t>(PIECE_BYTES / (row_bytes * slices), 1, size.y);
     std::vector<std::byte> piece(static_cast<size_t>(row_bytes * rows * slices));

@@ -1,7 +1,7 @@
 #pragma once
-// Identifies the voxels of a volume, whatever file they come from: XXH3-128 of every slice along z (its voxels x
-// fastest, then y, little-endian), and of those hashes in their order, each in its canonical form. It finds changes and
-// mistakes, not forgery. Written "xxh3-128:" and 32 hexadecimal digits.
+// Identifies the voxels of a volume, whichever file they come from: XXH3-128 of every slice along z (voxels x fastest,
+// then y, little-endian), then XXH3-128 of those hashes in order, each in its canonical form. It detects changes and
+// mistakes, not forgery. Written as "xxh3-128:" and 32 hexadecimal digits.
 
 #include <array>
 #include <memory>
@@ -15,7 +15,7 @@ namespace shvr {
 
 using SliceHash = std::array<std::byte, 16>;
 
-/// The hash of one slice, whose rows come in pieces, in order. One thread at a time.
+/// The hash of one slice whose rows arrive in order, in pieces. One thread at a time.
 class SliceHasher {
 public:
     SliceHasher();
@@ -23,7 +23,7 @@ public:
     SliceHasher(SliceHasher&&) noexcept;
 
     void add(std::span<const std::byte> voxels);
-    /// The hash of what was added; the next slice can begin.
+    /// The hash of the rows added so far; the next slice can then begin.
     SliceHash finish();
 
 private:
@@ -33,11 +33,12 @@ private:
 
 std::string content_hash(std::span<const SliceHash> slices);
 
-/// Reads the whole of level 0, slice by slice. Any thread may call it.
+/// Reads all of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
 
-/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0: whole rows, each once
-/// and in order, of one or more slices at a time, as `measure` and `content_hash` read. One thread at a time.
+/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0. Reads must fetch whole
+/// rows, each once and in order, of one or more slices at a time, as `measure` and `content_hash` do. One thread at a
+/// time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -49,7 +50,7 @@ public:
         source_.read_level(level, box, voxels);
     }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Empty until all slices were read. Later reads do not count.
+    /// Empty until all slices have been read. Later reads do not count.
     std::string hash() const;
 
 private:

@@ -1,14 +1,14 @@
 #pragma once
-// Arithmetic of grids of voxels, bricks and chunks, x fastest, and of boxes of voxels. Pure; any thread.
+// Arithmetic on grids of voxels, bricks and chunks, x fastest, and on boxes of voxels. Pure; any thread.
 
 #include "engine/volume/volume.h"
 #include "shaders/bricks.h"
 
 namespace shvr {
 
-/// Voxels along a side of a brick.
+/// Voxels along one side of a brick.
 inline constexpr int64_t BRICK_SIDE = gpu::BRICK_SIZE;
-/// The largest side of a volume that is accepted, in voxels.
+/// The largest accepted side of a volume, in voxels.
 inline constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
 
 /// Bricks along each axis of a volume of `size` voxels.
@@ -27,7 +27,7 @@ inline Size3 position_of(int64_t index, const Size3& counts)
     return {index % counts.x, index / counts.x % counts.y, index / (counts.x * counts.y)};
 }
 
-/// The smallest box that holds both.
+/// The smallest box that contains both.
 inline VoxelBox united(const VoxelBox& a, const VoxelBox& b)
 {
     return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};

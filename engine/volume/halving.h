@@ -1,9 +1,9 @@
 #pragma once
-// How a coarser level is made from a finer one, in projects and in memory alike.
+// How a coarser level is computed from a finer one, in projects and in memory alike.
 //
-// A voxel is the mean of the 2^3 voxels it stands for: of those inside the volume, and of the finite ones; NaN where
-// there are none. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
-// rounded to nearest, ties to even; floats once, to their type. Any thread may call these.
+// A voxel is the mean of the up to 2^3 voxels below it: only those inside the volume count, and only finite ones; NaN
+// if none is left. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
+// rounded to nearest, ties to even; floats are rounded once, to their type. Any thread may call these.
 
 #include <algorithm>
 #include <array>
@@ -19,12 +19,12 @@ enum class Halving {
     label,  ///< of labels, which have no mean
 };
 
-/// Sums of eight voxels, without overflow.
+/// Holds the sum of eight voxels without overflow.
 template <class T>
 using HalvingSum =
     std::conditional_t<std::is_floating_point_v<T>, double, std::conditional_t<sizeof(T) == 4, int64_t, int32_t>>;
 
-/// The rows of the finer level that a row of the coarser one stands for: 1, 2 or 4.
+/// The rows of the finer level below one row of the coarser level: 1, 2 or 4.
 template <class T>
 struct HalvingRows {
     std::array<const T*, 4> first{};
@@ -43,13 +43,13 @@ T mean_of(HalvingSum<T> sum)
         return static_cast<T>(sum);
     } else {
         constexpr int SHIFT = COUNT == 8 ? 3 : COUNT == 4 ? 2 : 1;
-        // Half of the divisor less one, and one more where that makes an even number of a tie.
+        // Half of the divisor less one, plus one more if that rounds a tie to even.
         const HalvingSum<T> odd = (sum >> SHIFT) & 1;
         return static_cast<T>((sum + (HalvingSum<T>{1} << (SHIFT - 1)) - 1 + odd) >> SHIFT);
     }
 }
 
-/// Of voxels `begin` to `end` of every row, without those that are not finite.
+/// Voxels `begin` to `end` of every row, leaving out non-finite ones.
 template <class T>
 T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
 {
@@ -66,7 +66,7 @@ T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
     return count > 0 ? static_cast<T>((sum[0] + sum[1]) / count) : std::numeric_limits<T>::quiet_NaN();
 }
 
-/// Nearly all time goes into loops of this length, which compilers know.
+/// Nearly all time is spent in loops of this length, which is known at compile time.
 inline constexpr int64_t BLOCK = 64;
 
 template <int ROWS, class T, class Length>
@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // A value that is not finite makes the mean so.
+        // A non-finite value makes the mean non-finite.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
@@ -106,7 +106,7 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
-/// The most frequent label. Of several, one that is not 0 (background), and of those the smallest.
+/// The most frequent label. Ties: labels other than 0 (background) win, then the smallest label.
 template <class T>
 void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
 {
@@ -129,7 +129,7 @@ void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
     }
 }
 
-/// Makes (length + 1) / 2 voxels of rows that are `length` voxels long.
+/// Makes (length + 1) / 2 voxels from rows of `length` voxels.
 template <class T>
 void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved, Halving how = Halving::mean)
 {

@@ -1,9 +1,9 @@
 #pragma once
-// Density offsets: what a person adds to single voxels to make them visible. Kept beside the volume, in bricks of 32^3,
-// and added when voxels are read (offset_source.h); the volume's own file is never written.
+// Density offsets: values that a user adds to single voxels to make them visible. They are kept beside the volume, in
+// bricks of 32^3, and added when voxels are read (offset_source.h); the volume's own file is never written.
 //
 // An offset has 32 bits: an int32 for volumes of integers, which is exact, and a float for volumes of floats. All bits
-// 0 is "none" for both; -0 does not occur. Any thread may call these.
+// 0 means "none" for both; -0 does not occur. Any thread may call these.
 
 #include <array>
 #include <bit>
@@ -18,7 +18,7 @@ namespace shvr {
 using OffsetBrick = std::array<uint32_t, size_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZE * gpu::BRICK_SIZE>;  ///< x fastest
 
 /// The largest magnitude of an offset: enough to turn any value of the type into any other (32-bit types: half of that;
-/// float64: what a float holds).
+/// float64: the largest float).
 double offset_limit(VoxelType type);
 
 inline double offset_of(VoxelType type, uint32_t bits)

@@ -19,7 +19,7 @@ namespace {
 template <class T>
 using OffsetOf = std::conditional_t<std::is_floating_point_v<T>, float, int32_t>;
 
-/// Saturates, never wraps; NaN and infinities stay what they are.
+/// Saturates, never wraps; NaN and infinities stay unchanged.
 template <class T>
 T raised(T voxel, OffsetOf<T> offset)
 {
@@ -34,7 +34,7 @@ T raised(T voxel, OffsetOf<T> offset)
     }
 }
 
-/// A finite value of the type, or an integer's bound that need not be one.
+/// A finite value of the type; for integers, a bound that need not be a value of the type.
 double raised_value(VoxelType type, double value, double offset)
 {
     return with_voxel_type(type, [&]<class T>(T) {
@@ -58,7 +58,7 @@ void add_row(std::byte* voxels, const uint32_t* offsets, int64_t count)
     }
 }
 
-/// Halves the `extent` offsets of a brick into one eighth of the brick above.
+/// Halves the `extent` offsets of a brick into one eighth of its parent brick.
 template <class Offset>
 void halve(const OffsetBrick& brick, const Size3& extent, const Size3& octant, OffsetBrick& above)
 {
@@ -76,7 +76,7 @@ void halve(const OffsetBrick& brick, const Size3& extent, const Size3& octant, O
             halve_rows(rows, extent.x, row.data());
             for (int64_t x = 0; x < half; ++x)
                 if (row[static_cast<size_t>(x)] == Offset{0})
-                    row[static_cast<size_t>(x)] = Offset{0};  // -0 is no offset
+                    row[static_cast<size_t>(x)] = Offset{0};  // -0 does not count as an offset
             const Size3 to = octant * (BRICK_SIDE / 2) + Size3(0, y / 2, z / 2);
             std::memcpy(above.data() + to.x + BRICK_SIDE * (to.y + BRICK_SIDE * to.z), row.data(),
                         static_cast<size_t>(half) * sizeof(Offset));
@@ -128,7 +128,7 @@ const OffsetSource::Entry* OffsetSource::find(const Entries& changed, const Bric
     return found == entries_.end() ? nullptr : &found->second;
 }
 
-/// Made anew of the up to eight bricks below it.
+/// Recomputed from the up to eight bricks below it.
 OffsetSource::Entry OffsetSource::parent(const Entries& changed, const BrickKey& key) const
 {
     auto offsets = std::make_shared<OffsetBrick>(OffsetBrick{});

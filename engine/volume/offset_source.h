@@ -1,12 +1,12 @@
 #pragma once
 // A volume with density offsets: another source's values plus an offset per voxel, clamped to the range of the type.
-// Where there are no offsets it returns the same bits.
+// Voxels without an offset are returned bit for bit.
 //
-// Coarser levels: the other source's value plus the offsets, halved as levels are (halving.h). That is the mean of the
-// sums except for one rounding and for clamped voxels.
+// Coarser levels: the other source's value plus the offsets, which are halved like levels (halving.h). This equals the
+// mean of the sums except for one rounding and for clamped voxels.
 //
-// Threads. One thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader takes the ones it
-// needs under a lock and adds them without it, so each read sees the offsets of one moment.
+// Threads. One thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader fetches the bricks
+// it needs under a lock and adds them without it, so each read sees the offsets of one moment.
 
 #include <atomic>
 #include <shared_mutex>
@@ -22,12 +22,12 @@ class OffsetSource final : public VolumeSource {
 public:
     explicit OffsetSource(std::shared_ptr<const VolumeSource> base);
 
-    /// Replaces the offsets of a brick of level 0; null: none. Those beyond the volume's border must be 0.
+    /// Replaces the offsets of a brick of level 0; null: none. Offsets outside the volume must be 0.
     struct Brick {
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// Costs an eighth of a brick's work per coarser level.
+    /// Costs an eighth of a brick's work for each coarser level.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }
@@ -36,15 +36,15 @@ public:
     Size3 block() const override { return base_->block(); }
     int levels() const override { return base_->levels(); }
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override;
-    /// Those of the other source, widened by the offsets there and in neighbouring bricks.
+    /// The range of the other source, widened by the offsets there and in neighbouring bricks.
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override;
-    /// Not known for volumes with offsets.
+    /// Unknown for volumes with offsets.
     std::optional<VolumeStatistics> statistics() const override;
 
 private:
     struct Entry {
         std::shared_ptr<const OffsetBrick> offsets;  ///< null: all offsets of this level are 0
-        ValueRange range;                            ///< of 0 and of all offsets of level 0 that it stands for
+        ValueRange range;                            ///< of 0 and all offsets of level 0 below this brick
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
     const Entry* find(const Entries& changed, const BrickKey& key) const;
@@ -52,7 +52,7 @@ private:
 
     std::shared_ptr<const VolumeSource> base_;
     mutable std::shared_mutex mutex_;
-    Entries entries_;  ///< written by the thread that sets, under the lock
+    Entries entries_;  ///< written under the lock, by the thread that sets offsets
     std::atomic<bool> any_{false};
 };
 

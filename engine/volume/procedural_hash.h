@@ -16,7 +16,7 @@ constexpr uint32_t mixed(uint32_t bits)
     return bits;
 }
 
-/// The part of the hash that a row of positions shares: hash_of(seed, x, y, z) == mixed(x ^ row_hash(seed, y, z)).
+/// The part of the hash that all positions of a row share: hash_of(seed, x, y, z) == mixed(x ^ row_hash(seed, y, z)).
 constexpr uint32_t row_hash(uint32_t seed, uint32_t y, uint32_t z)
 {
     return mixed(y ^ mixed(z ^ mixed(seed + 0x9e3779b9u)));

@@ -1,6 +1,6 @@
 #pragma once
-// One kind of procedural volume, as source_procedural.cpp uses it. Values are 0 ... 250 and depend on the parameters
-// alone. Objects are immutable; any thread may call them. A `Rows` belongs to one thread.
+// One kind of procedural volume, for source_procedural.cpp. Values are 0 ... 250 and depend on the parameters alone.
+// Objects are immutable; any thread may call them. A `Rows` belongs to one thread.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@ public:
     virtual bool has_gradient() const { return true; }
     virtual glm::dvec3 gradient(const glm::dvec3& voxel) const = 0;
 
-    /// Evaluates the rows of a box, best with z running faster than y. Every value equals `value` at the voxel's
+    /// Evaluates the rows of a box; fastest if z varies faster than y. Every value equals `value` at the voxel's
     /// centre, bit for bit.
     class Rows {
     public:

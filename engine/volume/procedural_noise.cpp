@@ -1,4 +1,4 @@
-// The procedural volumes that are random through and through: speckles and fog.
+// The procedural volumes that are entirely random: speckles and fog.
 
 #include <array>
 #include <cmath>
@@ -20,8 +20,8 @@ int64_t floor_of(double coordinate)
     return static_cast<int64_t>(std::floor(coordinate));
 }
 
-/// Every fourth cell of 8^3 voxels, by chance, holds one ball. Balls keep a voxel's distance from their cell's faces,
-/// so that no two of them touch: each is one component. All lengths are sixteenths of a voxel: distances are exact.
+/// One in four cells of 8^3 voxels, chosen at random, holds one ball. Balls stay a voxel away from their cell's faces,
+/// so no two of them touch: each is one component. All lengths are sixteenths of a voxel, so distances are exact.
 class Speckles final : public ProceduralKind {
 public:
     explicit Speckles(uint32_t seed) : seed_(seed) {}
@@ -128,7 +128,7 @@ private:
     }
 
     uint32_t seed_;
-    double period_;  ///< voxels; a power of two, so that fractions are exact
+    double period_;  ///< voxels; a power of two, which makes fractions exact
 };
 
 class Fog final : public ProceduralKind {

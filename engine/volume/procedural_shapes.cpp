@@ -1,4 +1,4 @@
-// The procedural volumes that need no randomness.
+// The procedural volumes that use no random numbers.
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +127,7 @@ private:
     glm::dvec3 scale_;  ///< voxel -> [-1,1]
 };
 
-/// Between voxel centres it is the trilinear field of its voxels.
+/// Between voxel centres the field interpolates its voxels trilinearly.
 class Checker final : public ProceduralKind {
 public:
     double value(const glm::dvec3& voxel) const override

@@ -1,6 +1,6 @@
-// Tubes like the vascular bundles of a stem: eight bent ones from the bottom to the top, fanning out, and five thinner
-// ones that branch off. Their centre lines are cubic Bezier curves cut into short straight segments; a tube is what
-// lies within its radius of them. Noise is one random number a voxel; between voxel centres it does not vary.
+// Tubes like the vascular bundles of a stem: eight curved ones from bottom to top, fanning out, and five thinner
+// branches. Their centre lines are cubic Bezier curves split into short straight segments; a tube is everything within
+// its radius of them. Noise is one random number per voxel; it is constant between voxel centres.
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ constexpr double NOISE_DEVIATION = 0.03 * (TUBE - BACKGROUND);
 constexpr uint32_t BUNDLES = 8;
 constexpr uint32_t BRANCHES = 5;
 
-/// Four bytes of a hash added up are nearly normal: mean 510, variance 4 (256^2 - 1) / 12.
+/// The sum of a hash's four bytes is nearly normal: mean 510, variance 4 (256^2 - 1) / 12.
 double noise_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
@@ -44,7 +44,7 @@ struct Segment {
     glm::dvec3 begin, along;
     double inverse_length_squared;
     double radius;
-    glm::dvec3 lower, upper;  ///< outside this box the tube adds nothing
+    glm::dvec3 lower, upper;  ///< the tube adds nothing outside this box
 
     Segment(const glm::dvec3& from, const glm::dvec3& to, double tube_radius)
         : begin(from), along(to - from), inverse_length_squared(1.0 / glm::dot(along, along)), radius(tube_radius)
@@ -58,7 +58,7 @@ struct Segment {
     {
         return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y && p.z >= lower.z && p.z <= upper.z;
     }
-    /// From the nearest point of the centre line.
+    /// The vector from the nearest point of the centre line.
     glm::dvec3 offset(const glm::dvec3& p) const
     {
         const glm::dvec3 d = p - begin;
@@ -72,7 +72,7 @@ struct Segment {
     }
 };
 
-/// Corners in [0,1]^3 of the volume, a little beyond at its ends.
+/// Control points in [0,1]^3 of the volume; the ends lie slightly outside.
 using Bezier = std::array<glm::dvec3, 4>;
 
 glm::dvec3 point_on(const Bezier& c, double t)
@@ -98,7 +98,7 @@ public:
         return profile(nearest) + noise_of(hash);
     }
 
-    /// The noise does not take part: it is constant within a voxel and jumps at its faces.
+    /// Leaves out the noise, which is constant within a voxel and jumps at its faces.
     glm::dvec3 gradient(const glm::dvec3& voxel) const override
     {
         double nearest = 1.0;
@@ -117,7 +117,7 @@ public:
         return length > 0.0 ? offset * (profile_slope(nearest) / length) : glm::dvec3(0.0);
     }
 
-    /// Only segments near a row are asked; the rest of it is noise.
+    /// Evaluates only segments near a row; the rest of the row is noise.
     class BinnedRows final : public Rows {
     public:
         BinnedRows(const Tubes& kind, const VoxelBox& box)

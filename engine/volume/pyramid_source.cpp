@@ -13,7 +13,7 @@ namespace shvr {
 
 namespace {
 
-/// A level as its file would hold it.
+/// A level in the layout of a file.
 struct Level {
     Size3 size{0};
     std::vector<std::byte> voxels;
@@ -73,7 +73,7 @@ public:
     Size3 block() const override { return base_->block(); }
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
     {
-        // Means lie within the range of what they are made of, but only the source knows that.
+        // Means lie within the range of their voxels, but only the source knows that range.
         return level == 0 ? base_->brick_range(level, brick) : std::nullopt;
     }
     std::optional<VolumeStatistics> statistics() const override { return base_->statistics(); }

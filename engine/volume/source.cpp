@@ -16,8 +16,8 @@ namespace {
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr size_t BINS = 256;
 
-/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice where that is too large.
-/// Where voxels lie together in blocks, slabs are as thick as those, and of rows of whole blocks.
+/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice if a slice is too large. If
+/// the file stores blocks, slabs are as thick as a block and have rows of whole blocks.
 template <class T, class Take>
 void for_each_slab(const VolumeSource& source, const Take& take)
 {
@@ -51,14 +51,14 @@ size_t bin_of(const ValueRange& range, double value)
     return std::min(BINS - 1, static_cast<size_t>(place * double{BINS}));
 }
 
-/// Integers have few enough values to count each; everything else follows from the counts.
+/// Integers of 8 and 16 bits have few enough values to count each; everything else follows from the counts.
 template <class T>
 VolumeStatistics measure_integers(const VolumeSource& source)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal; counting them in turn in several tables keeps one addition from waiting for
-    // the one before.
+    // Neighbouring voxels are often equal; counting them in several tables in turn keeps one addition from waiting for
+    // the previous one.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
     for_each_slab<T>(source, [&](std::span<const T> voxels) {
@@ -79,19 +79,20 @@ VolumeStatistics measure_integers(const VolumeSource& source)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Outliers. Few: at most this share of the voxels at each end, or one of a thousand or more. Far: by this many times
-/// the range of all others.
+/// Outliers are few: at most this share of the voxels at each end, or one of a thousand or more. And they are far: this
+/// many times the range of all other voxels away.
 constexpr double OUTLIER_SHARE = 1e-5;
 constexpr int64_t FEWEST_VOXELS = 1000;
 constexpr double OUTLIER_DISTANCE = 4.0;
 
-/// How often values occur, by the first bits of their doubles: sign, exponent and 8 bits of the mantissa. The keys are
-/// in the order of the values, so that quantiles can be found to within 0.4 % of their size in one pass.
+/// A histogram by the leading bits of the values as doubles: sign, exponent and 8 bits of the mantissa. Keys sort like
+/// values, so one pass finds quantiles to within 0.4 % of their size.
 class Sketch {
 public:
     void add(double value) { ++counts_[key_of(value)]; }
 
-    /// The range of the values without `left_out` of them at each end, rounded outwards; there must be more.
+    /// The range of the values without `left_out` of them at each end, rounded outwards; there must be more values than
+    /// that.
     ValueRange without(int64_t left_out) const
     {
         size_t lower = 0;
@@ -105,7 +106,7 @@ private:
     static constexpr int KEY_BITS = 20;
     static constexpr uint64_t SIGN = uint64_t{1} << 63;
 
-    /// Negative numbers run the other way in their bits.
+    /// The bits of negative numbers sort in reverse.
     static size_t key_of(double value)
     {
         const auto bits = std::bit_cast<uint64_t>(value);
@@ -134,7 +135,7 @@ void for_each_finite(const VolumeSource& source, const Take& take)
     });
 }
 
-/// Leaves outliers out of the statistics' range, if there are any.
+/// Excludes outliers from the statistics' range, if there are any.
 template <class T>
 void find_bulk(const VolumeSource& source, const Sketch& sketch, int64_t finite, VolumeStatistics& statistics)
 {
@@ -145,11 +146,11 @@ void find_bulk(const VolumeSource& source, const Sketch& sketch, int64_t finite,
     const double lower = std::max(middle.lower, statistics.minimum);
     const double upper = std::min(middle.upper, statistics.maximum);
     const double reach = OUTLIER_DISTANCE * (upper - lower);
-    // Where nearly all voxels are equal, the few others are what there is to see.
+    // If nearly all voxels are equal, the few others are the interesting ones.
     if (!(reach > 0.0)) return;
     const ValueRange fence{std::max(lower - reach, -most), std::min(upper + reach, most)};
     if (fence.lower <= statistics.minimum && fence.upper >= statistics.maximum) return;
-    // Codes tell all integers apart anyway.
+    // All integers have their own codes anyway.
     if (std::is_integral_v<T> && statistics.maximum - statistics.minimum <= 65535.0) return;
     ValueRange bulk{statistics.maximum, statistics.minimum};
     for_each_finite<T>(source, [&](double value) {
@@ -205,7 +206,7 @@ std::optional<ValueRange> VolumeSource::brick_range(int /*level*/, const Size3& 
 
 namespace {
 
-/// One level as if it were all there is.
+/// Presents one level as a whole volume.
 class OneLevel final : public VolumeSource {
 public:
     OneLevel(const VolumeSource& source, int level)

@@ -1,11 +1,11 @@
 #pragma once
 // Where voxels come from. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
 // windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine, but broken".
-// `open_volume` (open_volume.h) tries them in a listed order.
+// `open_volume` (open_volume.h) tries them in a fixed order.
 //
-// Levels. Level 0 is the volume. A voxel of level l stands for 2^l voxels of level 0 along each axis and lies on them
-// exactly: voxel i covers [2^l i, 2^l (i + 1)), so that position p of level 0 is position p / 2^l of level l. A level
-// has ceil(size / 2^l) voxels along each axis; the last ones may stand for fewer. Most files have level 0 alone.
+// Levels. Level 0 is the volume. A voxel of level l covers 2^l voxels of level 0 along each axis, exactly aligned:
+// voxel i covers [2^l i, 2^l (i + 1)), so position p of level 0 is position p / 2^l of level l. A level has ceil(size /
+// 2^l) voxels along each axis; the last ones may cover fewer. Most files have level 0 alone.
 
 #include <filesystem>
 #include <functional>
@@ -17,11 +17,11 @@
 
 namespace shvr {
 
-/// What a person chooses where a file holds several volumes. Unless one is chosen here, a reader refuses such a file
-/// with a message that names the choices; readers of formats that hold one volume ignore this.
+/// The user's choice for files that hold several volumes. Without a choice, a reader refuses such a file with a message
+/// that lists the choices; readers of formats with one volume ignore this.
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
-    std::string frame{};    ///< a number from 1, where there is more than one point in time
+    std::string frame{};    ///< a number from 1, if there are several points in time
     bool operator==(const OpenOptions&) const = default;
 };
 
@@ -35,19 +35,19 @@ public:
     /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
-    /// The block size of level 0 in the file: boxes of whole blocks, counted from voxel 0, are read without decoding
-    /// anything twice. 1, 1, 1: it does not matter.
+    /// The block size of level 0 in the file: reading boxes of whole blocks, counted from voxel 0, decodes nothing
+    /// twice. 1, 1, 1: any box is fine.
     virtual Size3 block() const { return Size3(1); }
 
-    /// How many levels there are, at least 1.
+    /// The number of levels, at least 1.
     virtual int levels() const { return 1; }
-    /// As `read`, of a level.
+    /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// What is known, without reading voxels, of the values of level 0 and of all levels up to `level` within brick
+    /// What is known, without reading voxels, about the values of level 0 and of all levels up to `level` within brick
     /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it.
-    /// Nothing where the source does not know.
+    /// Nothing if the source does not know.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
-    /// The statistics of level 0 where the source knows them; `measure` computes them.
+    /// The statistics of level 0 if the source knows them; `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
 
 protected:
@@ -57,20 +57,20 @@ private:
     VolumeInfo info_;
 };
 
-/// One pass over the whole volume (types of 32 and 64 bits: a second one for the histogram, whose range the first one
-/// finds, and a third one where a few voxels are left out of that range) in slabs of bounded size: at most 32 MiB, at
-/// least one row. A volume without a finite voxel has minimum = maximum = mean = 0. What the source knows itself is
-/// taken from it. Of a volume of more than MOST_MEASURED voxels that has coarser levels, the finest level of no more is
-/// measured instead, or the coarsest (VolumeStatistics::measured_level).
+/// One pass over the whole volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits
+/// need a second pass for the histogram, whose range the first one finds, and a third one if a few outliers are left
+/// out of that range. A volume without a finite voxel has minimum = maximum = mean = 0. Statistics that the source
+/// knows are not measured. If the volume has coarser levels and more than MOST_MEASURED voxels, the finest level with
+/// no more than that is measured instead, or else the coarsest (VolumeStatistics::measured_level).
 VolumeStatistics measure(const VolumeSource& source);
 inline constexpr int64_t MOST_MEASURED = int64_t{1} << 27;
 
-/// The same for a level, always by reading its voxels.
+/// Like `measure`, for one level, always by reading its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level);
-/// The statistics of integers of 8 or 16 bits, of which `lowest` + i occurs `counts[i]` times.
+/// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
-/// What a person should know about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
+/// What the user should know about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
 /// level was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 

@@ -57,13 +57,13 @@ std::unique_ptr<ProceduralKind> make_kind(const ProceduralSpec& spec)
     fail("procedural volume is \"", spec.kind, "\"; expected one of ", known);
 }
 
-/// Signed bytes hold -128 ... 127: there, every intensity is lower by 128.
+/// Signed bytes hold -128 ... 127, so every intensity is lowered by 128.
 double shift_of(VoxelType type)
 {
     return type == VoxelType::int8 ? -128.0 : 0.0;
 }
 
-/// Puts `values`, which kinds give from 0 to 250, into voxels.
+/// Converts `values`, which all kinds return in 0 ... 250, to voxels.
 void store(VoxelType type, std::span<double> values, std::byte* voxels)
 {
     const double shift = shift_of(type);
@@ -87,7 +87,7 @@ public:
 
     int levels() const override { return levels_; }
 
-    /// A huge volume cannot be measured voxel by voxel; a coarse level stands for it.
+    /// A huge volume cannot be measured voxel by voxel; a coarse level is used instead.
     std::optional<VolumeStatistics> statistics() const override
     {
         if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;
@@ -146,7 +146,7 @@ private:
     int levels_;
 };
 
-/// For kinds whose values are cheap: one by one.
+/// For kinds that are cheap to evaluate: one value at a time.
 class PointRows final : public ProceduralKind::Rows {
 public:
     PointRows(const ProceduralKind& kind, int64_t first_x) : kind_(kind), first_x_(first_x) {}

@@ -1,19 +1,18 @@
 #pragma once
 // Deterministic volumes with a known value and gradient, for tests, benchmarks and goldens. No file is involved and no
-// voxel is stored: `read` evaluates the function. Equal parameters give equal bits on every machine (the noise is an
-// integer hash, no library random numbers, and no transcendental function decides a voxel's rounding where that can be
-// avoided).
+// voxel is stored: `read` evaluates the function. Equal parameters give equal bits on every machine: the noise is an
+// integer hash, no library random numbers, and transcendental functions are kept out of a voxel's rounding where
+// possible.
 
 #include "engine/volume/source.h"
 
 namespace shvr {
 
-/// A scalar field in voxel coordinates (centre of voxel i at i + 0.5), in intensity units.
+/// A scalar field in voxel coordinates (the centre of voxel i is at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// d value / d voxel; empty where the field has no useful derivative (speckles). That of `tubes` leaves out the
-    /// noise, which is constant within a voxel and jumps at its faces. Where the field has a kink, it is the slope of
-    /// one side.
+    /// d value / d voxel; empty if the field has no useful derivative (speckles). For `tubes` it leaves out the noise,
+    /// which is constant within a voxel and jumps at its faces. At a kink, it is the slope of one side.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
 
@@ -24,8 +23,8 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Levels, each the same function at the centres of larger voxels. 0: one, or above 2^33 voxels as many as it takes
-    /// to end with a single brick.
+    /// Number of levels; each is the same function, sampled at the centres of larger voxels. 0: one level, or above
+    /// 2^33 voxels as many as are needed to end with a single brick.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };
@@ -45,7 +44,7 @@ struct ProceduralSpec {
 /// checker         one voxel 50, its neighbours 200: the highest frequency a grid holds. Trilinear between voxels.
 std::vector<std::string> procedural_kinds();
 
-/// Fails with a sentence naming the kinds when `spec.kind` is none of them.
+/// Fails with a sentence that lists the kinds if `spec.kind` is unknown.
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
 

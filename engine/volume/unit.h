@@ -6,10 +6,10 @@
 
 namespace shvr {
 
-/// "micron", "µm", "micrometer" -> "um"; unknown units are kept, without control characters and cut at 60.
+/// "micron", "µm", "micrometer" -> "um"; unknown units are kept, cut at 60 characters and without control characters.
 std::string plain_unit(std::string_view unit);
 
-/// Micrometres in a unit of length; nothing where it is none ("voxel").
+/// Micrometres in a unit of length; nothing if it is not one ("voxel").
 std::optional<double> micrometres_in(const std::string& unit);
 
 }  // namespace shvr

@@ -15,7 +15,7 @@ namespace {
 constexpr double LARGEST_CODE = 65535.0;
 constexpr double LARGEST_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
 
-/// Every spelling in lower case, words separated by one space, without MetaImage's "MET_".
+/// Every spelling in lower case, with single spaces between words, without MetaImage's "MET_".
 constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
     {"uint8", VoxelType::uint8},
     {"uint8_t", VoxelType::uint8},
@@ -29,7 +29,7 @@ constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
     {"uint16", VoxelType::uint16},
     {"uint16_t", VoxelType::uint16},
     {"ushort", VoxelType::uint16},
-    {"ushort_12", VoxelType::uint16},  // side-cars: 12 bits in 16
+    {"ushort_12", VoxelType::uint16},  // side-cars: 12 bits stored in 16
     {"unsigned short", VoxelType::uint16},
     {"unsigned short int", VoxelType::uint16},
     {"int16", VoxelType::int16},
@@ -133,7 +133,7 @@ int64_t voxel_count(const VolumeInfo& info)
 
 uint32_t IntensityWindow::threshold_code(double threshold) const
 {
-    // Searched with `intensity_of`, which is what voxels are compared by: no rounding of `code_of` can be off by one.
+    // Searched with `intensity_of`, which callers compare voxels by, so rounding in `code_of` cannot be off by one.
     uint32_t below = 0;
     uint32_t above = 65536;
     while (below < above) {
@@ -157,7 +157,7 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
         const bool is_exact = range <= LARGEST_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
         if (is_exact) return {lower, std::floor(LARGEST_CODE / std::clamp(range, 1.0, LARGEST_CODE))};
     }
-    // Doubles may lie so far apart that their difference is infinite, or so close that its inverse is.
+    // Doubles may lie so far apart that their difference is infinite, or so close that the inverse is.
     const double lower = std::clamp(minimum, -LARGEST_END, LARGEST_END);
     const double range = std::clamp(maximum, -LARGEST_END, LARGEST_END) - lower;
     return {lower, range > 0.0 ? std::min(LARGEST_CODE / range, LARGEST_END) : LARGEST_CODE};

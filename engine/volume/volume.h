@@ -1,6 +1,6 @@
 #pragma once
-// What a scalar volume is: its size, voxel type, spacing and unit, and the intensity window under which its voxels
-// travel to the device as R16_UNORM codes.
+// A scalar volume: its size, voxel type, spacing and unit, and the intensity window that maps its voxels to the
+// R16_UNORM codes of the device.
 //
 // Spaces. voxel: index space of level 0, the centre of voxel i lies at i + 0.5. volume: physical, in the file's unit,
 // volume = voxel * spacing. Axis order is x, y, z with x fastest in memory. All counts are 64 bit.
@@ -22,14 +22,14 @@ enum class VoxelType { uint8, int8, uint16, int16, uint32, int32, float32, float
 inline constexpr VoxelType VOXEL_TYPES[] = {VoxelType::uint8,   VoxelType::int8,   VoxelType::uint16,
                                             VoxelType::int16,   VoxelType::uint32, VoxelType::int32,
                                             VoxelType::float32, VoxelType::float64};
-/// For messages that say what was expected.
+/// For messages that list the expected types.
 inline constexpr const char* VOXEL_TYPE_NAMES = "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
 
 size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
 bool is_float(VoxelType type);
 /// "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as the header formats spell them; nothing if unknown. Integers
-/// of 64 bits are unknown: doubles, in which intensities are computed, do not hold them.
+/// of 64 bits are unknown: intensities are computed in double, which cannot represent them.
 std::optional<VoxelType> voxel_type_of(const std::string& name);
 
 /// A half-open box of voxels, [lower, upper).
@@ -41,61 +41,61 @@ struct VoxelBox {
 };
 
 struct VolumeInfo {
-    std::string name;    ///< for people: the file's name
+    std::string name;    ///< for display: the file's name
     std::string format;  ///< the reader's name for it: "raw", "nrrd", "tiff", ...
     Size3 size{0};       ///< voxels
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
-    std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" where the file states none
-    /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" where it states none), the centre of
-    /// voxel 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
+    std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" if the file states none
+    /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" if it states none), the centre of voxel
+    /// 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
     /// exported, not drawn: volume space is voxel * spacing. It is right-handed: a reader that finds left-handed axes
-    /// reverses the order of voxels along one of them, and says so here and in a warning.
+    /// reverses the order of voxels along one of them, and records that here and in a warning.
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// What the reader had to assume or leave out, one sentence each ("no spacing stated; 1 voxel assumed").
+    /// What the reader had to assume or ignore, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
 
-/// size.x * size.y * size.z; fails where that exceeds 63 bits. Each side must be 1 ... 2^20.
+/// size.x * size.y * size.z; fails if that exceeds 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);
 
-/// Smallest and largest finite value; `lower > upper` where there is none.
+/// Smallest and largest finite value; `lower > upper` if there is none.
 struct ValueRange {
     double lower = 0.0;
     double upper = 0.0;
     bool operator==(const ValueRange&) const = default;
 };
 
-/// Minimum, maximum, mean and a 256-bin histogram of finite voxels, in the file's own intensity units.
+/// Minimum, maximum, mean and a 256-bin histogram of the finite voxels, in the file's own intensity units.
 struct VolumeStatistics {
     double minimum = 0.0;
     double maximum = 0.0;
     double mean = 0.0;
     int64_t not_finite = 0;
-    std::vector<int64_t> histogram{};  ///< 256 bins over range(); values beyond count in the first or last bin
-    /// Where a few outliers would leave too few codes for all other voxels: the extremes without those few. Unused
-    /// where every integer has its own code.
+    std::vector<int64_t> histogram{};  ///< 256 bins over range(); values outside it count in the first or last bin
+    /// The extremes without a few outliers, if those would leave too few codes for all other voxels. Unused if every
+    /// integer has its own code.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;  ///< outliers
-    int measured_level = 0;   ///< of which level these statistics are; above 0, voxels are means
+    int measured_level = 0;   ///< the level that was measured; above 0, voxels are means
 
-    /// The range of pictures, thresholds and the histogram.
+    /// The range used for pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
 };
 
-/// The affine map from intensities to 16-bit codes: code = round((intensity - lower) * codes_per_unit).
-/// For integers whose range is at most 65535, `codes_per_unit` is a whole number and the map is exact, so that a
-/// threshold on codes is a threshold on intensities. Integers of 32 bits with a larger range, and floats, are quantised
-/// into 65535 steps of their range. Intensities outside the window get the code of its nearer end.
+/// The affine map from intensities to 16-bit codes: code = round((intensity - lower) * codes_per_unit). For integers
+/// whose range is at most 65535, `codes_per_unit` is a whole number and the map is exact, so a threshold on codes
+/// equals a threshold on intensities. Integers of 32 bits with a larger range, and floats, are quantised into 65535
+/// steps of their range. Intensities outside the window are clamped to its nearer end.
 struct IntensityWindow {
     double lower = 0.0;
     double codes_per_unit = 257.0;
     double upper() const { return lower + 65535.0 / codes_per_unit; }
     double code_of(double intensity) const { return (intensity - lower) * codes_per_unit; }
     double intensity_of(double code) const { return lower + code / codes_per_unit; }
-    /// The smallest code whose intensity is at or above `threshold` (inclusive); 65536 where none is.
+    /// The smallest code whose intensity is at or above `threshold` (inclusive); 65536 if there is none.
     uint32_t threshold_code(double threshold) const;
     bool operator==(const IntensityWindow&) const = default;
 };

@@ -12,7 +12,7 @@ template <class T>
 T to_voxel(double value)
 {
     if constexpr (std::is_floating_point_v<T>) return static_cast<T>(value);
-    // std::floor is a call where SSE 4.1 may not be taken for granted.
+    // Without SSE 4.1, std::floor is a function call.
     const double raised = value + 0.5;
     const auto whole = static_cast<int64_t>(raised);
     return static_cast<T>(static_cast<double>(whole) > raised ? whole - 1 : whole);

@@ -1,5 +1,5 @@
 #pragma once
-// Voxels of any type to doubles, which hold every value of every type, and back. Any thread may call these.
+// Converts voxels of any type to doubles, which hold every value of every type, and back. Any thread may call these.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// values.size() voxels of `type`, wherever they lie.
+/// Loads values.size() voxels of `type`, aligned or not.
 void load_voxels(VoxelType type, const std::byte* voxels, std::span<double> values);
 
 /// Integers are rounded to nearest, halves up. Values must be finite and, for integer types, within the range of

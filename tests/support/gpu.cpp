@@ -32,7 +32,7 @@ std::unique_ptr<VolumeSource> source_as(const TestVolume& volume)
     return std::make_unique<MemorySource>(volume.info(), std::move(bytes));
 }
 
-/// Densities of the very codes that the device holds.
+/// The densities of exactly the codes that the device holds.
 std::vector<double> densities_of(const TestVolume& volume)
 {
     const IntensityWindow window = volume.window();
@@ -306,7 +306,7 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
         const glm::dvec3 lower = glm::max(session.cut.lower, glm::dvec3(0.0)) * volume.spacing;
         const glm::dvec3 upper = glm::min(session.cut.upper, glm::dvec3(volume.size)) * volume.spacing;
         const glm::dvec3 middle = 0.5 * (lower + upper);
-        // The box's reach along the view, on either side of its middle.
+        // Half the box's extent along the view direction.
         const double reach = 0.5 * glm::dot(glm::abs(forward), upper - lower);
         const double at_middle = glm::dot(middle, forward), at_eye = glm::dot(camera.eye, forward);
         scene.blend =

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes for the tests of the haptics: relevance made from a claim about points, and the slow truth about a ball in it.
+// Scenes for the haptics tests: relevance built from a predicate on points, and a slow exact result for a ball in it.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// The voxels whose centres satisfy `is_relevant`, in `size` voxels from `origin` on.
+/// The voxels, `size` of them from `origin` on, whose centres satisfy `is_relevant`.
 template <class Claim>
 void fill_patch(RelevancePatch& patch, const glm::ivec3& origin, const glm::ivec3& size, const glm::dvec3& spacing,
                 const Claim& is_relevant)
@@ -38,7 +38,7 @@ inline bool is_set(const RelevancePatch& patch, int x, int y, int z)
     return patch.row_word(x / 32, y, z) >> (x % 32) & 1u;
 }
 
-/// An endless round rod.
+/// An infinite round rod.
 struct Rod {
     glm::dvec3 point{0.0}, direction{1.0, 0.0, 0.0};
     double radius = 1.0;
@@ -49,7 +49,7 @@ struct Rod {
     }
 };
 
-/// The relevant voxels as boxes, each cut along `lines` x `lines` lines along x whose ends are exact.
+/// Treats relevant voxels as boxes, each integrated along `lines` x `lines` lines parallel to x with exact ends.
 inline BallIntegrals integrate_slowly(const RelevancePatch& patch, const glm::dvec3& centre, double radius, int lines)
 {
     BallIntegrals ball;

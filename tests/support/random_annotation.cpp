@@ -127,7 +127,7 @@ Command random_tracing(const Document& document, std::mt19937& random)
     };
     const auto group = uint8_t(random() % 5);
     const double radius = double(random() % 64) / 16.0;
-    // What is selected comes with the command, as tools do it.
+    // The command includes the change of selection, like the commands of the tools.
     TraceGraph selected = trace;
     if (!trace.nodes().empty() && random() % 2 == 0) selected.select(nearest_node_selection(trace, place()));
     const auto has_node = selected.selection().node().has_value();

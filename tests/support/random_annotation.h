@@ -1,6 +1,6 @@
 #pragma once
-// Annotation at random, for tests of what must hold whatever a person does: commands of all kinds on a small volume,
-// and a number that tells two documents apart. Equal seeds, equal commands.
+// Random annotation, for tests of what must hold whatever the user does: commands of all kinds on a small volume, and a
+// hash that distinguishes two documents. Equal seeds give equal commands.
 
 #include <cstdint>
 #include <random>
@@ -9,16 +9,17 @@
 
 namespace shvr::test {
 
-inline constexpr Size3 ANNOTATED_SIZE(45, 40, 35);  // no multiple of a brick's side
+inline constexpr Size3 ANNOTATED_SIZE(45, 40, 35);  // not multiples of a brick's side
 inline constexpr VoxelType ANNOTATED_TYPE = VoxelType::int16;
 
-/// What is annotated.
+/// The volume that is annotated.
 VolumeInfo annotated_volume();
 Document unannotated();
-/// Where work on it is kept, in `folder`.
+/// The files of work on it, in `folder`.
 WorkFiles files_in(const std::filesystem::path& folder);
 
-/// Differs (but for one chance in 2^64) where any group, offset, node, internode or size differs, or what exists.
+/// Differs (except for one chance in 2^64) if any group, offset, node, internode or size differs, or which of them
+/// exist.
 uint64_t hash_of(const Mask& mask);
 uint64_t hash_of(const DensityField& field);
 uint64_t hash_of(const TraceGraph& trace);
@@ -26,9 +27,9 @@ uint64_t hash_of(const Document& document);
 
 /// Paints or erases random parts of a random region: groups, offsets, or both in one command. May change nothing.
 Command random_painting(const Document& document, std::mt19937& random);
-/// Adds, links, moves, deletes, or sets groups and sizes, of whatever is nearest to a random place.
+/// Adds, links, moves or deletes whatever is nearest to a random position, or sets its group or size.
 Command random_tracing(const Document& document, std::mt19937& random);
-/// Either.
+/// Either painting or tracing.
 Command random_command(const Document& document, std::mt19937& random);
 
 }  // namespace shvr::test

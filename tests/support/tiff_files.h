@@ -1,6 +1,6 @@
 #pragma once
 // TIFFs for tests, written by libtiff: a page is given as the samples of its pixels, one after the other, in the byte
-// order of this machine, rows without gaps (rows of odd bits: packed, highest bit first, from a new byte each).
+// order of this machine, rows without gaps (rows of odd bits: packed, highest bit first, each row starting a new byte).
 
 #include <tiffio.h>
 
@@ -27,7 +27,7 @@ struct TiffSpec {
     double x_resolution = 0.0, y_resolution = 0.0;
     int resolution_unit = RESUNIT_NONE;
     int subfile_type = 0;
-    std::vector<uint16_t> palette{};  ///< red, green, blue, one behind the other
+    std::vector<uint16_t> palette{};  ///< red, green, blue, one after the other
     std::function<void(TIFF*)> more{};
 
     size_t row_bytes() const { return static_cast<size_t>(width * samples * bits + 7) / 8; }
@@ -56,7 +56,7 @@ public:
         if (!is_written || TIFFWriteDirectory(tiff_) != 1) fail("libtiff cannot write a page");
     }
 
-    /// A page of one strip that is compressed already.
+    /// A page with one strip that is already compressed.
     void raw_page(const TiffSpec& spec, std::string strip)
     {
         set_fields(spec);
@@ -113,7 +113,7 @@ private:
         return part;
     }
 
-    // libtiff changes what it is given, so rows and tiles are copies.
+    // libtiff modifies its input, so rows and tiles are copies.
     bool rows(const TiffSpec& spec, const std::string& samples, int plane)
     {
         const size_t row_bytes = samples.size() / static_cast<size_t>(spec.height);
@@ -132,7 +132,7 @@ private:
         const auto width = static_cast<size_t>(spec.width);
         for (size_t top = 0; top < static_cast<size_t>(spec.height); top += side) {
             for (size_t left = 0; left < width; left += side) {
-                std::string tile(side * side * pixel, '\x55');  // what lies beyond the page must not matter
+                std::string tile(side * side * pixel, '\x55');  // values outside the page must not matter
                 for (size_t y = top; y < std::min(top + side, static_cast<size_t>(spec.height)); ++y) {
                     const size_t columns = std::min(side, width - left);
                     samples.copy(tile.data() + (y - top) * side * pixel, columns * pixel, (y * width + left) * pixel);
@@ -157,7 +157,7 @@ inline std::filesystem::path write_tiff(const std::filesystem::path& path, const
     return path;
 }
 
-/// The bytes of numbers.
+/// The bytes of the given numbers.
 template <class T>
 std::string bytes_of_numbers(const std::vector<T>& numbers)
 {

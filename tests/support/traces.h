@@ -7,7 +7,7 @@
 
 namespace shvr::test {
 
-/// Numbered from 0, in order.
+/// Nodes are numbered from 0, in order.
 inline TraceGraph trace_of(const std::vector<TraceNode>& nodes, const std::vector<TraceInternode>& internodes)
 {
     TraceReader reader("test");

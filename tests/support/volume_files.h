@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of engine/volume share: a folder that goes away, volumes in memory, and whole volumes read at once.
+// Shared by the tests of engine/volume: a temporary folder, volumes in memory, and reading whole volumes at once.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ public:
 
     std::filesystem::path write(const std::string& name, std::string_view content) const
     {
-        // A new file instead of an emptied one: some file systems wait for the disk when those are closed.
+        // A new file rather than a truncated one: some file systems wait for the disk when those are closed.
         std::filesystem::remove(path / name);
         std::ofstream file(path / name, std::ios::binary);
         file.write(content.data(), static_cast<std::streamsize>(content.size()));
@@ -115,7 +115,7 @@ inline bool is_chirality_phantom(const VolumeSource& source)
     return true;
 }
 
-/// The sentence of the `Error` that `action` throws; empty where it throws none.
+/// The message of the `Error` that `action` throws; empty if it throws none.
 template <class Action>
 std::string error_of(const Action& action)
 {
@@ -127,8 +127,8 @@ std::string error_of(const Action& action)
     return {};
 }
 
-/// What this process took since this was made. "Refused at once" is tested by it and not by time, which depends on the
-/// machine: whoever goes through a claimed size reads the bytes or touches the memory.
+/// The resources this process used since construction. Tests check "refused at once" by it rather than by time, which
+/// depends on the machine: code that goes through a claimed size reads the bytes or touches the memory.
 class Effort {
 public:
     int64_t bytes_read() const { return read_so_far() - read_; }
@@ -136,7 +136,7 @@ public:
     bool is_below(int64_t bytes) const { return bytes_read() < bytes && bytes_touched() < bytes; }
 
 private:
-    /// By system calls; what is mapped counts as touched.
+    /// Through system calls; mapped pages count as touched.
     static int64_t read_so_far()
     {
         std::ifstream io("/proc/self/io");
@@ -157,7 +157,7 @@ private:
     int64_t touched_ = touched_so_far();
 };
 #ifdef __SANITIZE_ADDRESS__
-// AddressSanitizer hands out no memory a second time soon, and what it knows of each byte is touched, too.
+// AddressSanitizer does not soon reuse freed memory, and touches its shadow of each byte, too.
 constexpr int64_t AT_ONCE_BYTES = 64 << 20;
 #else
 constexpr int64_t AT_ONCE_BYTES = 32 << 20;

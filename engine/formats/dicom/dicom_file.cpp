@@ -27,13 +27,13 @@ using gdcm::DataSet;
 using gdcm::Tag;
 
 constexpr int64_t MOST_FRAMES = 65536;
-/// A slice that becomes larger than this must have some bytes in its file; no codec packs real slices closer.
+/// A larger decoded slice must have a minimum of bytes in its file; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MOST_EXPANSION = 1000;
 
-/// Held while GDCM works. It says nothing to anybody meanwhile: it would write to standard error, and the decoders in
-/// it by C's `stderr`, which points to nowhere for so long (the GNU C library lets it be assigned; file descriptor 2,
-/// where sanitizers and C++ write, is left alone).
+/// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
+/// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
+/// and C++ use, is left alone).
 class Turn {
 public:
     Turn() : lock_(mutex())
@@ -65,7 +65,7 @@ private:
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// A data set and, where a file has many frames, those of all frames and of one, which say the rest.
+/// A data set; in a file with many frames, also the data sets of all frames and of one frame, which hold the rest.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
@@ -77,7 +77,7 @@ public:
         const std::string_view bytes(value->GetPointer(), value->GetLength());
         return std::string(trimmed(bytes.substr(0, bytes.find('\0'))));
     }
-    /// Decimal strings, with backslashes between them; empty where one of them is no number.
+    /// Decimal strings, separated by backslashes; empty if one of them is not a number.
     std::vector<double> decimals(const Tag& tag) const
     {
         std::string words = text(tag);
@@ -96,7 +96,7 @@ public:
         return numbers.size() == 1 ? std::optional(numbers[0]) : std::nullopt;
     }
     int64_t whole(const Tag& tag) const { return whole_of(text(tag)).value_or(0); }
-    /// Of type US.
+    /// A value of type US.
     int64_t short_number(const Tag& tag, int64_t fallback) const
     {
         const gdcm::ByteValue* value = find(tag);
@@ -122,21 +122,21 @@ private:
 
 using Sequence = gdcm::SmartPointer<gdcm::SequenceOfItems>;
 
-/// Null where there is none.
+/// Null if there is none.
 Sequence sequence_of(const DataSet& set, const Tag& tag)
 {
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// Where values of one frame may be: in the file, or in groups of values (PS3.3, C.7.6.16) of the frame or of all
-/// frames.
+/// The places where values of one frame may be: in the file, or in functional groups (PS3.3, C.7.6.16) of the frame or
+/// of all frames.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)
         : file_(file), of_each_(sequence_of(file, Tag(0x5200, 0x9230))), of_all_(sequence_of(file, Tag(0x5200, 0x9229)))
     {}
 
-    /// Until the next call.
+    /// Valid until the next call.
     Values of(size_t frame)
     {
         groups_.clear();
@@ -221,7 +221,7 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
         spacing = values.decimals(Tag(0x0018, 0x1164));
         file.spacing_is_at_detector = spacing.size() == 2;
     }
-    // Stated from row to row first.
+    // The first number is the distance from row to row.
     if (spacing.size() == 2 && spacing[0] > 0.0 && spacing[1] > 0.0) frame.spacing = glm::dvec2(spacing[1], spacing[0]);
     frame.rescale = read_rescale(file, values, stored);
     return frame;
@@ -320,7 +320,7 @@ std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, si
             reader.ReadIntoBuffer(reinterpret_cast<char*>(pixels.data()), bytes)) {
             return pixels;
         }
-        // Some forms it knows only as a whole.
+        // It can read some encodings only as a whole.
         gdcm::ImageReader whole;
         whole.SetFileName(file.path.c_str());
         if (file.frames.size() == 1 && whole.Read() && whole.GetImage().GetBufferLength() == bytes &&

@@ -1,6 +1,6 @@
 #pragma once
-// One DICOM file as GDCM reads it: what it says of its slices, and their pixels. GDCM is seen by this file's .cpp
-// alone. GDCM keeps process-wide state, so its calls take turns; any thread may call these.
+// One DICOM file as GDCM reads it: the description of its slices, and their pixels. Only this file's .cpp uses GDCM.
+// GDCM keeps process-wide state, so its calls are serialised; any thread may call these.
 
 #include <filesystem>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// One slice, which is a frame of a file.
+/// One slice: a frame of a file.
 struct DicomFrame {
     std::optional<glm::dvec3> position{};  ///< the centre of its first pixel, mm, LPS
     glm::dvec3 along_x{1.0, 0.0, 0.0};     ///< from column to column
@@ -32,18 +32,18 @@ struct DicomFile {
     int64_t columns = 0;
     int64_t rows = 0;
     VoxelType type = VoxelType::uint16;
-    bool is_inverted = false;             ///< MONOCHROME1: small numbers are bright
+    bool is_inverted = false;             ///< MONOCHROME1: low values are bright
     bool spacing_is_at_detector = false;  ///< not corrected for the distance to the source
-    std::optional<double> distance{};     ///< mm between slices, as stated; thickness where that is all there is
+    std::optional<double> distance{};     ///< mm between slices, as stated; slice thickness if nothing else is
     double tilt_degrees = 0.0;            ///< of the gantry
     std::vector<DicomFrame> frames{};
 };
 
-/// Nothing where the file is no DICOM file, or one without pixels (a directory of others, a report). Fails where it is
-/// broken, or of a kind that makes no volume.
+/// Nothing if the file is not a DICOM file, or has no pixels (a directory of others, a report). Fails if it is broken,
+/// or of a kind that forms no volume.
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
-/// The pixels of one frame as they are stored, x fastest, in native byte order; `bytes` is their number.
+/// The pixels of one frame as stored, x fastest, in native byte order; `bytes` is their expected size.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 
 }  // namespace shvr

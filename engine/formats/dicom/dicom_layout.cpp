@@ -13,7 +13,7 @@ namespace {
 
 constexpr int64_t PREAMBLE = 132;
 constexpr uint32_t UNDEFINED = 0xffffffff;
-constexpr int DEEPEST = 16;  ///< sequences in sequences; real files have about 5
+constexpr int DEEPEST = 16;  ///< nested sequences; real files have about 5 levels
 
 constexpr uint32_t TRANSFER_SYNTAX = 0x00020010;
 constexpr uint32_t PIXEL_DATA = 0x7fe00010;
@@ -21,7 +21,7 @@ constexpr uint32_t ITEM = 0xfffee000;
 constexpr uint32_t END_OF_ITEM = 0xfffee00d;
 constexpr uint32_t END_OF_SEQUENCE = 0xfffee0dd;
 
-/// Types of elements (PS3.5, 6.2): those whose length takes four bytes, and those with two.
+/// Types of elements (PS3.5, 6.2): those with a length of four bytes, and those with two.
 constexpr std::string_view LONG_TYPES = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
 constexpr std::string_view SHORT_TYPES = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
 
@@ -48,7 +48,7 @@ public:
     {
         constexpr Encoding META{true, false};
         int64_t at = PREAMBLE;
-        // The first element behind them may be in any form.
+        // The first element after them may use any encoding.
         while (group_at(at) == 2) {
             const Element element = read_element(at, file_.bytes, META);
             if (element.length == UNDEFINED) refuse(element, "a length");
@@ -130,7 +130,7 @@ private:
             element.value_at = at + 12;
             return element;
         }
-        // Of what is unknown, GDCM guesses other lengths than we do.
+        // For unknown types, GDCM guesses other lengths than we do.
         if (!is_one_of(type, SHORT_TYPES)) {
             fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at, " is of type ",
                  in_quotes(type), "; expected a type that DICOM knows");
@@ -148,7 +148,7 @@ private:
         return text;
     }
 
-    /// Elements up to `end`, or to the end of the item that they are in. Returns where the next one begins.
+    /// Walks elements up to `end`, or to the end of their item. Returns where the next one begins.
     int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
     {
         constexpr int64_t SHORTEST = 8;
@@ -167,7 +167,7 @@ private:
     {
         const bool is_pixels = element.tag == PIXEL_DATA && depth == 0;
         const bool is_unknown = std::string_view(element.type.data(), 2) == "UN";
-        // What is unknown to the writer's program is in the older form (PS3.5, 6.2.2).
+        // Values unknown to the writing program use the older encoding (PS3.5, 6.2.2).
         const Encoding inside = is_unknown ? Encoding{false, false} : encoding;
         if (element.length == UNDEFINED) {
             layout_.is_encapsulated |= is_pixels;
@@ -189,7 +189,7 @@ private:
         return (number(&start[0], 2, encoding.big_endian) << 16 | number(&start[2], 2, encoding.big_endian)) == ITEM;
     }
 
-    /// Items of a sequence or fragments of Pixel Data, up to `end` or to their delimiter.
+    /// Walks items of a sequence, or fragments of Pixel Data, up to `end` or to their delimiter.
     int64_t walk_items(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter,
                        bool are_fragments)
     {

@@ -1,7 +1,7 @@
 #pragma once
-// The lengths that a DICOM file states, against what it holds, without reading a value (PS3.5, 7.1 to 7.5). GDCM
-// believes lengths: it takes up to 4 GiB of memory for a value before it finds that the file ends, and follows
-// sequences in sequences until its stack is full. What passes here it can read. Any thread may call this.
+// Checks the lengths that a DICOM file states against its size, without reading any value (PS3.5, 7.1 to 7.5). GDCM
+// trusts lengths: it allocates up to 4 GiB for a value before it notices the end of the file, and follows nested
+// sequences until its stack overflows. GDCM can safely read files that pass this check. Any thread may call this.
 
 #include <cstdint>
 #include <optional>
@@ -13,11 +13,11 @@ namespace shvr {
 
 struct DicomLayout {
     std::string transfer_syntax;  ///< its UID
-    int64_t pixel_bytes = 0;      ///< of Pixel Data, as stored; 0 where there is none
+    int64_t pixel_bytes = 0;      ///< of Pixel Data, as stored; 0 if there is none
     bool is_encapsulated = false;
 };
 
-/// Nothing where `file` is no DICOM file. Fails where lengths do not fit in each other or in the file.
+/// Nothing if `file` is not a DICOM file. Fails if lengths do not fit into each other or into the file.
 std::optional<DicomLayout> check_dicom_layout(const InputFile& file);
 
 }  // namespace shvr

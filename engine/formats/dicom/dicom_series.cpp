@@ -16,12 +16,12 @@
 namespace shvr {
 namespace {
 
-/// Positions that differ by less are one position: files state them with about six digits.
+/// Positions closer than this count as one position: files state them with about six digits.
 constexpr double SAME_PLACE_MM = 1e-3;
-/// Distances may differ by this share.
+/// Distances may differ by this fraction.
 constexpr double SAME_DISTANCE = 0.01;
 
-/// A slice with what decides its order.
+/// A slice and the values that determine its order.
 struct Placed {
     DicomSlice slice{};
     double along = 0.0;  ///< mm, along the normal
@@ -34,7 +34,7 @@ std::string with_digits(double number)
     return sentence(std::setprecision(6), number);
 }
 
-/// Slices that can lie on each other: of one size, type and direction.
+/// Slices that can be stacked: of one size, type and direction.
 using Kind = std::tuple<int64_t, int64_t, int, std::array<int64_t, 6>>;
 
 Kind kind_of(const DicomFile& file, const DicomFrame& frame)
@@ -47,7 +47,7 @@ Kind kind_of(const DicomFile& file, const DicomFrame& frame)
     return {file.columns, file.rows, static_cast<int>(file.type), direction};
 }
 
-/// Those of the kind that most slices have; a scout beside an axial series is left out.
+/// The slices of the most frequent kind; leaves out, for example, a scout beside an axial series.
 std::vector<Placed> slices_of_one_kind(const std::vector<DicomFile>& files, VolumeInfo& info)
 {
     std::map<Kind, std::vector<Placed>> kinds;
@@ -66,7 +66,7 @@ std::vector<Placed> slices_of_one_kind(const std::vector<DicomFile>& files, Volu
     return std::move(most->second);
 }
 
-/// Along the normal; where files do not say where they are, by their numbers. Returns whether they say it.
+/// Sorts along the normal, or by slice numbers if files do not state positions. Returns whether they do.
 bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
 {
     const bool are_placed = std::all_of(slices.begin(), slices.end(), [](const Placed& slice) {
@@ -88,7 +88,7 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
     return are_placed;
 }
 
-/// Copies of one file, as exports are full of.
+/// Removes copies of one file, which are common in exports.
 void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::set<std::pair<std::string, size_t>> seen;
@@ -101,10 +101,10 @@ void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
     }
 }
 
-/// Of several slices at each place, those of one point in time.
+/// If there are several slices at each position, keeps those of one point in time.
 void choose_time(const std::string& where, const OpenOptions& options, std::vector<Placed>& slices)
 {
-    std::vector<size_t> begins;  // of places
+    std::vector<size_t> begins;  // of positions
     for (size_t i = 0; i < slices.size(); ++i) {
         if (i == 0 || slices[i].along - slices[begins.back()].along > SAME_PLACE_MM) begins.push_back(i);
     }
@@ -129,7 +129,7 @@ void choose_time(const std::string& where, const OpenOptions& options, std::vect
     slices = std::move(of_time);
 }
 
-/// The distance that most slices keep, with words about those that do not.
+/// The most frequent distance between slices, with a warning about others.
 double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::vector<double> distances;
@@ -158,7 +158,7 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     return usual;
 }
 
-/// From slice to slice. Their first pixels need not lie above each other: gantries tilt.
+/// The step from slice to slice. First pixels need not lie above each other: gantries tilt.
 glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, const glm::dvec3& normal)
 {
     const glm::dvec3 way = *slices.back().frame->position - *slices.front().frame->position;

@@ -1,5 +1,6 @@
 #pragma once
-// Which slices of which DICOM files make a volume, in which order, and where it lies. For source_dicom.cpp. Any thread.
+// Decides which slices of which DICOM files form a volume, in which order, and where it lies. For source_dicom.cpp. Any
+// thread.
 
 #include <vector>
 
@@ -12,17 +13,17 @@ struct DicomSlice {
     size_t frame = 0;
 };
 
-/// Slices of one size and direction, from first to last, with a volume's description but its type and name.
+/// Slices of one size and direction, from first to last, with the volume's description except its type and name.
 struct DicomVolume {
     VolumeInfo info{};
     std::vector<DicomSlice> slices{};
 };
 
-/// The files of the one series that there is, or that the options choose. `where`: for messages.
+/// The files of the only series, or of the one that the options choose. `where`: for messages.
 std::vector<DicomFile> choose_series(const std::string& where, std::vector<DicomFile> files,
                                      const OpenOptions& options);
 
-/// `files` are of one series, and not none.
+/// `files` are of one series; at least one.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
-// DICOM: a folder of slices, one of its files, or a file of many frames. Slices are decoded when they are asked for; a
-// few are kept.
+// DICOM: a folder of slices, one of its files, or a file with many frames. Slices are decoded on demand; a few are
+// cached.
 
 #include <algorithm>
 #include <mutex>
@@ -58,7 +58,7 @@ private:
         const std::lock_guard lock(mutex_);
         const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.slice == number; });
         if (found != kept_.end()) {
-            std::rotate(kept_.begin(), found, found + 1);  // the one used last comes first
+            std::rotate(kept_.begin(), found, found + 1);  // most recently used first
             return kept_.front().pixels;
         }
         const DicomSlice& slice = slices_[number];
@@ -76,7 +76,7 @@ private:
 
     std::vector<DicomFile> files_;
     std::vector<DicomSlice> slices_;
-    size_t pixels_ = 0;  ///< of a slice
+    size_t pixels_ = 0;  ///< per slice
     size_t most_kept_ = 2;
     mutable std::mutex mutex_;
     mutable std::vector<Kept> kept_;
@@ -105,7 +105,7 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     return paths;
 }
 
-/// What makes no volume among others (a report, a colour picture) is left out, with words.
+/// Reads all files. Files that cannot be part of a volume (a report, a colour picture) are left out, with a warning.
 std::vector<DicomFile> read_all(const std::vector<fs::path>& paths, std::vector<std::string>& left_out)
 {
     std::vector<DicomFile> files;
@@ -126,7 +126,7 @@ VoxelType type_of(const std::vector<DicomFile>& files, const std::vector<DicomSl
     const VoxelType stored = files[slices[0].file].type;
     for (const DicomSlice& slice : slices) {
         const Rescale& rescale = files[slice.file].frames[slice.frame].rescale;
-        // PET states a slope of its own for each slice.
+        // PET states a slope for each slice.
         if (rescale.slope != first.slope || rescale.intercept != first.intercept) {
             return bytes_of(stored) <= 2 ? VoxelType::float32 : VoxelType::float64;
         }
@@ -147,7 +147,7 @@ std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions
     if (!is_folder) {
         std::optional<DicomFile> file = read_dicom_file(path);
         if (!file) fail(where, ": is a DICOM file without Pixel Data; expected slices");
-        // One slice stands for the series that it is of.
+        // A single slice stands for its whole series.
         if (file->frames.size() == 1) {
             const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
             files = read_all(dicom_files_in(folder), left_out);

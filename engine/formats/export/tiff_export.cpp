@@ -1,4 +1,4 @@
-// A volume as a TIFF, through libtiff, which goes back in the file to link pages.
+// Writes a volume as a TIFF through libtiff, which goes back in the file to link pages.
 
 #include <tiffio.h>
 
@@ -16,8 +16,8 @@
 namespace shvr {
 namespace {
 
-/// The file that is being written, as libtiff's client functions see it. They are called through C, so no exception may
-/// leave them.
+/// The file being written, as libtiff's client functions see it. They are called from C, so no exception may leave
+/// them.
 struct ClientFile {
     AtomicWriter& writer;
     int64_t at = 0, size = 0;
@@ -131,7 +131,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     const Size3& size = info.size;
     const auto voxel_bytes = static_cast<int64_t>(bytes_of(info.type));
     AtomicWriter file(path);
-    // Whether offsets of 32 bits suffice must be known before anything is compressed.
+    // Whether 32-bit offsets suffice must be known before anything is compressed.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
     const std::string unit = plain_unit(info.unit);

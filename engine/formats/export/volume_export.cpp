@@ -30,7 +30,7 @@ void export_nrrd(const std::filesystem::path& path, const VolumeSource& source)
 {
     static_assert(std::endian::native == std::endian::little);
     const VolumeInfo& info = source.info();
-    // Quotes would end the name of the unit.
+    // Quotes would end the unit's name.
     std::string unit = plain_unit(info.unit);
     std::ranges::replace(unit, '"', '\'');
     const std::string quoted = "\"" + unit + "\"";

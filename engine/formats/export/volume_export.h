@@ -1,8 +1,8 @@
 #pragma once
-// A volume as one file that other programs read. Voxels are read strip by strip and go to the disk as they come.
+// Exports a volume as one file that other programs read. Voxels are read and written strip by strip.
 //
 //   .nrrd        raw voxels behind a header with spacing and unit, little-endian
-//   .tif .tiff   a page a slice, deflated; spacing and unit as ImageJ has them; BigTIFF where it must be
+//   .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed
 //
 // Any thread may call these.
 
@@ -14,14 +14,14 @@ namespace shvr {
 
 bool is_volume_export(const std::filesystem::path& path);
 
-/// Replaces an old file at once or not at all. Fails where the extension is another one.
+/// Replaces an existing file atomically. Fails for any other extension.
 void export_volume(const std::filesystem::path& path, const VolumeSource& source);
 
-/// One form each; for volume_export.cpp.
+/// One format each; for volume_export.cpp.
 void export_nrrd(const std::filesystem::path& path, const VolumeSource& source);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 
-/// The rows of a slice that an export reads at once: 256 KiB, or one row.
+/// The rows of a slice that an export reads at a time: 256 KiB, or one row.
 int64_t export_rows(const VolumeInfo& info);
 
 }  // namespace shvr

@@ -32,7 +32,7 @@ private:
     bool big_endian_;
 };
 
-/// Where a version keeps its fields. Real numbers are T, lengths are Side, codes are Code.
+/// The offsets of a version's fields. Real numbers are of type T, lengths of type Side, codes of type Code.
 struct Places {
     size_t dim, datatype, pixdim, voxels_at, slope, intercept, units, qform_code, sform_code, quaternion, qform_origin,
         sform;
@@ -64,7 +64,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     return header;
 }
 
-/// 348 or 540 in one of the byte orders.
+/// Whether `head` is big-endian: it must begin with `bytes`, 348 or 540, in one of the byte orders.
 std::optional<bool> byte_order(std::string_view head, int32_t bytes)
 {
     if (head.size() < static_cast<size_t>(bytes)) return {};
@@ -80,7 +80,7 @@ std::optional<NiftiAxes> checked(const NiftiAxes& axes)
         const double length = glm::length(axes.steps[axis]);
         if (!std::isfinite(length) || !(length > 0.0) || !std::isfinite(axes.origin[axis])) return {};
     }
-    // Axes in one plane span no volume.
+    // Axes in one plane do not span a volume.
     const glm::dmat3 units(glm::normalize(axes.steps[0]), glm::normalize(axes.steps[1]), glm::normalize(axes.steps[2]));
     if (std::abs(glm::determinant(units)) < 1e-6) return {};
     return axes;

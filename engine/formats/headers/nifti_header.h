@@ -16,9 +16,9 @@ struct NiftiHeader {
     static constexpr size_t BYTES_OF_2 = 540;
 
     int version = 1;
-    bool is_pair = false;          ///< the voxels are in an .img beside the .hdr
-    bool big_endian = false;       ///< and so are the voxels
-    std::array<int64_t, 8> dim{};  ///< their number, then their lengths
+    bool is_pair = false;          ///< the voxels are in an .img file beside the .hdr
+    bool big_endian = false;       ///< applies to header and voxels
+    std::array<int64_t, 8> dim{};  ///< number of dimensions, then their lengths
     int datatype = 0;
     std::array<double, 8> pixdim{};
     double voxels_at = 0.0;  ///< bytes; a float in NIfTI-1
@@ -33,13 +33,13 @@ struct NiftiHeader {
     glm::dvec3 sform_origin{0.0};
 };
 
-/// Nothing where `head`, the first bytes of a file, is none.
+/// Nothing if `head`, the first bytes of a file, is not a NIfTI header.
 std::optional<NiftiHeader> parse_nifti_header(std::string_view head);
 
-/// Whether it is the header of Analyze 7.5, from which NIfTI-1 was made.
+/// Whether it is a header of Analyze 7.5, the predecessor of NIfTI-1.
 bool is_analyze_header(std::string_view head);
 
-/// The steps and the origin that the header's qform means, where its numbers mean any.
+/// The steps and the origin given by the header's qform, if its numbers are valid.
 struct NiftiAxes {
     glm::dmat3 steps{1.0};
     glm::dvec3 origin{0.0};

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* DIRECTIONS = "space directions";
 constexpr const char* DIRECTIONS_EXPECTED = "three vectors of three numbers, (a,b,c) (d,e,f) (g,h,i)";
 
-/// "mm" "mm" "mm", or without quotes.
+/// "mm" "mm" "mm", with or without quotes.
 std::vector<std::string> texts_of(std::string_view value)
 {
     std::vector<std::string> texts;
@@ -28,7 +28,7 @@ std::vector<std::string> texts_of(std::string_view value)
     return texts;
 }
 
-/// "(a,b,c)" at the start of `rest`, which is shortened by it.
+/// Takes "(a,b,c)" off the start of `rest`.
 std::optional<glm::dvec3> take_vector(std::string_view& rest)
 {
     rest = trimmed(rest);
@@ -50,7 +50,7 @@ std::optional<glm::dvec3> take_vector(std::string_view& rest)
     return vector;
 }
 
-/// One for each axis of the file; nothing for an axis that is none of space ("none", or NaNs).
+/// One entry per axis of the file; nothing for an axis that is not spatial ("none", or NaNs).
 std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& fields, size_t dimension)
 {
     std::string_view rest = fields.required(DIRECTIONS, DIRECTIONS_EXPECTED);
@@ -71,7 +71,7 @@ std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& field
     return directions;
 }
 
-/// Whether the first of four axes is the one that is none of space; else it is the last.
+/// Whether the first of four axes is the non-spatial one; otherwise it is the last.
 bool first_is_not_space(const HeaderFields& fields)
 {
     constexpr const char* EXPECTED = "3, or 4 with kinds or space directions that say which axis is none of space";
@@ -133,7 +133,7 @@ glm::dvec3 space_origin(const HeaderFields& fields)
     return is_known ? *origin : glm::dvec3(0.0);
 }
 
-/// A frame that we know, and whether the file's x runs against it.
+/// A known frame, and whether the file's x runs against it.
 struct Space {
     std::string frame;
     bool is_left_handed = false;
@@ -158,7 +158,7 @@ Space space_of(const HeaderFields& fields, VolumeInfo& info)
     return {};
 }
 
-/// A negative spacing is how files without a space say that an axis runs backwards.
+/// In files without a space, a negative spacing means that the axis runs backwards.
 std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const NrrdAxes& axes)
 {
     constexpr const char* NAME = "spacings";
@@ -167,12 +167,12 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
     int unknown = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double number = numbers[axes.first + static_cast<size_t>(axis)];
-        unknown += std::isnan(number) ? 1 : 0;  // how NRRD says that it does not know
+        unknown += std::isnan(number) ? 1 : 0;  // NRRD's value for "unknown"
         steps[axis][axis] = number;
     }
     if (unknown == 3) return {};
     for (int axis = 0; axis < 3; ++axis) {
-        // What is below 1e-162 has a square of 0.
+        // The square of anything below 1e-162 is 0.
         if (!std::isfinite(glm::length(steps[axis])) || glm::length(steps[axis]) == 0.0) {
             fields.refuse(NAME, sentence(axes.dimension, " finite numbers other than 0"));
         }

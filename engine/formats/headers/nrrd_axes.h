@@ -1,6 +1,6 @@
 #pragma once
-// What an NRRD header says of its axes: which of them are space, how long they are, where they lie. For
-// source_nrrd.cpp. Any thread may call these.
+// The axes of an NRRD header: which of them are spatial, how long they are, where they lie. For source_nrrd.cpp. Any
+// thread may call these.
 
 #include <vector>
 
@@ -8,10 +8,10 @@
 
 namespace shvr {
 
-/// Three axes of space, and at most one more: before them (values of a voxel) or behind them (points in time).
+/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (points in time).
 struct NrrdAxes {
     size_t dimension = 3;
-    size_t first = 0;  ///< of the axes of space, among all
+    size_t first = 0;  ///< index of the first spatial axis
     Size3 size{0};
     int64_t channels = 1;
     int64_t frames = 1;
@@ -20,7 +20,7 @@ struct NrrdAxes {
 
 NrrdAxes read_nrrd_axes(const HeaderFields& fields);
 
-/// Spacing, unit and orientation, with what has to be said about them.
+/// Sets spacing, unit and orientation, and adds warnings about them.
 void read_nrrd_space(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info);
 
 }  // namespace shvr

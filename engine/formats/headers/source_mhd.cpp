@@ -1,6 +1,6 @@
-// MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines whose last one,
-// ElementDataFile, says where the voxels are: in another file or in many (MHD), or right behind it (LOCAL, MHA), bare
-// or behind zlib.
+// MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines. The last one,
+// ElementDataFile, says where the voxels are: in one or many other files (MHD), or right after the header (LOCAL, MHA),
+// raw or compressed with zlib.
 
 #include <cmath>
 #include <utility>
@@ -34,7 +34,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
             fail(path.string(), ": line ", line_number, " is ", in_quotes(line), "; expected \"key = value\"");
         }
         header.fields.add(line.substr(0, separator), line.substr(separator + 1));
-        // Scenes of other objects repeat their fields; they are refused by what they are.
+        // Scenes of other objects repeat their fields; refuse them by their type first.
         const std::string* type = header.fields.find("ObjectType");
         if (type != nullptr && lower_case(*type) != "image") header.fields.refuse("ObjectType", "Image");
     }
@@ -43,7 +43,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
     return header;
 }
 
-/// The first of these names that the header has; the first of all where it has none.
+/// The first of these names that the header has, or the first of all if it has none.
 const char* first_of(const HeaderFields& fields, std::initializer_list<const char*> names)
 {
     for (const char* name : names) {
@@ -59,9 +59,9 @@ void refuse_what_is_not_supported(const HeaderFields& fields)
     if (!fields.flag("BinaryData", true)) fields.refuse("BinaryData", "True: voxels as text are not supported");
 }
 
-/// Columns are the directions of x, y and z. MetaImage names no frame; where it says what the axes are to a patient, it
-/// is that of ITK, which writes most of these files: LPS. The letters themselves are left alone, since programs
-/// disagree whether they say where axes come from or where they lead.
+/// Columns are the directions of x, y and z. MetaImage names no frame; if it states the anatomical orientation of the
+/// axes, the frame is that of ITK, which writes most of these files: LPS. The orientation letters themselves are
+/// ignored: programs disagree whether they say where axes come from or where they lead.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     const char* const matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

@@ -45,7 +45,7 @@ Datatype datatype_of(const std::string& file, int code)
          "; expected integers of 8, 16 or 32 bits, floats of 32 or 64, RGB24 or RGBA32");
 }
 
-/// The first bytes, decompressed where they are compressed.
+/// The first bytes, decompressed if necessary.
 std::string head_of(const fs::path& path, bool& is_compressed)
 {
     const std::string head = read_head(path, NiftiHeader::BYTES_OF_2);
@@ -53,7 +53,7 @@ std::string head_of(const fs::path& path, bool& is_compressed)
     return is_compressed ? inflated_head(path, NiftiHeader::BYTES_OF_2) : head;
 }
 
-/// scan.hdr.gz, ".hdr", ".img" -> scan.img.gz; empty where the name ends in neither .hdr nor .hdr.gz.
+/// scan.hdr.gz, ".hdr", ".img" -> scan.img.gz; empty if the name ends in neither .hdr nor .hdr.gz.
 fs::path with_ending(const fs::path& path, std::string_view from, const std::string& to)
 {
     std::string name = path.filename().string();
@@ -69,7 +69,7 @@ fs::path with_ending(const fs::path& path, std::string_view from, const std::str
     return fs::exists(other, ignored) ? other : same;
 }
 
-/// What is in a file: one volume of `size`, as often as there are points in time and components.
+/// The content of a file: one volume of `size` for each point in time and component.
 struct Shape {
     Size3 size{1};
     int64_t frames = 1;
@@ -92,7 +92,7 @@ Shape shape_of(const std::string& file, const NiftiHeader& header)
     return {{side(1), side(2), side(3)}, side(4), side(5)};
 }
 
-/// Where there are several volumes, they follow each other, points in time first.
+/// Several volumes follow one another; points in time vary fastest.
 void choose_volume(const std::string& file, const OpenOptions& options, const Shape& shape, const Datatype& datatype,
                    VolumeInfo& info, RawVoxels& voxels)
 {
@@ -143,7 +143,7 @@ std::optional<std::string> unit_of(const NiftiHeader& header)
     }
 }
 
-/// Where there are no axes: |pixdim|, and 1 for those that are none.
+/// Used if there are no axes: |pixdim|, with 1 in place of invalid values.
 std::optional<glm::dvec3> spacing_of_pixdim(const NiftiHeader& header, VolumeInfo& info)
 {
     glm::dvec3 spacing(1.0);
@@ -190,7 +190,7 @@ void describe_space(const NiftiHeader& header, VolumeInfo& info)
 
 Rescale rescale_of(const NiftiHeader& header, const Datatype& datatype, VolumeInfo& info)
 {
-    if (header.slope == 0.0 || datatype.channels > 1) return {};  // 0: stored as it is
+    if (header.slope == 0.0 || datatype.channels > 1) return {};  // 0: stored unscaled
     if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
         info.warnings.push_back(sentence("scl_slope is ", header.slope, " and scl_inter ", header.intercept,
                                          "; intensities are shown as stored"));

@@ -1,5 +1,5 @@
-// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels bare or behind gzip, in the header's own
-// file, in another one or in many.
+// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels raw or compressed with gzip, in the
+// header's own file, in another one or in many.
 
 #include <utility>
 
@@ -18,7 +18,7 @@ constexpr int64_t LINE_SKIP_BYTES = int64_t{16} << 20;
 struct NrrdHeader {
     HeaderFields fields;
     bool is_attached = false;
-    int64_t voxels_at = 0;         ///< where the header's own file goes on after the empty line
+    int64_t voxels_at = 0;         ///< where the header's own file continues after the empty line
     std::string_view file_list{};  ///< the lines after "data file: LIST"
 };
 
@@ -46,14 +46,14 @@ NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string
         const std::string name = lower_case(trimmed(line.substr(0, colon)));
         header.fields.add(name, line.substr(colon + 1));
         if ((name == "data file" || name == "datafile") && is_list(line.substr(colon + 1))) {
-            header.file_list = rest;  // the last field: what follows are names
+            header.file_list = rest;  // the last field: names follow
             break;
         }
     }
     return header;
 }
 
-/// Where the bytes begin that follow `lines` line ends counted from `from`.
+/// Where the bytes begin after `lines` line ends, counted from `from`.
 int64_t skip_lines(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, int64_t lines)
 {
     if (lines == 0) return from;
@@ -89,13 +89,13 @@ bool is_big_endian(const HeaderFields& fields, VoxelType type)
     return endian == "big";
 }
 
-/// Skips lines and bytes of one file, as the header says of all of them.
+/// Skips lines and bytes of one file, as the header states for all files.
 RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, bool deflated)
 {
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // Decompressed bytes cannot be counted from their end, and lines are skipped before bytes are decompressed.
+    // A negative skip (from the end) does not work on compressed bytes; lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));
@@ -131,7 +131,7 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
-/// Goes to one of several points in time.
+/// Moves to one of several points in time.
 void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, const VolumeInfo& info, RawVoxels& voxels)
 {
     if (frames == 1) return;

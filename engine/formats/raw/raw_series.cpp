@@ -1,4 +1,4 @@
-// Bare voxels laid out as a person says: in one file, or one slice a file, as scanners and toolkits number them
+// Raw voxels in a layout given by the user: in one file, or one slice per file, as scanners and toolkits number them
 // (head.1, head.2, ... or slice000.raw, slice001.raw, ...).
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Digits count as the numbers they are: "slice2" comes before "slice10".
+/// Compares digits as numbers: "slice2" comes before "slice10".
 bool comes_before(const std::string& a, const std::string& b)
 {
     size_t i = 0;
@@ -40,7 +40,7 @@ bool comes_before(const std::string& a, const std::string& b)
     return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-/// The bytes of one slice behind `layout.offset_bytes`; nothing where 63 bits do not count them.
+/// The bytes of one slice after `layout.offset_bytes`; nothing if that exceeds 63 bits.
 std::optional<int64_t> slice_file_bytes(const RawLayout& layout)
 {
     int64_t bytes = 0;
@@ -58,7 +58,7 @@ int64_t file_bytes(const fs::path& path)
     return error ? 0 : static_cast<int64_t>(bytes);
 }
 
-/// Those files of a folder that hold a slice, in order.
+/// The files of a folder that hold a slice, in order.
 std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout, int64_t bytes)
 {
     std::vector<std::string> names;
@@ -79,8 +79,8 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     return slices;
 }
 
-/// As many files as there are slices, counted on from the last number in the name of the first one, which holds
-/// `bytes`; none where it has no number.
+/// One file per slice, counting on from the last number in the name of the first file, which holds `bytes`; none if
+/// that name has no number.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

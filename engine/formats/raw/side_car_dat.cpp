@@ -1,4 +1,4 @@
-// The side-cars that scanners and viewers write: "Resolution: x y z" text (NSI, Inviwo) and XML (Dragonfly).
+// Side-cars written by scanners and viewers: "Resolution: x y z" text (NSI, Inviwo) and XML (Dragonfly).
 
 #include <cmath>
 #include <utility>
@@ -34,7 +34,7 @@ std::optional<std::string> attribute(std::string_view xml, const std::string& ta
     return {};
 }
 
-/// "x y z" of <Tag X="x" Y="y" Z="z">; nothing where the tag has none of them.
+/// "x y z" of <Tag X="x" Y="y" Z="z">; nothing if the tag has none of them.
 std::optional<std::string> attributes(std::string_view xml, const std::string& tag,
                                       std::initializer_list<const char*> names)
 {
@@ -66,7 +66,7 @@ std::optional<std::string> element(std::string_view xml, const std::string& tag)
     return text;
 }
 
-/// Fields under the names that both kinds share.
+/// Fields under the names that both formats share.
 HeaderFields dragonfly_fields(const fs::path& path, std::string_view xml)
 {
     HeaderFields fields(path);

@@ -1,4 +1,4 @@
-// Bare voxels whose size and type stand in their file's name. What is taken from there is said to be a guess.
+// Raw voxels whose file name states size and type. A warning says that these are a guess.
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -25,7 +25,7 @@ size_t size_in_name(std::string_view text, Size3& size)
     return at;
 }
 
-/// "16bit", "int16", "uint16le" ...: sets what it knows.
+/// "16bit", "int16", "uint16le" ...: sets what it recognises.
 void type_in_name(std::string word, std::optional<VoxelType>& type, std::optional<bool>& big_endian)
 {
     if (word == "little" || word == "big") big_endian = word == "big";
@@ -37,13 +37,13 @@ void type_in_name(std::string word, std::optional<VoxelType>& type, std::optiona
     if (word == "16bit") type = VoxelType::uint16;
     if (word == "32bit") type = VoxelType::float32;
     if (word == "64bit") type = VoxelType::float64;
-    // Bare words of everyday language ("short_root.raw") are no types.
+    // Plain words of everyday language ("short_root.raw") are not types.
     if (!word.empty() && (is_digit(word.back()) || word == "uchar" || word == "ushort" || word == "uint")) {
         if (const auto known = voxel_type_of(word)) type = known;
     }
 }
 
-/// The type that makes the voxels fill the file exactly.
+/// The type with which the voxels fill the file exactly.
 VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
 {
     const int64_t count = voxel_count(info);

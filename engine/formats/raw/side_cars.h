@@ -1,6 +1,6 @@
 #pragma once
-// What people keep beside bare voxels, and what it says of them. For source_side_car.cpp, which knows where to look.
-// Any thread may call these.
+// Side-cars: files kept beside raw voxels, and how they describe them. For source_side_car.cpp, which knows where to
+// look. Any thread may call these.
 
 #include <filesystem>
 #include <optional>
@@ -16,14 +16,14 @@ struct SideCar {
     RawVoxels voxels{};
 };
 
-/// Our own: `document` describes the voxels of `raw`. Unknown keys are refused.
+/// Our own format: `document` describes the voxels of `raw`. Unknown keys are refused.
 SideCar read_json_side_car(const JsonDocument& document, const std::filesystem::path& raw);
 
-/// NSI's and Inviwo's text, or Dragonfly's XML. `raw` is empty where the side-car itself was opened, which then names
-/// its voxels. Nothing where the file is about something else.
+/// The text format of NSI and Inviwo, or Dragonfly's XML. `raw` is empty if the side-car itself was opened; it then
+/// names its voxel file. Nothing if the file is about something else.
 std::optional<SideCar> read_dat_side_car(const std::filesystem::path& path, std::filesystem::path raw);
 
-/// "scan_512x512x300_16bit.raw". Nothing where the name holds no size.
+/// "scan_512x512x300_16bit.raw". Nothing if the name contains no size.
 std::optional<SideCar> read_file_name(const std::filesystem::path& raw);
 
 }  // namespace shvr

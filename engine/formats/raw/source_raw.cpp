@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Deflated parts are slices, of which several may be open.
+/// Deflated parts are slices; several may be open at once.
 constexpr int64_t KEPT_OF_PART = int64_t{2} << 20;
 
 struct Layout {
@@ -36,7 +36,7 @@ public:
                    glm::all(glm::lessThanEqual(box.upper, size)) && glm::all(glm::greaterThan(extent, Size3(0))));
         SHVR_CHECK(static_cast<int64_t>(voxels.size()) == extent.x * extent.y * extent.z * voxel_bytes, voxels.size());
 
-        // Rows that follow each other in the file as in the box are read at once.
+        // Rows that are consecutive in both file and box are read together.
         int64_t rows = 1;
         int64_t slices = 1;
         if (extent.x == size.x) rows = extent.y;
@@ -78,9 +78,9 @@ private:
     std::unique_ptr<VoxelBytes> bytes_;
 };
 
-// ---- Opening: sizes against files -----------------------------------------------------------------------------------
+// ---- Opening: checks sizes against files ----------------------------------------------------------------------------
 
-/// The bytes of all channels of all voxels; fails where 63 bits do not count them.
+/// The bytes of all channels of all voxels; fails if they exceed 63 bits.
 int64_t bytes_of_voxels(const VolumeInfo& info, const RawVoxels& voxels, int64_t offset)
 {
     SHVR_CHECK(offset >= 0 && voxels.channels >= 1 && voxels.channel >= 0 && voxels.channel < voxels.channels);
@@ -153,7 +153,7 @@ std::unique_ptr<VoxelBytes> open_parts(const VolumeInfo& info, const RawVoxels& 
     const int64_t share = needed / count;
     const std::string of_what =
         sentence(count == 1 ? "" : sentence("one of ", count, " equal parts of "), size_text(info, voxels));
-    // Each is looked at now: a missing slice is better found before the first hour of work than after.
+    // Checks each file now: a missing slice should be found before an hour of work, not after.
     for (const RawVoxels::Part& part : voxels.parts) static_cast<void>(open_part(voxels, part, share, of_what));
     return bytes_of_parts(voxels.parts.size(), share, [voxels, share, of_what](size_t i) {
         return open_part(voxels, voxels.parts[i], share, of_what);

@@ -1,6 +1,6 @@
 #pragma once
-// Voxels that lie one after the other: what RAW files hold, and what the headers of NRRD, MetaImage and NIfTI describe,
-// in one file or in many, bare or deflated.
+// Voxels stored one after the other: the content of RAW files, and what the headers of NRRD, MetaImage and NIfTI
+// describe, in one file or many, raw or deflated.
 
 #include "engine/volume/source.h"
 
@@ -16,18 +16,18 @@ struct RawVoxels {
 
     std::filesystem::path file{};
     int64_t offset_bytes = 0;  ///< AT_END: the voxels are the last bytes of the file
-    /// Nothing: not stated. Little-endian is taken, with a warning; it says so where neighbours are more alike the
-    /// other way round.
+    /// Nothing: not stated. Little-endian is assumed, with a warning, which says so if neighbours are more alike in the
+    /// other order.
     std::optional<bool> big_endian = false;
     bool is_deflated = false;   ///< gzip or zlib, from `offset_bytes` of the file on
-    int64_t skip_bytes = 0;     ///< where deflated: decoded bytes before the voxels
-    int64_t bytes_after = 0;    ///< what the header says follows the voxels: other points in time
+    int64_t skip_bytes = 0;     ///< if deflated: decoded bytes before the voxels
+    int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other points in time
     std::vector<Part> parts{};  ///< instead of `file`: equal shares of the voxels, in this order
     int64_t channels = 1;       ///< values of each voxel, one after the other
-    int64_t channel = 0;        ///< the one that is taken
+    int64_t channel = 0;        ///< the one to read
 };
 
-/// `info.warnings` may grow. Fails where a file is no regular file or too short; nothing large is allocated.
+/// May add to `info.warnings`. Fails if a file is not a regular file or is too short; allocates nothing large.
 std::unique_ptr<VolumeSource> open_raw_voxels(VolumeInfo info, const RawVoxels& voxels);
 
 }  // namespace shvr

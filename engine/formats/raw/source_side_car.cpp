@@ -1,10 +1,10 @@
-// Bare voxels and what people keep beside them. For scan.raw that is, in this order:
+// Raw voxels and the files kept beside them. For scan.raw these are, in this order:
 //   scan.json, scan.raw.json   our own: {"size": [x,y,z], "type": "int16", "endian": "little", "offset": 0,
 //                              "spacing": [x,y,z], "unit": "um"}; size and type are required
-//   scan.nhdr, scan.mhd        where they name this file
+//   scan.nhdr, scan.mhd        if they name this file
 //   scan.dat, scan.raw.dat     NSI's and Inviwo's text ("Resolution: ...") or Dragonfly's XML, as the scanner wrote it
-//   scan_512x512x300_16bit.raw the file's own name; the type may be missing where the file's size tells it
-// A .json or .dat that is opened itself leads to its voxels.
+//   scan_512x512x300_16bit.raw the file's own name; the type may be missing if the file's size determines it
+// Opening a .json or .dat itself opens its voxels.
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -36,7 +36,7 @@ fs::path with_suffix(fs::path path, const char* suffix)
     return path += suffix;
 }
 
-/// Nothing where the document is about something else (a session, another program's settings).
+/// Nothing if the document is about something else (a session, another program's settings).
 std::optional<JsonDocument> parse_json(const fs::path& path)
 {
     JsonDocument document = read_json(path, LONGEST_HEADER, {.depth = 64, .expected = "size and type"});
@@ -50,7 +50,7 @@ bool is_same_file(const fs::path& a, const fs::path& b)
     return fs::equivalent(a, b, error) && !error;
 }
 
-/// A header beside bare voxels counts only where it leads to them.
+/// A header beside raw voxels counts only if it refers to them.
 Source open_by_header(const fs::path& header, const char* data_field, const fs::path& raw,
                       Source (*open)(const fs::path&, const OpenOptions&))
 {

@@ -1,8 +1,8 @@
 // TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and OME-TIFF;
 // and (source_tiff_folder.cpp) a folder of such files, one slice each.
 //
-// x runs to the right, y down, z in the order of pages: right-handed, as the voxels of all formats here. Pages whose
-// Orientation is a mirrored one are mirrored back.
+// x runs to the right, y down, z in page order: right-handed, like the voxels of all formats here. Pages with a
+// mirrored Orientation are mirrored back.
 
 #include "engine/formats/tiff/source_tiff.h"
 
@@ -70,7 +70,8 @@ private:
     mutable TiffBlockCache cache_;
 };
 
-/// Fields of programs that keep stacks in ways not read here: taken for a page they would be one slice of many.
+/// Refuses files with fields of programs that store stacks in unsupported ways: read as a page, such a stack would
+/// become one slice of many.
 void refuse_other_stacks(const TiffFile& file, uint64_t directory)
 {
     constexpr std::pair<uint16_t, const char*> TAGS[] = {{33629, "MetaMorph (UIC2)"}, {33630, "MetaMorph (UIC3)"}};
@@ -94,7 +95,7 @@ public:
         const TiffPage first_page(*file_, directories_.pages.front().offset, 1);
         refuse_other_stacks(*file_, directories_.pages.front().offset);
 
-        // An OME-TIFF says itself which pages are planes. Elsewhere the pages of most voxels are.
+        // An OME-TIFF states which pages are planes. In other files, those with the most voxels are.
         const uint32_t first = pages_to_show(directories_).front();
         description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
                                         layout_of_page(first).samples, TiffRole::whole);
@@ -138,7 +139,7 @@ private:
     }
     const TiffLayout& layout_of_page(uint32_t page) { return layout_of_kind(directories_.pages[page].kind); }
 
-    /// What scripts make of slices by mistake. ImageJ composes at most 7 channels.
+    /// Slices that scripts declared as channels by mistake. ImageJ composes at most 7 channels.
     void take_many_channels_as_slices()
     {
         if (description_.writer != TiffDescription::Writer::imagej || description_.channels <= 7 ||
@@ -149,7 +150,7 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Pages may show the same and be stored in different ways.
+    /// Pages of different kinds may still have equal pictures, stored in different ways.
     void check_kinds()
     {
         std::vector<int64_t> pages(directories_.kinds.size());
@@ -165,7 +166,7 @@ private:
         }
     }
 
-    /// The run of equal pages with most voxels. What else there is must lie before or behind it, and is left out.
+    /// The run of equal pages with the most voxels. Other pages must come before or after it, and are left out.
     std::vector<uint32_t> main_series(const std::vector<uint32_t>& pages)
     {
         if (pages.size() < directories_.pages.size()) {
@@ -208,7 +209,7 @@ private:
                show_the_same(layout_of_page(a), layout_of_page(b));
     }
 
-    /// Fills the description's `pages`, as indices into `shown_`, in ImageJ's order.
+    /// Fills the description's `pages` with indices into `shown_`, in ImageJ's order.
     void order_planes()
     {
         const int64_t planes = description_.slices * description_.channels * description_.frames;
@@ -230,8 +231,8 @@ private:
         description_.pages.clear();
     }
 
-    /// ImageJ's form for stacks above 4 GiB, which is as good for small ones: the first directory is the only one, and
-    /// voxels of one image follow those of the other without a gap.
+    /// ImageJ's form for stacks above 4 GiB, which also works for small ones: the first directory is the only one, and
+    /// the voxels of the images follow each other without gaps.
     void check_contiguous(int64_t planes)
     {
         const TiffPage page(*file_, directories_.pages.front().offset, 1);
@@ -250,7 +251,7 @@ private:
             if (extent.offset == first.offset + block * layout.block_height * layout.block_row_bytes()) continue;
             refuse("whose strips have gaps; expected strips that follow each other, or a page for each image");
         }
-        // `planes` is at most 2^20 and a page at most 2^40 pixels, of samples that the file holds.
+        // `planes` is at most 2^20 and a page has at most 2^40 pixels, whose samples the file holds.
         int64_t needed = 0;
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
             !file_->holds(static_cast<uint64_t>(first.offset), static_cast<uint64_t>(needed))) {
@@ -260,7 +261,7 @@ private:
         is_contiguous_ = true;
     }
 
-    /// The pages that OME-XML names must be there, and alike.
+    /// The pages that OME-XML names must exist and be alike.
     void check_planes()
     {
         for (uint32_t& plane : description_.pages) {
@@ -316,7 +317,7 @@ private:
             const uint32_t page = shown_[place];
             volume_.slices.push_back({0, page + 1, directories_.pages[page].offset, 0});
         }
-        // What is cut short is cut short at the end.
+        // A truncated file lacks its end.
         const TiffSlice& last = volume_.slices.back();
         const TiffPage page(*file_, last.directory, last.page);
         check_blocks(*file_, page, layout_of(page));
@@ -326,7 +327,7 @@ private:
     std::unique_ptr<const TiffFile> file_;
     std::string name_;
     TiffDirectories directories_;
-    std::vector<std::optional<TiffLayout>> layouts_;  ///< by kind, once asked for
+    std::vector<std::optional<TiffLayout>> layouts_;  ///< by kind; filled on first use
     TiffDescription description_;
     std::vector<uint32_t> shown_;  ///< pages
     bool is_contiguous_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Volumes whose slices are pages of TIFF files: what source_tiff.cpp and source_tiff_folder.cpp share.
+// Volumes whose slices are pages of TIFF files: shared by source_tiff.cpp and source_tiff_folder.cpp.
 
 #include "engine/formats/tiff/tiff_blocks.h"
 #include "engine/formats/tiff/tiff_choice.h"
@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// All that reading the voxels needs.
+/// Everything needed to read the voxels.
 struct TiffVolume {
     VolumeInfo info{};
     TiffLayout layout{};  ///< of every slice
@@ -16,20 +16,20 @@ struct TiffVolume {
     std::vector<TiffSlice> slices{};  ///< one for each z
 };
 
-/// Opens files as they are read, unless `file` is the only one.
+/// Opens files as they are read; `file`, if given, is the only one and open already.
 std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_ptr<const TiffFile> file);
 
-/// Sets `info.type` and `recipe` by what is chosen of each pixel; warns of what that changes. `description` is the
-/// file's.
+/// Sets `info.type` and `recipe` for the chosen channel of each pixel; warns about any change of values. `description`
+/// is the file's.
 void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChannel& channel,
                   const TiffDescription& description);
 
-/// The pages that may be slices: neither smaller copies nor masks, unless all are.
+/// The pages that may be slices: neither smaller copies nor masks, unless all pages are.
 std::vector<uint32_t> pages_to_show(const TiffDirectories& directories);
 
 /// One file, whatever its name.
 std::unique_ptr<VolumeSource> open_tiff_file(const std::filesystem::path& path, const OpenOptions& options);
-/// A folder of slices, one in each file; null where it holds no file named *.tif or *.tiff.
+/// A folder with one slice per file; null if it contains no file named *.tif or *.tiff.
 std::unique_ptr<VolumeSource> open_tiff_folder(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace shvr

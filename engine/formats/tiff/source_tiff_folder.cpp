@@ -1,5 +1,5 @@
-// A folder of TIFFs, one slice in each, in the order of the numbers in their names. Files of other kinds are left
-// alone; two series in one folder are not guessed apart.
+// A folder of TIFFs, one slice each, in the order of the numbers in their names. Other kinds of files are ignored. Two
+// series in one folder are refused rather than separated by guessing.
 
 #include <tiffio.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file's name without its extension, taken apart: "Slice_007b" is "slice_#b" and 7.
+/// A file's name without its extension, split up: "Slice_007b" is "slice_#b" and 7.
 struct SliceName {
     std::string file;
     std::string pattern;
@@ -40,7 +40,7 @@ SliceName taken_apart(const fs::path& path)
     return name;
 }
 
-/// As numbers, however long.
+/// Compares as numbers, however long.
 bool is_less(const std::string& a, const std::string& b)
 {
     return a.size() != b.size() ? a.size() < b.size() : a < b;
@@ -64,7 +64,7 @@ std::vector<SliceName> names_in(const fs::path& folder)
         const fs::path& path = entry->path();
         const std::string extension = lower_case(path.extension().string());
         std::error_code unreadable;
-        // Names that begin with a dot are what other systems keep beside files ("._slice1.tif").
+        // Other systems keep metadata in files whose names begin with a dot ("._slice1.tif").
         if ((extension != ".tif" && extension != ".tiff") || path.filename().string().starts_with('.')) continue;
         if (!entry->is_regular_file(unreadable)) continue;
         names.push_back(taken_apart(path));
@@ -77,8 +77,8 @@ std::vector<SliceName> names_in(const fs::path& folder)
     return names;
 }
 
-/// The number by which the slices count: the first one that differs from file to file and never falls. Nothing where
-/// the names belong to several series.
+/// The number that counts the slices: the first one that differs from file to file and never decreases. Nothing if the
+/// names belong to several series.
 std::optional<size_t> counting_number(const std::vector<SliceName>& names)
 {
     for (size_t number = 0; number < names.front().numbers.size(); ++number) {
@@ -90,7 +90,7 @@ std::optional<size_t> counting_number(const std::vector<SliceName>& names)
     return {};
 }
 
-/// All that comes before the last number that differs, as the series' name.
+/// The name of the series: everything before the last number that differs.
 std::string series_of(const SliceName& name, size_t last_number)
 {
     std::string series = name.pattern;
@@ -98,7 +98,7 @@ std::string series_of(const SliceName& name, size_t last_number)
     return series;
 }
 
-/// Fails where the names are those of several series.
+/// Fails if the names belong to several series.
 size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& names)
 {
     const bool is_one_pattern = names.front().pattern == names.back().pattern;
@@ -122,7 +122,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
              in_quotes(names.front().file), " and ", in_quotes(names[1].file),
              " among them; expected the numbered slices of one volume, or a file of its own");
     }
-    // By pattern; within one, by the numbers before the last one that differs.
+    // Sorted by pattern; within one, by the numbers before the last one that differs.
     size_t last_number = 0;
     for (size_t i = 0; is_one_pattern && i < names.front().numbers.size(); ++i) {
         const auto differs = [&](const SliceName& name) { return name.numbers[i] != names.front().numbers[i]; };
@@ -138,7 +138,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
          "; expected one: give each a folder of its own");
 }
 
-/// Says where the count has gaps: slices are drawn evenly spaced all the same.
+/// Warns of gaps in the count: slices are drawn evenly spaced all the same.
 void warn_of_gaps(const std::vector<SliceName>& names, size_t number, std::vector<std::string>& warnings)
 {
     std::optional<int64_t> step;
@@ -202,7 +202,7 @@ private:
         }
         const TiffDirectory& directory = directories.pages[shown.front()];
         const size_t number = shown.front() + 1;
-        // What directories say is much the same in thousands of files: libtiff looks at one of each kind.
+        // Directories in thousands of files are mostly alike: libtiff reads one of each kind.
         const auto known = layouts_.find(directories.kinds[directory.kind].fields);
         if (known != layouts_.end()) {
             check_amount(file, known->second, 1);
@@ -216,7 +216,7 @@ private:
             }
             check_is_supported(page, layout);
             check_blocks(file, page, layout);
-            // Not more than a hostile folder may fill.
+            // Bounds the memory that a hostile folder can fill.
             if (layouts_.size() < 64) layouts_.emplace(directories.kinds[directory.kind].fields, layout);
         }
         volume_.slices.push_back({static_cast<uint32_t>(index), static_cast<uint32_t>(number), directory.offset, 0});

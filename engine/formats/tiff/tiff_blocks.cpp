@@ -10,10 +10,10 @@
 namespace shvr {
 namespace {
 
-/// Bare rows that are not read straight to where they belong are read in parts of this size.
+/// Uncompressed rows that cannot be read straight to their destination are read in parts of this size.
 constexpr int64_t PART_BYTES = int64_t{1} << 20;
 
-/// The part of a block that lies in a rectangle: rows and columns of the block, and the first voxel it becomes.
+/// The part of a block inside a rectangle: rows and columns of the block, and the first voxel it fills.
 struct Part {
     int64_t block = 0;
     int64_t top = 0, bottom = 0, left = 0, right = 0;
@@ -113,7 +113,7 @@ private:
              " cannot be decoded: ", page_.complaint(), "; expected ", size, " bytes of voxels");
     }
 
-    /// Rows that follow each other in the file as in the rectangle are read at once.
+    /// Rows that are consecutive in both file and rectangle are read together.
     void add_to_run(int64_t offset, std::span<std::byte> bytes)
     {
         const bool follows = !run_.empty() && run_offset_ + static_cast<int64_t>(run_.size()) == offset &&
@@ -160,7 +160,7 @@ private:
         }
     }
 
-    /// What libtiff decodes has this machine's byte order already.
+    /// libtiff decodes to this machine's byte order already.
     void put_in_order(std::span<std::byte> samples) const
     {
         if (file_.is_big_endian() && layout_.bits % 8 == 0) swap_bytes(samples, static_cast<size_t>(layout_.bits / 8));
@@ -192,8 +192,7 @@ std::shared_ptr<TiffBlockCache::Entry> TiffBlockCache::entry_of(const Key& key)
 void TiffBlockCache::keep(const Key& key, const std::shared_ptr<Entry>& entry)
 {
     const std::lock_guard lock(mutex_);
-    // Chance decides what goes: reads that go through a volume again and again would find nothing left of what was used
-    // longest ago.
+    // Evicts at random: with least-recently-used eviction, repeated passes through a volume would never hit.
     while (!kept_.empty() && kept_bytes_ + entry->block.size() > MOST_BYTES) {
         random_ = random_ * 1664525u + 1013904223u;
         std::swap(kept_[random_ % kept_.size()], kept_.back());

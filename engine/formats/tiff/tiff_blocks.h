@@ -1,6 +1,6 @@
 #pragma once
-// Reads a rectangle of one page. Bare samples are read straight to where they belong; a block that is needed as a whole
-// is decoded there; one that is needed in part is decoded once and kept for a while, for the reads around it.
+// Reads a rectangle of one page. Uncompressed samples are read straight to their destination. A block that is needed
+// whole is decoded there; a block that is needed in part is decoded once and cached for neighbouring reads.
 
 #include <map>
 #include <mutex>
@@ -15,11 +15,11 @@ struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
     uint32_t page = 1;       ///< in that file, for messages
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory; the voxels of later slices are that much behind those it names.
+    /// ImageJ's long stacks have one directory; the voxels of later slices lie this far after those it names.
     int64_t shift_bytes = 0;
 };
 
-/// Decoded blocks, at most `MOST_BYTES` of them, at least the last one. Any thread may use it; two threads that want
+/// Caches decoded blocks: at most `MOST_BYTES`, but at least the last one. Any thread may use it; two threads that want
 /// the same block decode it once.
 class TiffBlockCache {
 public:
@@ -61,7 +61,7 @@ struct TiffRectangle {
     int64_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// `voxels` gets the rectangle (inside the page) row by row. Fails where the page is not as `expected`, or broken.
+/// Reads the rectangle (inside the page) into `voxels`, row by row. Fails if the page is not as `expected`, or broken.
 void read_rectangle(const TiffFile& file, const TiffSlice& slice, const TiffLayout& expected, const TiffRecipe& recipe,
                     const TiffRectangle& rectangle, TiffBlockCache& cache, std::span<std::byte> voxels);
 

@@ -28,7 +28,7 @@ std::string numbers_to(int64_t count)
     return text;
 }
 
-/// How to ask for each: by name where that is a word, else by number.
+/// How to request each: by name if that is a word, otherwise by number.
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
@@ -83,7 +83,7 @@ bool is_grey_ramp(const std::vector<uint16_t>& palette)
     const auto last = static_cast<double>(palette.size() - 1);
     for (size_t i = 0; i < palette.size(); ++i) {
         const double expected = static_cast<double>(i) / last;
-        // Written as 8 bits in the higher byte, or as 16 bits.
+        // Stored as 8 bits in the higher byte, or as 16 bits.
         if (std::abs(palette[i] / 65535.0 - expected) > 1.0 / 250.0) return false;
     }
     return true;
@@ -96,7 +96,7 @@ std::vector<TiffPixelChannel> palette_channels(const TiffPage& page, const TiffL
     for (int color = 0; color < 3; ++color) is_grey = is_grey && is_grey_ramp(palette_of(page, layout, color));
     if (is_grey) return {{}};
     if (description.writer != TiffDescription::Writer::unknown) {
-        // There, a palette is how intensities are shown, and no part of them.
+        // Here a palette only displays the intensities; it is not part of them.
         warnings.emplace_back("the colours of its lookup table were left out");
         return {{}};
     }
@@ -131,7 +131,7 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
         }
         channels.push_back({name, static_cast<int>(sample)});
     }
-    // Some writers forget to say what the fourth sample beside red, green and blue is; it hardly ever is anything else.
+    // Some writers do not say what the fourth sample after red, green and blue is; it is almost always alpha.
     const bool is_rgb = layout.photometric == PHOTOMETRIC_RGB || layout.photometric == PHOTOMETRIC_YCBCR;
     if (is_rgb && samples == 4) channels[3].name = "alpha";
     const bool has_alpha = samples == 2 && channels[1].name == "alpha";

@@ -1,5 +1,5 @@
 #pragma once
-// What a TIFF offers where it holds more than one volume, and which one a person chose. Any thread may call these.
+// The choices in a TIFF that holds more than one volume, and the user's choice. Any thread may call these.
 
 #include "engine/formats/tiff/tiff_description.h"
 #include "engine/formats/tiff/tiff_samples.h"
@@ -7,14 +7,14 @@
 
 namespace shvr {
 
-/// A volume that a pixel holds: one of its samples, or a colour that its palette gives it.
+/// A volume that a pixel holds: one of its samples, or one colour of its palette.
 struct TiffPixelChannel {
-    std::string name{};  ///< "" where it has a number only
+    std::string name{};  ///< "" if it has only a number
     int sample = 0;
     int palette_color = -1;
 };
 
-/// At least one. `warnings` may grow: a palette whose numbers are the intensities themselves offers no choice.
+/// At least one. May add to `warnings`: a palette whose numbers are the intensities themselves offers no choice.
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
 
@@ -23,7 +23,7 @@ struct TiffChoice {
     int64_t frame = 0;   ///< from 0
 };
 
-/// Fails with the choices in words where there are several and none is chosen, or where the one chosen is not there.
+/// Fails, listing the choices, if there are several and none is chosen, or if the chosen one does not exist.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
                   int64_t frames);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double UM_PER_INCH = 25400.0;
 constexpr double UM_PER_CM = 10000.0;
 
-/// Lengths in micrometres; nothing for what is no length known here.
+/// The unit in micrometres; nothing if it is not a known unit of length.
 std::optional<double> um_of(const std::string& unit)
 {
     constexpr std::pair<const char*, double> LENGTHS[] = {
@@ -27,7 +27,7 @@ std::optional<double> um_of(const std::string& unit)
     return {};
 }
 
-/// Nothing where it is no unit of length but a word for voxels.
+/// Nothing if it is a word for voxels rather than a unit of length.
 std::optional<std::string> length_unit(const std::string& stated)
 {
     const std::string unit = plain_unit(stated);
@@ -41,9 +41,9 @@ std::optional<std::string> length_unit(const std::string& stated)
     return unit;
 }
 
-/// What the resolution fields mean for the distance of pixels.
+/// What the resolution fields say about the distance between pixels.
 struct Resolution {
-    std::optional<double> x, y;  ///< pixels for each unit
+    std::optional<double> x, y;  ///< pixels per unit
     double um_per_unit = 0.0;    ///< 0: the fields name no unit
     bool is_for_printing = false;
 };
@@ -57,7 +57,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     const uint16_t unit = page.number16(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     if (unit == RESUNIT_INCH) resolution.um_per_unit = UM_PER_INCH;
     if (unit == RESUNIT_CENTIMETER) resolution.um_per_unit = UM_PER_CM;
-    // What programs write that know of screens and printers only. 1 stands for "not known".
+    // Values written by programs that only consider screens and printers. 1 stands for "unknown".
     const double dots_per_inch = *resolution.x * (resolution.um_per_unit == UM_PER_CM ? 2.54 : 1.0);
     for (const double usual : {72.0, 75.0, 90.0, 96.0, 100.0, 120.0, 144.0, 150.0, 200.0, 300.0, 600.0, 1200.0}) {
         if (std::abs(dots_per_inch - usual) < 0.02 * 2.54) resolution.is_for_printing = true;
@@ -66,7 +66,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     return resolution;
 }
 
-/// Axes may be stated in different units; those of x hold for all.
+/// Axes may be stated in different units; all are converted to that of x.
 void use_one_unit(TiffDescription& description)
 {
     for (int axis = 1; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ void use_one_unit(TiffDescription& description)
     }
 }
 
-/// The distance of pixels by the resolution fields goes into x and y, with its unit.
+/// Sets the spacing of x and y, and its unit, from the resolution fields.
 void add_resolution(TiffDescription& description, const Resolution& resolution)
 {
     const bool is_imagej = description.writer == TiffDescription::Writer::imagej;
@@ -101,7 +101,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (has_unit || (is_imagej && resolution.um_per_unit == 0.0)) {
-        // ImageJ's pixels for each of its units.
+        // ImageJ states pixels per its own unit.
         description.spacing[0] = 1.0 / *resolution.x;
         description.spacing[1] = 1.0 / *resolution.y;
         return;
@@ -115,7 +115,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (resolution.um_per_unit == 0.0) {
-        // Without a unit the two say how wide a pixel is for its height.
+        // Without a unit, the two state only the aspect ratio of a pixel.
         if (*resolution.x == *resolution.y) return;
         description.spacing[0] = 1.0;
         description.spacing[1] = *resolution.x / *resolution.y;
@@ -156,7 +156,7 @@ void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const T
     }
     glm::dvec3 spacing(description.spacing[0].value_or(1.0));
     spacing.y = description.spacing[1].value_or(spacing.x);
-    // ImageJ leaves out a distance of slices of 1.
+    // ImageJ omits a slice distance of 1.
     spacing.z = description.spacing[2].value_or(is_imagej ? 1.0 : spacing.x);
     const bool is_nothing = !unit && spacing == glm::dvec3(1.0);
     if (!description.spacing[2] && info.size.z > 1 && !is_nothing) {

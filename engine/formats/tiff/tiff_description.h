@@ -1,6 +1,6 @@
 #pragma once
-// What programs write into a TIFF's ImageDescription about the stack as a whole: ImageJ its "key=value" lines, OME-TIFF
-// its XML. And spacing, from there or from the resolution fields of the page. Any thread may call these.
+// The descriptions of the whole stack that programs write into a TIFF's ImageDescription: "key=value" lines by ImageJ,
+// XML by OME-TIFF. Also spacing, from there or from the page's resolution fields. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -16,29 +16,29 @@ struct TiffDescription {
     enum class Writer { unknown, imagej, ome };
     Writer writer = Writer::unknown;
 
-    /// 1 each where nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
+    /// 1 each if nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
     int64_t slices = 1, channels = 1, frames = 1;
     /// The page (from 0) of slice z, channel c, frame t at z + slices * (c + channels * t). Empty: as ImageJ orders
     /// them, channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
-    std::vector<std::string> channel_names{};  ///< may be fewer than channels, and ""
+    std::vector<std::string> channel_names{};  ///< may be fewer than channels; names may be ""
 
     std::optional<double> spacing[3]{};  ///< ImageJ: z alone
-    std::string unit[3]{};               ///< as written; "" where it is not stated
+    std::string unit[3]{};               ///< as written; "" if not stated
 
     bool counts_from_minus_32768 = false;  ///< signed 16-bit, as ImageJ stores it
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file is read as one of several: then an OME-TIFF may speak of the others.
+/// Whether the file is read as one of several: if so, an OME-TIFF may refer to the others.
 enum class TiffRole { whole, slice };
 
-/// `samples` of each pixel belong to as many channels of an OME-TIFF. Fails where the description is of a known kind,
-/// but broken, or, in the role of the whole, speaks of more than this file.
+/// `samples` of each pixel belong to as many channels of an OME-TIFF. Fails if the description is of a known kind but
+/// broken, or, in the role `whole`, describes more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 
-/// Spacing and unit, in `info`, with a warning for all that had to be assumed. `page` is the first one.
+/// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page` is the first one.
 void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& description, const TiffFile& file, uint64_t directory,
                         const TiffPage& page);
 

@@ -1,6 +1,6 @@
-// The chain of directories: each is a count, that many fields of 12 (BigTIFF: 20) bytes, and the place of the next. A
-// field is a tag, a type, a count and the value, or where the value is if it is longer than 4 (8) bytes. (TIFF 6.0
-// specification, section 2.)
+// The chain of directories: each has a count, that many fields of 12 (BigTIFF: 20) bytes, and the offset of the next
+// directory. A field is a tag, a type, a count and the value, or the value's offset if it is longer than 4 (8) bytes.
+// (TIFF 6.0 specification, section 2.)
 
 #include <algorithm>
 #include <utility>
@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// As libtiff: more is taken for a wrong offset.
+/// As in libtiff: a larger count is taken for a wrong offset.
 constexpr uint64_t MOST_FIELDS = 4096;
 
 enum Tag : uint16_t {
@@ -27,7 +27,7 @@ enum Tag : uint16_t {
     TILE_BYTE_COUNTS = 325,
 };
 
-/// Fields in which pages of one kind agree: subfile types, size, bits, compression, meaning, order of bits,
+/// Fields that must be equal in pages of one kind: subfile types, size, bits, compression, meaning, order of bits,
 /// orientation, samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format,
 /// sub-sampling.
 constexpr std::array<bool, 531> TELLS_KIND = [] {
@@ -52,12 +52,12 @@ struct Field {
     const std::byte* value = nullptr;  ///< 4 or 8 bytes
 };
 
-/// A moving look at the file that makes one read of many small ones.
+/// A moving window onto the file that combines many small reads into one.
 class Window {
 public:
     explicit Window(const TiffFile& file) : file_(file) {}
 
-    /// Null where the file does not hold that many bytes there. Valid until the next call.
+    /// Null if the file does not hold that many bytes there. Valid until the next call.
     const std::byte* at(uint64_t offset, size_t bytes)
     {
         if (!file_.holds(offset, bytes)) return nullptr;
@@ -65,7 +65,7 @@ public:
             held_.resize(std::max(SIZE, bytes));
             held_.resize(file_.read_some(static_cast<int64_t>(offset), held_));
             begin_ = offset;
-            if (held_.size() < bytes) return nullptr;  // cut short meanwhile
+            if (held_.size() < bytes) return nullptr;  // truncated meanwhile
         }
         return held_.data() + (offset - begin_);
     }
@@ -78,7 +78,7 @@ private:
     std::vector<std::byte> held_;
 };
 
-/// One directory after the other, wherever they lie.
+/// Reads one directory after another, in any order.
 class Reader {
 public:
     explicit Reader(const TiffFile& file)
@@ -128,7 +128,7 @@ public:
     {
         return field.count <= offset_bytes_ && field.count * bytes_of_type(field.type) <= offset_bytes_;
     }
-    /// The value itself where there is one and it fits into the field, or where in the file it is.
+    /// The value itself if there is one and it fits into the field, otherwise its offset in the file.
     uint64_t value(const Field& field) const
     {
         const size_t bytes = bytes_of_type(field.type);
@@ -157,7 +157,7 @@ const char* name_of_tag(uint16_t tag)
     return tag == TILE_OFFSETS ? "TileOffsets" : "TileByteCounts";
 }
 
-/// What one directory says of its strips or tiles, as far as it can be checked without reading more.
+/// What one directory states about its strips or tiles, as far as it can be checked without further reads.
 class StripCheck {
 public:
     explicit StripCheck(const TiffFile& file) : file_(file) {}
@@ -218,12 +218,12 @@ public:
         if (field.tag == IMAGE_LENGTH) length_ = value;
     }
 
-    /// The kind of the directory whose fields were looked at since the last call.
+    /// The kind of the directory whose fields were added since the last call.
     uint32_t finish(const TiffFile& file, std::vector<TiffKind>& kinds, size_t page)
     {
         check_side(file, page, "ImageWidth", width_);
         check_side(file, page, "ImageLength", length_);
-        // Pages mostly are as the one before.
+        // Most pages equal the previous one.
         if (last_ >= kinds.size() || kinds[last_].fields != fields_) {
             const auto found =
                 std::find_if(kinds.begin(), kinds.end(), [&](const TiffKind& kind) { return kind.fields == fields_; });
@@ -271,7 +271,7 @@ TiffDirectories read_directories(const TiffFile& file)
     StripCheck strips(file);
     KindFinder kind;
     uint64_t directory_bytes = 0;
-    // Brent's search for a circle: a page is remembered, and another one when it has gone twice as far.
+    // Brent's cycle detection: remembers a page, and replaces it at every power of two.
     uint64_t remembered = 0;
     for (uint64_t offset = file.first_directory(); offset != 0; offset = reader.next()) {
         const size_t page = directories.pages.size() + 1;

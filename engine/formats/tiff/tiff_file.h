@@ -1,8 +1,8 @@
 #pragma once
-// A TIFF file and its chain of directories, without libtiff: libtiff needs some microseconds for each directory, and a
-// file may have a million. What this finds is enough to know how many pages there are, which of them are alike and
-// where they start; libtiff (tiff_page.h) reads one page of each kind at opening, and others when their voxels are
-// read. Nothing changes after construction; any thread may read.
+// A TIFF file and its chain of directories, without libtiff: libtiff takes some microseconds for each directory, and a
+// file may have a million. This finds just enough to know how many pages there are, which of them are alike and where
+// they start. libtiff (tiff_page.h) reads one page of each kind on opening, and others when their voxels are read.
+// Nothing changes after construction; any thread may read.
 
 #include <array>
 #include <filesystem>
@@ -15,12 +15,12 @@
 
 namespace shvr {
 
-/// No file has more pages: it is the longest side of a volume.
+/// The maximum number of pages: the longest side of a volume.
 inline constexpr size_t MOST_TIFF_PAGES = size_t{1} << 20;
 
 class TiffFile {
 public:
-    /// Fails where it is no regular file, cannot be opened or does not begin as a TIFF does.
+    /// Fails if it is not a regular file, cannot be opened or does not begin like a TIFF.
     explicit TiffFile(std::filesystem::path path);
 
     /// Whether the first bytes are those of a TIFF or BigTIFF.
@@ -33,9 +33,9 @@ public:
     bool has_wide_offsets() const { return has_wide_offsets_; }
     uint64_t first_directory() const { return first_directory_; }
 
-    /// All of `bytes`, or fails where the file has been cut short.
+    /// Reads all of `bytes`, or fails if the file was truncated.
     void read(int64_t offset, std::span<std::byte> bytes) const;
-    /// At most `bytes`; returns how many.
+    /// Reads at most `bytes`; returns how many.
     size_t read_some(int64_t offset, std::span<std::byte> bytes) const;
     bool holds(uint64_t offset, uint64_t bytes) const;
 
@@ -53,11 +53,11 @@ struct TiffDirectory {
     uint32_t kind = 0;    ///< index into TiffDirectories::kinds
 };
 
-/// Pages whose fields of size, layout and meaning are equal, as far as they lie in the directory itself.
+/// Pages with equal fields of size, layout and meaning, as far as the fields lie in the directory itself.
 struct TiffKind {
     size_t first_page = 0;
     bool is_reduced = false;  ///< marked as a smaller copy of another page, or as a mask
-    std::string fields{};     ///< equal in two files: pages are alike
+    std::string fields{};     ///< pages of two files are alike if this is equal
 };
 
 struct TiffDirectories {
@@ -65,12 +65,12 @@ struct TiffDirectories {
     std::vector<TiffKind> kinds;
 };
 
-/// Fails, naming page and field, where the chain leaves the file, runs in a circle or is longer than
-/// `MOST_TIFF_PAGES`, and where what a page states of its strips does not fit into the file.
+/// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MOST_TIFF_PAGES`, or
+/// if the strips that a page states do not fit into the file.
 TiffDirectories read_directories(const TiffFile& file);
 
-/// The quotient of a rational field of the directory at `offset`, which libtiff rounds to a float; nothing where there
-/// is none, or where it is not above 0 and finite.
+/// The quotient of a rational field of the directory at `offset`, which libtiff would round to a float; nothing if the
+/// field is missing, or not finite and above 0.
 std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint16_t tag);
 /// Whether the directory at `offset` has the field.
 bool has_field(const TiffFile& file, uint64_t offset, uint16_t tag);

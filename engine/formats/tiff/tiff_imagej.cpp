@@ -1,5 +1,5 @@
-// ImageJ's description: lines of "key=value", the first of which is its version. (ij/io/FileSaver.java writes them,
-// ij/io/FileOpener.java reads them.)
+// ImageJ's description: lines of "key=value", the first of which is its version. (Written by ij/io/FileSaver.java, read
+// by ij/io/FileOpener.java.)
 
 #include <charconv>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Java's Properties write what is not ASCII as \uXXXX.
+/// Java's Properties write non-ASCII characters as \uXXXX.
 std::string without_escapes(std::string_view text)
 {
     std::string plain;
@@ -25,7 +25,7 @@ std::string without_escapes(std::string_view text)
             plain += text[at];
             continue;
         }
-        // As UTF-8.
+        // Encoded as UTF-8.
         if (code < 0x800) {
             plain += static_cast<char>(0xc0 | code >> 6);
         } else {
@@ -56,7 +56,7 @@ public:
         return found == values_.end() ? std::string() : found->second;
     }
     std::optional<double> number(const char* key) const { return number_of(text(key)); }
-    /// 0 where nothing is stated.
+    /// 0 if nothing is stated.
     int64_t count(const char* key) const
     {
         const std::string stated = text(key);
@@ -85,7 +85,7 @@ void read_calibration(const Lines& lines, TiffDescription& description)
         return;
     }
     if (*function == 0.0 && offset == 0.0 && slope == 1.0) return;
-    // 20 and 21 say that there is none, and that the picture is an optical density without one.
+    // 20 and 21 mean no calibration; for the latter, the picture is an uncalibrated optical density.
     if (*function == 20.0 || *function == 21.0) return;
     description.warnings.push_back(
         *function == 0.0 ? sentence("intensities are calibrated as ", offset, " + ", slope,
@@ -103,7 +103,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.channels = std::max<int64_t>(1, lines.count("channels"));
     description.frames = std::max<int64_t>(1, lines.count("frames"));
     description.slices = lines.count("slices");
-    // Files that state no slices have as many as there are images for each channel and frame.
+    // Files that state no slices have as many as there are images per channel and frame.
     if (description.slices == 0) {
         description.slices = std::max<int64_t>(1, images / (description.channels * description.frames));
     }
@@ -119,7 +119,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.unit[0] = unit;
     description.unit[1] = y_unit.empty() ? unit : y_unit;
     description.unit[2] = z_unit.empty() ? unit : z_unit;
-    // Old versions wrote a distance with a sign.
+    // Old versions wrote a signed distance.
     if (const std::optional<double> spacing = lines.number("spacing"); spacing && std::isfinite(*spacing)) {
         if (*spacing != 0.0) description.spacing[2] = std::abs(*spacing);
     }

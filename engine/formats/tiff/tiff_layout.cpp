@@ -10,14 +10,14 @@
 namespace shvr {
 namespace {
 
-/// A block is decoded as a whole.
+/// Limited because a block is decoded as a whole.
 constexpr int64_t LARGEST_BLOCK = int64_t{1} << 31;
 
 struct Compression {
     int scheme;
     const char* name;
-    /// How many bytes one byte can become, by the format's own rules, rounded up; 0: how many rows one bit can become
-    /// is known instead, which is one. Formats that name areas of one colour have no bound.
+    /// How many bytes one byte can decode to, by the format's own rules, rounded up. 0: instead, one bit is known to
+    /// decode to at most one row. Formats that encode areas of one colour have no bound.
     int64_t largest_ratio;
     bool is_read;
 };
@@ -30,7 +30,7 @@ constexpr Compression COMPRESSIONS[] = {
     {COMPRESSION_CCITTFAX4, "CCITT group 4", 0, true},
     {COMPRESSION_CCITTRLEW, "CCITT RLE", 0, true},
     {COMPRESSION_LZW, "LZW", 4096, true},                // 9 bits for at most 4093 bytes
-    {COMPRESSION_JPEG, "JPEG", 4096, true},              // a bit for a block of 64 samples, in each of few scans
+    {COMPRESSION_JPEG, "JPEG", 4096, true},              // one bit per block of 64 samples, in each of few scans
     {COMPRESSION_ADOBE_DEFLATE, "Deflate", 1032, true},  // 2 bits for 258 bytes
     {COMPRESSION_DEFLATE, "Deflate", 1032, true},
     {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes for 128
@@ -56,10 +56,10 @@ const Compression* find_compression(int scheme)
     return found == std::end(COMPRESSIONS) ? nullptr : found;
 }
 
-/// The most that `bytes` of the file can become.
+/// The most bytes that `bytes` of the file can decode to.
 int64_t most_decoded(const TiffLayout& layout, int64_t bytes)
 {
-    // A header of a compressed block may be all there is of it.
+    // A compressed block may consist of its header only.
     constexpr int64_t SLACK = 4096;
     const Compression* const known = find_compression(layout.compression);
     const int64_t ratio = known == nullptr ? 1 : known->largest_ratio;
@@ -257,7 +257,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout)
 {
     check_amount(file, layout, 1);
-    // Each block has at least a byte of the file, so that many can be remembered.
+    // Each block has at least one byte of the file, which bounds the memory for them.
     if (layout.blocks() > file.size_bytes()) {
         fail(page.subject(), ": has ", layout.blocks(), " strips or tiles; expected at most one for each of the ",
              file.size_bytes(), " bytes of the file");

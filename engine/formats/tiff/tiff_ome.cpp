@@ -1,5 +1,5 @@
-// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels says how large the stack is, how far apart its voxels
-// are and in which order its planes follow; TiffData says which page holds which plane.
+// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels states the size of the stack, the spacing of its voxels
+// and the order of its planes; TiffData maps planes to pages.
 
 #include <cmath>
 #include <pugixml.hpp>
@@ -12,10 +12,10 @@
 namespace shvr {
 namespace {
 
-/// The parser takes several times as much memory.
+/// Limited because the parser takes several times as much memory.
 constexpr size_t LONGEST_XML = size_t{16} << 20;
 
-/// Without its name space: "OME:Image" -> "Image".
+/// The name without its namespace: "OME:Image" -> "Image".
 std::string_view name_of(const pugi::xml_node& node)
 {
     const std::string_view name = node.name();
@@ -123,7 +123,7 @@ private:
         result_.slices = side(pixels, "SizeZ");
         result_.frames = side(pixels, "SizeT");
         result_.channels = side(pixels, "SizeC");
-        // Colours of one pixel are channels that share a page.
+        // The colours of one pixel are channels that share a page.
         if (result_.channels % samples_ != 0) {
             fail(subject_, ": SizeC is ", result_.channels, "; expected a multiple of the ", samples_,
                  " samples of a pixel");
@@ -152,7 +152,7 @@ private:
         return axis == 'Z' ? result_.slices : axis == 'C' ? result_.channels : result_.frames;
     }
 
-    /// Where plane number `plane` of DimensionOrder is in `pages`.
+    /// The index in `pages` of plane number `plane` of DimensionOrder.
     size_t place_of(int64_t plane) const
     {
         int64_t at[3] = {};  // Z, C, T

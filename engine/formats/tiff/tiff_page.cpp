@@ -14,14 +14,14 @@ namespace shvr {
 
 struct TiffPage::Access {
     const TiffFile& file;
-    std::array<std::byte, 16> header{};  ///< as in the file, but for the place of the first directory
+    std::array<std::byte, 16> header{};  ///< as in the file, except for the offset of the first directory
     size_t header_bytes = 0;
     int64_t position = 0;
     std::string complaint{};
 
     static Access& of(thandle_t handle) { return *static_cast<Access*>(handle); }
 
-    // Exceptions must not cross libtiff: -1 is its word for a failed read.
+    // Exceptions must not cross libtiff: it expects -1 for a failed read.
     static tmsize_t read(thandle_t handle, void* bytes, tmsize_t count) noexcept
     {
         Access& access = of(handle);
@@ -58,7 +58,7 @@ struct TiffPage::Access {
         char text[256];
         std::vsnprintf(text, sizeof(text), format, values);
         static_cast<Access*>(access)->complaint = text;
-        return 1;  // said; nobody else needs to hear it
+        return 1;  // handled: libtiff's other handlers need not report it
     }
     static int ignore(TIFF* /*tiff*/, void* /*access*/, const char* /*module*/, const char* /*format*/,
                       va_list /*values*/)
@@ -70,7 +70,7 @@ struct TiffPage::Access {
 TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t most_memory_bytes)
     : file_(file), page_(page), access_(new Access{file})
 {
-    // A few of libtiff's complaints pass by the handlers of a file.
+    // A few of libtiff's messages bypass a file's handlers.
     static std::once_flag silence;
     std::call_once(silence, [] {
         TIFFSetErrorHandler(nullptr);
@@ -90,8 +90,8 @@ TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), most_memory_bytes);
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Access::complain, access_.get());
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Access::ignore, nullptr);
-    // "m": without mapping, so that a file cut short while it is open is a failed read, not a signal. "O": places of
-    // strips are read as they are needed.
+    // "m": without mapping, so that truncating the file while it is open causes a failed read, not a signal. "O": strip
+    // offsets are read on demand.
     handle_ = TIFFClientOpenExt("TIFF", "rmO", access_.get(), Access::read, Access::write, Access::seek, Access::close,
                                 Access::size, nullptr, nullptr, options.get());
     if (handle_ == nullptr) fail(subject(), " cannot be read: ", complaint(), "; expected a TIFF that is whole");
@@ -129,7 +129,7 @@ uint32_t TiffPage::number32(uint32_t tag, uint32_t fallback) const
 
 bool TiffPage::has(uint32_t tag) const
 {
-    // Room for whatever libtiff stores: it is not looked at.
+    // Room for whatever libtiff stores; never read.
     std::array<void*, 4> values{};
     return TIFFGetField(handle_, tag, &values[0], &values[1], &values[2], &values[3]) == 1;
 }

@@ -43,7 +43,7 @@ void store_each(std::span<std::byte> voxels, const Value& value)
     }
 }
 
-/// Every `step`-th element of `row`, from `first` on.
+/// Takes every `step`-th element of `row`, from `first` on.
 template <class Bits>
 void gather(std::span<const std::byte> row, int64_t first, int64_t step, std::span<std::byte> voxels)
 {

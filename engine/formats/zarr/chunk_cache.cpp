@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// What an entry costs besides its voxels, so that chunks of fill value do not pile up without end.
+/// The cost of an entry besides its voxels, so that chunks of fill value do not accumulate without limit.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

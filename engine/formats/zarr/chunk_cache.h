@@ -1,6 +1,6 @@
 #pragma once
-// Decoded chunks that were asked for lately, up to a number of bytes. Two threads that want the same chunk decode it
-// once: the second one waits for the first. Any thread may call it.
+// Recently used decoded chunks, up to a number of bytes. Two threads that want the same chunk decode it once: the
+// second one waits for the first. Any thread may call it.
 
 #include <condition_variable>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// A decoded chunk; empty where all its voxels are the fill value.
+/// A decoded chunk; empty if all its voxels are the fill value.
 using Block = std::vector<std::byte>;
 
 class ChunkCache {
@@ -26,15 +26,15 @@ public:
         auto operator<=>(const Key&) const = default;
     };
 
-    /// The block, from `make` where it is not here. What `make` throws is thrown on and not remembered: those who
-    /// waited for it try themselves.
+    /// The cached block, or else the result of `make`. An exception from `make` is rethrown and not cached: waiting
+    /// threads then try themselves.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
-    int64_t bytes() const;  ///< held now; above the budget only by what is the latest block alone
+    int64_t bytes() const;  ///< currently held; exceeds the budget only if the latest block alone does
 
 private:
     struct Entry {
-        std::shared_ptr<const Block> block;  ///< null while somebody makes it
+        std::shared_ptr<const Block> block;  ///< null while a thread makes it
         std::list<Key>::iterator age{};
     };
     void make_room();
@@ -43,7 +43,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable made_;
     std::map<Key, Entry> entries_;
-    std::list<Key> ages_;  ///< the latest first
+    std::list<Key> ages_;  ///< most recent first
     int64_t bytes_ = 0;
 };
 

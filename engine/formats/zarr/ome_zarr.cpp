@@ -46,7 +46,7 @@ Axis read_axis(const JsonNode& node)
     const std::array<std::string_view, 3> kinds{"space", "channel", "time"};
     Axis axis;
     if (!node.is_object() && !node.is_text()) node.refuse(EXPECTED);
-    const JsonNode name = node.is_object() ? node["name"] : node;  // version 0.3 gives names alone
+    const JsonNode name = node.is_object() ? node["name"] : node;  // version 0.3 gives only names
     axis.name = lower_case(name.any_text(EXPECTED));
     axis.kind = kind_of(axis.name);
     if (const JsonNode kind = node["type"]; kind.exists()) axis.kind = kinds[kind.choice(kinds)];
@@ -92,7 +92,7 @@ void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& i
     if (!is_there[0] || !is_there[1] || !is_there[2]) node.refuse("axes of space called x, y and z");
 }
 
-/// One number for every axis, all finite; where they scale, above 0.
+/// One number per axis, all finite; scales must be above 0.
 std::vector<double> read_numbers(const JsonNode& node, size_t axes, bool is_scale)
 {
     const std::string expected =
@@ -105,7 +105,7 @@ std::vector<double> read_numbers(const JsonNode& node, size_t axes, bool is_scal
     return numbers;
 }
 
-/// Scales and translations, one after the other.
+/// Scales and translations, combined.
 struct Transformation {
     std::vector<double> scale;  ///< empty: none stated
     std::vector<double> translation;
@@ -125,7 +125,7 @@ struct Transformation {
     }
 };
 
-/// Of a dataset, or of all of them.
+/// Those of a dataset, or of all datasets.
 void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";
@@ -143,7 +143,7 @@ void apply_transformations(const JsonNode& owner, size_t axes, Transformation& t
     }
 }
 
-/// Names of folders below the image, nothing else: a path that climbs out of it is an attack or a mistake.
+/// Only names of folders below the image: a path that leaves it is an attack or a mistake.
 std::string read_level_path(const JsonNode& node)
 {
     constexpr const char* EXPECTED = "the relative path of an array inside the image's folder";
@@ -154,7 +154,7 @@ std::string read_level_path(const JsonNode& node)
     return text;
 }
 
-/// Where units differ, everything is brought to that of x.
+/// If units differ, all axes are converted to that of x.
 glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImage& image)
 {
     std::array<std::optional<std::string>, 3> units;

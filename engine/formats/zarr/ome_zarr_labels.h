@@ -1,5 +1,5 @@
 #pragma once
-// What an OME-Zarr label image says of its labels (https://ngff.openmicroscopy.org/0.4/#label-md): "image-label" with
+// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.4/#label-md): "image-label" with
 // "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any thread may call it.
 
 #include <array>
@@ -17,11 +17,11 @@ struct LabelLook {
     std::string name{};                            ///< may be empty
 };
 struct LabelLooks {
-    std::vector<LabelLook> looks{};       ///< ascending; of a label that is named twice the first entry
-    std::vector<std::string> warnings{};  ///< one for each of the two lists, of the first entry that is none
+    std::vector<LabelLook> looks{};       ///< ascending; if a label occurs twice, its first entry
+    std::vector<std::string> warnings{};  ///< at most one per list, about its first invalid entry
 };
 
-/// Empty where the folder is no label image. Fails where its .zattrs is no JSON.
+/// Empty if the folder is not a label image. Fails if its .zattrs is not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
 
 }  // namespace shvr

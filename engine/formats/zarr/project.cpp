@@ -24,9 +24,9 @@ constexpr int VERSION = 1;
 constexpr int64_t LARGEST_RECORD = int64_t{1} << 20;
 constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
-/// Ranges of 10^13 voxels.
+/// Enough for the ranges of 10^13 voxels.
 constexpr int64_t LARGEST_TABLE = int64_t{2} << 30;
-/// Zstd's smallest block is four bytes long, and gives at most 128 KiB.
+/// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
 constexpr int64_t MOST_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
@@ -79,7 +79,7 @@ void put(std::vector<std::byte>& bytes, const T& value)
     bytes.insert(bytes.end(), first, first + sizeof(T));
 }
 
-/// Everything of the header but its checksum.
+/// The whole header except its checksum.
 std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes)
 {
     std::vector<std::byte> header;
@@ -95,7 +95,7 @@ std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
 {
-    // The header's hash is the seed of the elements'.
+    // The header's hash seeds that of the elements.
     return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
 }
 

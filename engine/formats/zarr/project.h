@@ -1,14 +1,14 @@
 #pragma once
-// What a project folder holds of its volume besides the image, which is an OME-Zarr that other programs read. All of it
-// can be recomputed from the image, which still opens if one of these files is damaged.
+// What a project folder holds about its volume besides the image, which is an OME-Zarr that other programs can read.
+// All of it can be recomputed from the image, which still opens if one of these files is damaged.
 //
 //   PROJECT/shvr/volume.json      where the volume came from, how it lies in space, statistics, a hash of its content
 //   PROJECT/shvr/ranges-LEVEL     smallest and largest value under every brick
 //   PROJECT/shvr/checksums-LEVEL  of every chunk as it is stored
 //   PROJECT/shvr/session.json     engine/session/session.h
 //
-// Files with a level are tables, one element a brick or chunk, x fastest; 64 bytes of header, then the elements in a
-// zstd frame. Header: "SHVRTAB1", kind (8 bytes), level and bytes of an element (4 each), counts x, y, z (8 each),
+// Files with a level are tables with one element per brick or chunk, x fastest; 64 bytes of header, then the elements
+// in a zstd frame. Header: "SHVRTAB1", kind (8 bytes), level and bytes of an element (4 each), counts x, y, z (8 each),
 // bytes of the frame (8), XXH3-64 of the 56 bytes before and the elements (8); little-endian. Any thread may call
 // these.
 
@@ -28,7 +28,7 @@ struct ProjectRecord {
     VolumeStatistics statistics{};  ///< of level 0
     std::string content_hash{};     ///< of level 0; content_hash.h
     std::string source{};           ///< path of the file it was imported from
-    std::string preparation{};      ///< what was done to the voxels, in words; empty: nothing
+    std::string preparation{};      ///< how the voxels were processed, in words; empty: not at all
 };
 inline constexpr const char* PROJECT_RECORD = "shvr/volume.json";
 inline constexpr const char* PROJECT_SESSION = "shvr/session.json";
@@ -47,11 +47,11 @@ std::filesystem::path ranges_path(const std::filesystem::path& project, int leve
 std::filesystem::path checksums_path(const std::filesystem::path& project, int level);
 
 std::vector<std::byte> to_bytes(const ProjectTable& table);
-/// The table in `file`, which must have the kind, level, counts and size of elements of `expected`.
+/// The table in `file`, which must have the kind, level, counts and element size of `expected`.
 ProjectTable read_project_table(const std::filesystem::path& file, const ProjectTable& expected);
 
-/// An element of ranges-LEVEL is two voxels: the smallest and the largest finite value; the first is larger where there
-/// is none.
+/// An element of ranges-LEVEL is two voxels: the smallest and the largest finite value; the first is larger if there is
+/// none.
 ValueRange range_of(VoxelType type, std::span<const std::byte> element);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// What a project's folder knows of its volume besides the voxels, as far as it can be read; nothing of it is needed.
-// For source_ome_zarr.cpp.
+// What a project folder tells about its volume besides the voxels, as far as it can be read; all of it is optional. For
+// source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>
@@ -16,12 +16,12 @@ struct ProjectKnowledge {
     std::vector<std::vector<std::byte>> ranges{};  ///< by level; may be empty
 };
 
-/// Puts what the record says of the volume into `info`, and makes `volumes`, its levels, expect their checksums. What
-/// is damaged is left out, with a warning: it costs what it hits, not the image.
+/// Puts the record's data about the volume into `info`, and sets the checksums that `volumes`, its levels, verify.
+/// Damaged parts are ignored, with a warning; the image still opens.
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 
-/// Of a brick of a level that is inside it; nothing where that is not known.
+/// The range of a brick of a level, which must lie inside it; nothing if unknown.
 std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
                                    const Size3& brick);
 

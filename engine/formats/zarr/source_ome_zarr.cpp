@@ -1,8 +1,8 @@
 // OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2), and bare Zarr arrays, in a local folder. A project is such an
-// image with a folder shvr/ in it (project.h), which knows ranges and statistics.
+// image with a folder shvr/ (project.h), which holds ranges and statistics.
 //
-// Levels are the datasets that lie on level 0 as source.h wants it: twice as coarse each, along every axis. What does
-// not, is left out and said.
+// Levels are the datasets that are aligned with level 0 as source.h requires: each twice as coarse, along every axis.
+// Others are left out, with a warning.
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ private:
         });
     }
 
-    /// A level whose size was rounded down lacks its last voxel, for which the one before stands.
+    /// A level whose size was rounded down lacks its last voxel; the one before is repeated.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[static_cast<size_t>(level)].size();
@@ -120,7 +120,7 @@ std::string name_of_folder(const fs::path& path)
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-// ---- What to take where there is more than one ----------------------------------------------------------------------
+// ---- Choosing where there is more than one --------------------------------------------------------------------------
 
 /// `what`: "channel" or "frame".
 int64_t chosen(const fs::path& path, const char* what, const std::string& wanted, int64_t count,
@@ -163,7 +163,7 @@ Size3 size_along(const ZarrMetadata& metadata, const std::array<size_t, 3>& xyz)
     return {metadata.shape[xyz[0]], metadata.shape[xyz[1]], metadata.shape[xyz[2]]};
 }
 
-/// Why a dataset cannot be level `level`; empty where it can.
+/// Why a dataset cannot be level `level`; empty if it can.
 std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t dataset, const ZarrMetadata& metadata,
                       int level)
 {
@@ -191,8 +191,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // Its first voxel lies in the middle of those it stands for. Where it is put on the first of them, that is
-        // taken for the lack of a translation, which older programs do not write.
+        // Its first voxel lies in the middle of those it covers. If it lies on the first of them, a missing translation
+        // is assumed, which older programs do not write.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];
@@ -261,7 +261,7 @@ std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const JsonNode&
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
 
-/// An array by itself says nothing of axes.
+/// A bare array states nothing about its axes.
 std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptions& options)
 {
     ZarrMetadata metadata = read_zarr_metadata(folder);
@@ -287,7 +287,7 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
 }
 
-/// A group that is no image itself may hold some: bioformats2raw puts them into 0, 1, ...
+/// A group that is not itself an image may contain some: bioformats2raw puts them into 0, 1, ...
 std::unique_ptr<VolumeSource> open_group(const fs::path& folder, const JsonNode& attributes, const OpenOptions& options)
 {
     if (attributes["plate"].exists() || attributes["well"].exists()) {

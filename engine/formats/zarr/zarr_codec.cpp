@@ -25,7 +25,7 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     if (stored.size() < BLOSC_MIN_HEADER_LENGTH) {
         fail(name, ": holds ", stored.size(), " bytes; expected a blosc header of ", BLOSC_MIN_HEADER_LENGTH);
     }
-    // The header's own words come first: `blosc_cbuffer_validate` believes them where they agree with each other.
+    // The header's own values are checked first: `blosc_cbuffer_validate` trusts them if they agree with each other.
     size_t bytes = 0, stored_bytes = 0, block_bytes = 0;
     blosc_cbuffer_sizes(stored.data(), &bytes, &stored_bytes, &block_bytes);
     if (stored_bytes != stored.size()) {
@@ -35,7 +35,7 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     if (blosc_cbuffer_validate(stored.data(), stored.size(), &bytes) != 0 || bytes != chunk.size()) {
         fail(name, ": has a blosc header that contradicts itself; expected a whole chunk");
     }
-    // On one thread: parallel are the chunks.
+    // One thread: chunks are decoded in parallel already.
     const int made = blosc_decompress_ctx(stored.data(), chunk.data(), chunk.size(), 1);
     if (made < 0 || static_cast<size_t>(made) != chunk.size()) {
         fail(name, ": cannot be decoded by blosc (error ", made, "); expected a whole chunk");
@@ -51,7 +51,7 @@ void decompress_zstd(Bytes stored, std::span<std::byte> chunk, const std::string
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-/// Ends the stream whatever happens.
+/// Ends the stream in every case.
 struct Inflater {
     z_stream stream{};
     bool is_ready = false;
@@ -61,7 +61,7 @@ struct Inflater {
     }
 };
 
-/// Both wrappings of deflate; gzip files may hold several members, one after the other.
+/// Both deflate wrappers; gzip files may hold several members, one after the other.
 void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::string& name)
 {
     Inflater inflater;
@@ -69,7 +69,7 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     inflater.is_ready = inflateInit2(&inflater.stream, ZLIB_OR_GZIP) == Z_OK;
     if (!inflater.is_ready) fail(name, ": cannot be decoded: zlib has no memory");
     z_stream& stream = inflater.stream;
-    // zlib's interface is older than const.
+    // zlib's interface predates const.
     stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(stored.data()));
     stream.avail_in = static_cast<uInt>(stored.size());
     stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
@@ -95,7 +95,7 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
 
 int64_t longest_stored(int64_t chunk_bytes)
 {
-    // Deflate, the worst of them, adds five bytes to blocks of at least 16 KiB; headers are small.
+    // Deflate, the worst case, adds five bytes to blocks of at least 16 KiB; headers are small.
     return chunk_bytes + chunk_bytes / 1024 + 4096;
 }
 
@@ -105,7 +105,7 @@ void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t ch
         if (stored_bytes != chunk_bytes) refuse_size(name, "holds", stored_bytes, chunk_bytes);
         return;
     }
-    // Deflate: 258 bytes out of two bits. Zstd, also within blosc: 128 KiB out of a block of four bytes.
+    // Deflate: 258 bytes from two bits. Zstd, also within blosc: 128 KiB from a block of four bytes.
     const bool is_deflate = kind == ZarrCompressor::Kind::zlib || kind == ZarrCompressor::Kind::gzip;
     const size_t most_out_of_a_byte = is_deflate ? 1032 : 32768;
     if (chunk_bytes / most_out_of_a_byte > stored_bytes) {

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// A byte for each; volumes with more are not asked.
+/// One byte each; larger volumes are not checked.
 constexpr int64_t MOST_CHUNKS = int64_t{1} << 24;
 
 }  // namespace
@@ -37,7 +37,7 @@ std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
     for (int below = level; below >= 0; --below) {
         if (!are_missing(below, chunks_below(level, box, below))) return std::nullopt;
         const ZarrVolume& volume = levels_[static_cast<size_t>(below)];
-        // A whole array that went away must not look empty.
+        // An array that was removed must not look empty.
         if (!volume.is_there()) return std::nullopt;
         double fill = 0.0;
         load_voxels(volume.metadata().type, volume.metadata().fill.data(), std::span(&fill, 1));
@@ -52,7 +52,7 @@ ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int belo
 {
     const ZarrVolume& volume = levels_[static_cast<size_t>(below)];
     const int64_t factor = int64_t{1} << (level - below);
-    // For what a level lacks whose size was rounded down, its last voxels stand.
+    // A level whose size was rounded down lacks its last voxels; the last existing ones stand for them.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
     const Size3 upper = glm::min(box.upper * factor, volume.size());
     return {lower / volume.chunk(), (upper - int64_t{1}) / volume.chunk() + int64_t{1}};
@@ -75,7 +75,7 @@ bool ZarrGaps::is_missing(int level, const Size3& chunk) const
 {
     const ZarrVolume& volume = levels_[static_cast<size_t>(level)];
     std::atomic<Found>& found = found_[static_cast<size_t>(level)][static_cast<size_t>(volume.index_of(chunk))];
-    // Two threads that look at once find the same.
+    // Two threads that look at the same time find the same.
     if (found.load(std::memory_order_relaxed) == Found::unknown) {
         found.store(volume.is_missing(chunk) ? Found::missing : Found::stored, std::memory_order_relaxed);
     }

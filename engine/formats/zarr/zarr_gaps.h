@@ -1,13 +1,13 @@
 #pragma once
-// Where nothing is stored of a Zarr image, so that sparse volumes that others wrote are skipped without being read.
+// Finds where a Zarr image stores nothing, so that sparse volumes from other programs are skipped without being read.
 //
-// Levels of others need not be means of each other, so a part of a coarse level is a gap only where all that it stands
-// for, down to level 0, is one. That is eight times as many chunks a level: a question that would take more than
-// MOST_FILES is not answered. In chunks of 64^3 voxels that is so for bricks of level 4 and above; in chunks of 32^3,
-// of level 3 and above.
+// In such files levels need not be means of each other, so a part of a coarse level is a gap only if everything below
+// it, down to level 0, is one. That multiplies the chunks by eight per level: a query that would check more than
+// MOST_FILES files is not answered. With chunks of 64^3 voxels that affects bricks of level 4 and above; with chunks of
+// 32^3, of level 3 and above.
 //
-// A file is looked for once, for some microseconds, and what was found is kept in a byte a chunk. Any thread may call
-// it.
+// Each file is looked up once, which takes some microseconds, and the result is kept in one byte per chunk. Any thread
+// may call it.
 
 #include <atomic>
 #include <memory>
@@ -22,16 +22,16 @@ class ZarrGaps {
 public:
     static constexpr int64_t MOST_FILES = 512;
 
-    /// `levels` are those of one image, the finest first, and must outlive it.
+    /// `levels` are those of one image, finest first, and must outlive it.
     explicit ZarrGaps(const std::vector<ZarrVolume>& levels);
 
-    /// The range of the values of `box`, a part of `level`, and of all it stands for in finer levels, where none of
-    /// their chunks is stored: of the fill values, lower > upper where none is finite. Nothing where one is stored, or
-    /// cannot be looked for.
+    /// The range of the values of `box`, a part of `level`, and of everything below it in finer levels, if none of
+    /// their chunks is stored: the range of the fill values, lower > upper if none is finite. Nothing if a chunk is
+    /// stored, or cannot be looked up.
     std::optional<ValueRange> range(int level, const VoxelBox& box) const;
 
 private:
-    /// Chunks, from and to.
+    /// A range of chunks, from and to.
     struct Chunks {
         Size3 begin{0}, end{0};
         int64_t count() const { return (end.x - begin.x) * (end.y - begin.y) * (end.z - begin.z); }
@@ -42,7 +42,7 @@ private:
 
     enum class Found : uint8_t { unknown, stored, missing };
     const std::vector<ZarrVolume>& levels_;
-    std::vector<std::unique_ptr<std::atomic<Found>[]>> found_;  ///< by level; null where there are too many chunks
+    std::vector<std::unique_ptr<std::atomic<Found>[]>> found_;  ///< by level; null if there are too many chunks
 };
 
 }  // namespace shvr

@@ -77,7 +77,7 @@ double float_fill(const JsonNode& fill)
 
 void read_fill_value(const JsonNode& fill, ZarrMetadata& metadata)
 {
-    // null leaves such voxels undefined; 0 is what other readers give.
+    // null leaves such voxels undefined; other readers return 0.
     if (!fill.exists() || fill.is_null()) return;
     switch (metadata.type) {
         case VoxelType::uint8: return put_whole<uint8_t>(fill, metadata);

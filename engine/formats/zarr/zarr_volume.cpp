@@ -44,7 +44,7 @@ void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
     if (voxel_bytes == 8) swap_each<uint64_t>(voxels);
 }
 
-/// Bytes from one voxel to the next along each axis, of a chunk as it is stored.
+/// Bytes from one voxel to the next along each axis of a stored chunk.
 std::vector<size_t> strides_of(const ZarrMetadata& metadata)
 {
     const size_t axes = metadata.chunks.size();
@@ -77,7 +77,7 @@ void gather(const std::byte* from, const Size3& count, const std::array<size_t, 
     }
 }
 
-/// The stored bytes; nothing where there is no such file.
+/// The stored bytes; nothing if there is no such file.
 std::optional<std::vector<std::byte>> stored_bytes(const std::filesystem::path& path, int64_t longest)
 {
     struct stat status {};
@@ -143,7 +143,7 @@ Block ZarrVolume::load(const Size3& chunk) const
         }
     }
     if (stored) return decoded(*stored, path.string());
-    // A whole array that went away must not look empty.
+    // An array that was removed must not look empty.
     if (!is_there()) {
         fail((array_ / ".zarray").string(), ": cannot be found any more: ", reason_of(errno),
              "; expected the array that was opened");

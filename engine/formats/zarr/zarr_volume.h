@@ -1,9 +1,8 @@
 #pragma once
-// A volume inside a Zarr array of version 2: three of its axes, at fixed places along the others, chunk by chunk.
+// A volume inside a Zarr array of version 2: three of its axes, at a fixed index along the others, chunk by chunk.
 //
-// A chunk that is not there holds the fill value; one that cannot be read or decoded is an `Error` with its path.
-// Chunks at the end of an axis are as large as all others, and what lies beyond the array is never looked at. Any
-// thread may call it.
+// A missing chunk holds the fill value; a chunk that cannot be read or decoded is an `Error` with its path. Chunks at
+// the end of an axis have the full size, and their part outside the array is never looked at. Any thread may call it.
 
 #include <filesystem>
 #include <functional>
@@ -18,13 +17,13 @@
 
 namespace shvr {
 
-/// Which of an array's axes a volume's are, and where it lies along the others.
+/// Selects the three axes of an array that form a volume, and its index along the others.
 struct ZarrView {
     std::array<size_t, 3> xyz{2, 1, 0};  ///< the array's axis along x, y and z
-    std::vector<int64_t> at{};           ///< an index for every axis of the array; those along x, y and z are ignored
+    std::vector<int64_t> at{};           ///< an index for every axis of the array; ignored for x, y and z
 };
 
-/// What a chunk's stored bytes must be, so that damage is found even where it can be decoded. 0: no chunk is stored.
+/// The checksum of a chunk's stored bytes, which finds damage even if they still decode. 0: no chunk is stored.
 uint64_t checksum_of(std::span<const std::byte> stored);
 
 class ZarrVolume {
@@ -38,18 +37,19 @@ public:
     int64_t index_of(const Size3& chunk) const { return shvr::index_of(chunk, counts_); }
     std::filesystem::path path_of(const Size3& chunk) const;
 
-    /// From now on stored chunks are compared with these, by `index_of`. Not while others read.
+    /// Sets the checksums, by `index_of`, that stored chunks are compared with from now on. Not while other threads
+    /// read.
     void expect(std::vector<uint64_t> checksums) { checksums_ = std::move(checksums); }
 
-    /// The voxels of a chunk, x fastest, in native byte order; empty where they are all the fill value.
+    /// The voxels of a chunk, x fastest, in native byte order; empty if all are the fill value.
     Block load(const Size3& chunk) const;
 
-    /// True where no such chunk is stored, nor should be: it holds the fill value. Nothing is read.
+    /// True if the chunk is not stored, and should not be: it holds the fill value. Reads nothing.
     bool is_missing(const Size3& chunk) const;
-    /// The array is still where it was opened.
+    /// Whether the array still exists where it was opened.
     bool is_there() const;
 
-    /// Copies the voxels of `box`, which lies inside the volume, x fastest. `get` gives the chunks.
+    /// Copies the voxels of `box`, which lies inside the volume, x fastest. `get` returns the chunks.
     void read(const VoxelBox& box, std::span<std::byte> voxels,
               const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const;
 

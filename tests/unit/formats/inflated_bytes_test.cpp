@@ -36,7 +36,7 @@ std::string deflated(std::string_view data, int wrapping)
     return packed;
 }
 
-/// Compresses to about a half; needs what lies far behind.
+/// Compresses to about a half, with references far back.
 std::string noisy_bytes(size_t count)
 {
     std::mt19937 random(1);  // seed 1
@@ -76,7 +76,7 @@ TEST_CASE("any part of compressed bytes is what was compressed there, from sever
     for (const fs::path& path : {one, zlib, many}) {
         CAPTURE(path.filename().string());
         const auto bytes = opened(path, static_cast<int64_t>(count) - 100, 100);
-        // From back to front first: nothing is known of the file yet.
+        // Backwards first, while nothing is known of the file yet.
         CHECK(read_from(*bytes, static_cast<int64_t>(count) - 300, 200) == all.substr(count - 200));
         CHECK(read_from(*bytes, 0, 1000) == all.substr(100, 1000));
         size_t wrong[3] = {};
@@ -124,14 +124,14 @@ TEST_CASE("compressed bytes that are damaged, cut short or too few are an error 
     const size_t sound = 2000000;
     const std::string first = deflated(all.substr(0, sound), GZIP);
     damaged = first + deflated(all.substr(sound), GZIP);
-    damaged[first.size() + 10] = '\xff';  // no block is of that type
+    damaged[first.size() + 10] = '\xff';  // no block has that type
     CHECK(refusal_of(damaged, 3000000) ==
           at + ": is damaged after 2000000 decompressed bytes: invalid block type; expected deflated data");
     CHECK(contains(refusal_of("PK\3\4", 10), "begins as neither gzip nor zlib does; expected one of them"));
     CHECK(contains(refusal_of("\x1f", 10), "is missing; expected one of them"));
     CHECK(contains(refusal_of("", 10), "is missing; expected one of them"));
 
-    // What lies before the damage can be read, again and again.
+    // Bytes before the damage can be read repeatedly.
     folder.write("a.gz", damaged);
     const auto bytes = opened(folder.path / "a.gz", 3000000);
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Places beyond 4 GiB, in files with holes that take no room on the disk; and counts beyond 2^32.
+// Offsets beyond 4 GiB, in sparse files that take no space on the disk; and counts beyond 2^32.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// What is done to voxels before they are kept, against direct convolution and averaging in double.
+// Processing of voxels before they are stored, compared with direct convolution and averaging in double.
 
 #include "engine/projects/import_prepare.h"
 
@@ -32,7 +32,7 @@ constexpr VoxelType TYPE<float> = VoxelType::float32;
 template <>
 constexpr VoxelType TYPE<double> = VoxelType::float64;
 
-/// A block of numbers, x fastest; outside, its nearest voxel.
+/// A block of numbers, x fastest; its border is repeated outwards.
 struct Block {
     Size3 size{0};
     std::vector<double> values;
@@ -355,7 +355,7 @@ TEST_CASE("a box is cut out, and where it lies is kept")
     const VolumeInfo after = make_preparation(source, options)->info();
     CHECK(after.size == Size3(3, 2, 3));
     CHECK(after.spacing == glm::dvec3(1.0, 2.0, 4.0));
-    // Its first voxel has its centre between voxels 2 and 3 along x, 3 and 4 along y, 1 and 2 along z.
+    // The centre of its first voxel lies between voxels 2 and 3 along x, 3 and 4 along y, 1 and 2 along z.
     CHECK(after.origin == glm::dvec3(100.0 - 3.5 * 1.0, 200.0 + 2.5 * 0.5, 300.0 + 1.5 * 2.0));
     const Block cut = prepared<uint8_t>(source, {.crop = options.crop});
     cut.for_each([&](int64_t x, int64_t y, int64_t z) { REQUIRE(cut.at(x, y, z) == block.at(x + 2, y + 3, z + 1)); });

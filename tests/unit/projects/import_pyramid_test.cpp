@@ -1,4 +1,4 @@
-// Levels and ranges against their definitions, voxel by voxel.
+// Levels and ranges compared with their definitions, voxel by voxel.
 
 #include "engine/projects/import_pyramid.h"
 
@@ -48,7 +48,7 @@ Block<T> random_block(const Size3& size, uint32_t seed, double share_of_nan = 0.
     return block;
 }
 
-/// Calls `function(value)` for every finite voxel of `block` in the box, cut at the block's end.
+/// Calls `function(value)` for every finite voxel of `block` in the box, clipped to the block.
 template <class T, class Function>
 void for_each_finite(const Block<T>& block, const Size3& lower, const Size3& upper, const Function& function)
 {
@@ -252,7 +252,7 @@ TEST_CASE("a state that was cut short or changed is refused")
     for (size_t at = 0; at < whole.size() * 8; ++at) {
         std::string spoiled = whole;
         spoiled[at / 8] = static_cast<char>(spoiled[at / 8] ^ static_cast<char>(1 << at % 8));
-        // A bit of the frame's own header may say the same in another way; what is read is still what was written.
+        // A changed bit of the frame's header may mean the same; the result must still equal what was written.
         try {
             StateReader reader(folder.write("spoiled", spoiled));
             CHECK(reader.take_text() == "identity");

@@ -1,4 +1,4 @@
-// Projects: that they hold what was imported, that they are whole or not there, and that damage is found.
+// Projects: they hold what was imported, are complete or absent, and damage is detected.
 
 #include "engine/projects/import_volume.h"
 #include "engine/base/file.h"
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Noise with a corner that is 0.
+/// Noise with a corner of zeros.
 template <class T>
 MemorySource noise(const Size3& size, VoxelType type, uint32_t seed)
 {
@@ -50,7 +50,7 @@ MemorySource noise(const Size3& size, VoxelType type, uint32_t seed)
     return {std::move(info), {bytes.begin(), bytes.end()}};
 }
 
-/// Gives way at the n-th read: with an error, or by asking to stop.
+/// Fails at the n-th read: with an error, or by requesting to stop.
 class Interrupted final : public VolumeSource {
 public:
     Interrupted(const VolumeSource& source, int reads, bool fails)
@@ -59,7 +59,7 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         source_.read(box, voxels);
-        const std::scoped_lock lock(mutex_);  // who counts later sees that it is to stop
+        const std::scoped_lock lock(mutex_);  // a thread that counts a later read must see `stop`
         if (++reads_ != last_) return;
         if (fails_) fail("source: cannot be read: Input/output error");
         stop = true;
@@ -159,7 +159,7 @@ TEST_CASE("a project holds the voxels of its source, and knows what else can be 
     }
     CHECK_FALSE(project->brick_range(0, {3, 0, 0}).has_value());
     CHECK_FALSE(project->brick_range(4, {0, 0, 0}).has_value());
-    CHECK(project->brick_range(0, {0, 0, 4}).value() == ValueRange{0.0, 0.0});  // away from every other voxel
+    CHECK(project->brick_range(0, {0, 0, 4}).value() == ValueRange{0.0, 0.0});  // far from every other voxel
     CHECK(project->brick_range(3, {0, 0, 0}).value() == ValueRange{expected.minimum, expected.maximum});
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("the number of threads changes no byte of a project")
     auto one = content_of(folder.path / "threads-1");
     for (const char* other : {"threads-2", "threads-7"}) {
         auto content = content_of(folder.path / other);
-        // They have names of their own.
+        // The names of the projects differ.
         CHECK(content.erase(".zattrs") == 1);
         one.erase(".zattrs");
         CHECK(content == one);
@@ -287,7 +287,7 @@ TEST_CASE("what another import left is not gone on with")
     CHECK(contains(folder.import(source).warnings.at(1), "is damaged, or from another version"));
     fs::remove_all(folder.path / "project");
 
-    // The file the voxels come from was written again.
+    // The source file was written again.
     folder.write("source.raw", "one");
     leave_part({});
     folder.write("source.raw", "another");
@@ -306,11 +306,11 @@ TEST_CASE("what is there is not replaced, unless it is a project and that is wan
     const MemorySource source = noise<uint8_t>({40, 30, 20}, VoxelType::uint8, 6);
     const MemorySource other = noise<uint8_t>({20, 30, 20}, VoxelType::uint8, 7);
     fs::create_directory(folder.path / "project");
-    folder.import(source);  // an empty folder is nothing
+    folder.import(source);  // an empty folder counts as absent
     CHECK(contains(folder.refusal(other), "project: is there already; expected a new name, or --overwrite"));
     const Interrupted broken(other, 1, true);
     CHECK(!folder.refusal(broken, {.overwrites = true}).empty());
-    CHECK(open_volume(folder.path / "project")->info().size.x == 40);  // still whole
+    CHECK(open_volume(folder.path / "project")->info().size.x == 40);  // still complete
     folder.import(other, "project/", {.overwrites = true});
     CHECK(voxels_of<uint8_t>(*open_volume(folder.path / "project")) == voxels_of<uint8_t>(other));
     CHECK_FALSE(fs::exists(folder.path / "project.part"));
@@ -359,7 +359,7 @@ TEST_CASE("a project without its knowledge is an image; damaged knowledge is nam
             }
             if (said.empty()) {
                 CHECK(voxels == expected);
-                // A level that lost its metadata is left out, with those after it.
+                // A level without metadata is left out, and so are those after it.
                 if (!name.starts_with("shvr/")) CHECK(project->levels() == name[0] - '0');
             } else {
                 CHECK(contains(said, name));
@@ -427,7 +427,7 @@ TEST_CASE("two imports do not work on one folder at once")
 {
     const Folder folder;
     const MemorySource source = noise<uint8_t>({40, 40, 40}, VoxelType::uint8, 11);
-    /// Starts a second import while it is read.
+    /// Starts a second import while being read.
     class Nested final : public VolumeSource {
     public:
         Nested(const VolumeSource& source, const Folder& folder)
@@ -470,5 +470,5 @@ TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")
         fs::remove_all(folder.path / "project.part");
     }
     CHECK(stopped > 3);
-    CHECK(most_after < THREADS);  // those that had begun
+    CHECK(most_after < THREADS);  // reads that had begun
 }

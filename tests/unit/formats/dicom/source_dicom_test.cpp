@@ -43,7 +43,7 @@ struct Value {
     std::string bytes;
 };
 
-/// A DICOM file, element by element (PS3.5, 7.1). Values are given in little-endian order.
+/// Builds a DICOM file, element by element (PS3.5, 7.1). Values are given in little-endian order.
 struct Dicom {
     std::string transfer_syntax = EXPLICIT_LITTLE;
     std::map<uint32_t, Value> elements{};
@@ -59,7 +59,7 @@ struct Dicom {
         elements[tag] = {"US", little(value, 2)};
         return *this;
     }
-    /// One item with `values`, or several.
+    /// Adds a sequence of one item with `values`, or of several.
     Dicom& sequence(uint32_t tag, const std::vector<Dicom>& items)
     {
         std::string bytes;
@@ -114,7 +114,7 @@ constexpr uint32_t INTERCEPT = 0x00281052;
 constexpr uint32_t SLOPE = 0x00281053;
 constexpr uint32_t PIXELS = 0x7fe00010;
 
-/// A CT image of 5 x 4 pixels without its place: those of slice `z` of the phantom.
+/// A CT image of 5 x 4 pixels, slice `z` of the phantom, without a position.
 Dicom image_of(int64_t z)
 {
     Dicom dicom;
@@ -129,7 +129,7 @@ Dicom image_of(int64_t z)
     return dicom;
 }
 
-/// With its first pixel at 10, 20, 30 + 1.25 z mm.
+/// The same with its first pixel at 10, 20, 30 + 1.25 z mm.
 Dicom slice_of(int64_t z)
 {
     Dicom dicom = image_of(z);
@@ -138,7 +138,7 @@ Dicom slice_of(int64_t z)
     return dicom;
 }
 
-/// `a.dcm` ... in an order that is none.
+/// `a.dcm` ... in arbitrary order.
 fs::path folder_of(const TemporaryFolder& folder, const std::vector<Dicom>& slices)
 {
     for (size_t i = 0; i < slices.size(); ++i) {
@@ -196,7 +196,7 @@ TEST_CASE("wherever the axes of DICOM slices run, every voxel stays at its place
         const TemporaryFolder folder;
         std::vector<Dicom> slices = phantom_slices();
         for (Dicom& slice : slices) slice.text(ORIENTATION, "DS", orientation);
-        // Their positions run along the normal that the orientation has, or against it.
+        // Positions run along the normal of the stated orientation, or against it.
         const auto flat = open_volume(folder_of(folder, {slices[0]}));
         const glm::dvec3 normal = glm::cross(flat->info().directions[0], flat->info().directions[1]);
         for (const double sign : {1.0, -1.0}) {
@@ -212,7 +212,7 @@ TEST_CASE("wherever the axes of DICOM slices run, every voxel stays at its place
                 const glm::dvec3 index(i % 5, i / 5 % 4, i / 20);
                 const glm::dvec3 position =
                     source->info().origin + source->info().directions * (source->info().spacing * index);
-                // The slice's own pixel that lies there.
+                // The slice's own pixel at that position.
                 const glm::dvec3 away = position - glm::dvec3(10, 20, 30);
                 const int64_t z = std::llround(sign * glm::dot(away, normal) / 1.25);
                 const int64_t x = std::llround(glm::dot(away, flat->info().directions[0]) / 0.5);
@@ -288,7 +288,7 @@ TEST_CASE("DICOM intensities are what stored numbers mean")
 
 TEST_CASE("missing, doubled and odd DICOM slices are told")
 {
-    std::vector<std::unique_ptr<TemporaryFolder>> folders;  // slices are read when they are asked for
+    std::vector<std::unique_ptr<TemporaryFolder>> folders;  // slices are read on demand
     const auto opened = [&](const std::vector<Dicom>& slices) {
         folders.push_back(std::make_unique<TemporaryFolder>());
         return open_volume(folder_of(*folders.back(), slices));
@@ -448,7 +448,7 @@ TEST_CASE("hostile lengths in a DICOM file are refused at once, before GDCM take
     const TemporaryFolder folder;
     const Effort effort;
     const auto with = [&](uint32_t tag, const std::string& bytes) {
-        // Between the elements that come before and after.
+        // Between its predecessor and its successor in tag order.
         Dicom before = slice_of(0);
         Dicom after = before;
         std::erase_if(before.elements, [&](const auto& element) { return element.first >= tag; });

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those that name other files find them beside them.
+/// Headers that name other files find them in the same folder.
 constexpr const char* HEADERS[] = {
     "attached.nrrd",     "detached.nhdr", "tail.nhdr", "local.mha",      "detached.mhd",     "tail.mhd",
     "gzip.nrrd",         "gzip.nhdr",     "zlib.mha",  "zlib.mhd",       "pattern.nhdr",     "list.nhdr",
@@ -24,7 +24,7 @@ std::string refusal(const fs::path& path)
     return error_of([&] { open_volume(path); });
 }
 
-/// `text` with the line of `field` (its name up to the separator) exchanged for `line`; "" takes it out.
+/// `text` with `line` in place of the line of `field` (its name up to the separator); "" removes it.
 std::string with_line(std::string text, const std::string& field, const std::string& line)
 {
     const size_t begin = ("\n" + text).find("\n" + field);
@@ -97,7 +97,7 @@ TEST_CASE("a file cut anywhere is an error, or still says the same")
             try {
                 const auto source =
                     open_volume(is_header ? path : folder.path / (name == "zlib.zraw" ? "zlib.mhd" : "gzip.nhdr"));
-                // Without its byte order stated, a header means another one.
+                // A header cut before its byte order means little-endian, with a warning.
                 const bool is_same = is_chirality_phantom(*source) || warns_of(*source, "no byte order stated");
                 CAPTURE(length);
                 CHECK(is_same);
@@ -365,7 +365,7 @@ TEST_CASE("spacing, byte order and orientation of a MetaImage survive, and what 
     CHECK(folder.mhd("BinaryData", "DistanceUnits = um")->info().unit == "um");
     CHECK(warns_of(*folder.mhd("ElementSpacing", ""), "no spacing stated"));
     const auto turned = folder.mhd("BinaryData", "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 7 8 9");
-    CHECK(turned->info().warnings.size() == 1);  // a quarter turn needs no words
+    CHECK(turned->info().warnings.size() == 1);  // a quarter turn needs no warning
     CHECK(turned->info().directions[0] == glm::dvec3(0, 1, 0));
     CHECK(turned->info().directions[1] == glm::dvec3(-1, 0, 0));
     CHECK(turned->info().origin == glm::dvec3(7, 8, 9));

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* FILES[] = {"sform.nii", "big.nii",          "gzip.nii.gz",  "radiological.nii", "qform.nii",
                                  "pair.hdr",  "pair_gzip.hdr.gz", "version2.nii", "version2_big.nii"};
 
-/// The little-endian phantom of NIfTI-1, to be spoilt.
+/// The little-endian phantom of NIfTI-1, for tests to damage.
 class Nifti {
 public:
     Nifti() : bytes(bytes_of_file(CHIRALITY / "sform.nii")) {}

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Random voxels of one type, as a file holds them.
+/// Random voxels of one type, in the byte order of files.
 template <class T>
 struct Sample {
     std::vector<T> voxels;
@@ -51,7 +51,7 @@ std::string refusal(const fs::path& path)
     return error_of([&] { open_volume(path); });
 }
 
-/// 5 x 4 x 3 bytes, each with a value of its own: any mirrored or exchanged axis shows.
+/// 5 x 4 x 3 bytes, each with a distinct value: any mirrored or exchanged axis shows.
 std::string marked_bytes()
 {
     std::string bytes;
@@ -284,7 +284,7 @@ TEST_CASE("where nobody states the byte order, what neighbours suggest is said, 
     const auto other = open_raw(folder.write("a.raw", big), layout);
     CHECK(warns_of(*other,
                    "little-endian assumed, though neighbouring voxels are more alike as big-endian, which is a guess"));
-    CHECK(voxels_of<uint16_t>(*other)[0] == 0xe803);  // nothing is guessed into the voxels
+    CHECK(voxels_of<uint16_t>(*other)[0] == 0xe803);  // the guess does not change voxels
     CHECK_FALSE(warns_of(*open_raw(folder.path / "a.raw", {{40, 30, 20}, VoxelType::uint16, true}), "byte order"));
     CHECK(warns_of(*open_volume(folder.write("b_40x30x20.raw", big)), "which is a guess"));
 }

@@ -101,7 +101,7 @@ TEST_CASE("a palette is read by its numbers or by its colours, and a grey one ne
     CHECK(voxels_for(path, "red") == std::vector<uint8_t>{255, 254, 0});
     CHECK(voxels_for(path, "blue") == std::vector<uint8_t>{0, 1, 255});
 
-    spec.description = "ImageJ=1.53t\n";  // to ImageJ a palette is a way to look at numbers
+    spec.description = "ImageJ=1.53t\n";  // to ImageJ a palette only displays numbers
     write_tiff(path, spec, {std::string("\0\1\xff", 3)});
     CHECK(voxels_for(path, "") == std::vector<uint8_t>{0, 1, 255});
     CHECK(warns_of(*open_volume(path), "the colours of its lookup table were left out"));
@@ -125,7 +125,7 @@ TEST_CASE("thumbnails and masks are left out, and it is said")
         thumbnail.subfile_type = FILETYPE_REDUCEDIMAGE;
         TiffSpec mask = square(4);
         mask.subfile_type = FILETYPE_MASK;
-        for (const char voxel : {'a', 'b', 'c'}) {  // as a microscope's software interleaves them
+        for (const char voxel : {'a', 'b', 'c'}) {  // interleaved, as a microscope's software does
             writer.page(square(4), std::string(16, voxel));
             writer.page(thumbnail, std::string(4, 't'));
         }

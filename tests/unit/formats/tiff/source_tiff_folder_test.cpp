@@ -1,4 +1,4 @@
-// A folder of TIFFs, one slice in each.
+// A folder of TIFFs, one slice each.
 
 #include <doctest/doctest.h>
 
@@ -14,12 +14,12 @@ namespace fs = std::filesystem;
 
 class Slices : public TemporaryFolder {
 public:
-    /// A slice of 2 x 2 voxels of one value.
+    /// Adds a slice of 2 x 2 voxels of one value.
     void add(const std::string& name, char value, TiffSpec spec = {.width = 2, .height = 2, .bits = 8}) const
     {
         write_tiff(path / name, spec, {std::string(spec.page_bytes(), value)});
     }
-    /// The values of the slices in the order in which they are taken.
+    /// The values of the slices, in the order in which they are read.
     std::string order() const
     {
         std::string order;

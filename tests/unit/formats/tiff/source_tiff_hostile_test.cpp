@@ -1,4 +1,4 @@
-// TIFFs that are cut short, damaged, or made to harm: each is refused in words, soon, and libtiff keeps quiet.
+// TIFFs that are truncated, damaged, or malicious: each is refused quickly with a message, and libtiff prints nothing.
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is written to the terminal while it lives goes into a file.
+/// Redirects standard error to a file during its lifetime.
 class CaughtStderr {
 public:
     explicit CaughtStderr(const fs::path& path) : path_(path), kept_(::dup(2))
@@ -50,7 +50,7 @@ private:
     int kept_;
 };
 
-/// Directories byte by byte, little-endian: what libtiff would refuse to write.
+/// Directories written byte by byte, little-endian: libtiff would refuse to write these.
 class HandMade {
 public:
     struct Field {
@@ -109,7 +109,7 @@ Fields with(Fields fields, const Fields& changes)
 
 class Hostile : public TemporaryFolder {
 public:
-    /// One page of these fields in a file of 1 KiB; the sentence without the path.
+    /// The refusal of a file of 1 KiB with one page of these fields, without the path.
     std::string refusal(const Fields& changes) const
     {
         HandMade tiff(72);
@@ -133,7 +133,7 @@ public:
     }
 };
 
-/// What tiny but complete files there are, with the voxels they hold.
+/// Tiny but complete files, with their voxels.
 struct Sample {
     std::string name;
     std::string bytes;
@@ -218,7 +218,7 @@ TEST_CASE("a TIFF that lies about sizes is refused by field, before memory is ta
     CHECK(hostile.refusal({{257, 4, 1, 0}}) == ": page 1: ImageLength is 0; expected 1 to 1048576");
     CHECK(hostile.refusal({{256, 4, 1, 0x80000000}}) == ": page 1: ImageWidth is 2147483648; expected 1 to 1048576");
     CHECK(hostile.refusal({{257, 4, 1, 0xffffffff}}) == ": page 1: ImageLength is 4294967295; expected 1 to 1048576");
-    // 10 TB in 1 KiB: bare, and compressed.
+    // 10 TB in 1 KiB: uncompressed, and compressed.
     CHECK(hostile.refusal(
               {{256, 4, 1, 1048576}, {257, 4, 1, 1048576}, {258, 3, 1, 64}, {278, 4, 1, 1048576}, {339, 3, 1, 3}}) ==
           ": holds 1024 bytes; expected enough for 1 page of 1048576x1048576 pixels of float64: it was cut short, or "
@@ -251,7 +251,7 @@ TEST_CASE("a TIFF that lies about sizes is refused by field, before memory is ta
     CHECK(contains(hostile.refusal({{322, 4, 1, 0xfffffff0}, {323, 4, 1, 0xfffffff0}, {324, 4, 1, 8}, {325, 4, 1, 64}}),
                    "expected"));
     CHECK(contains(hostile.refusal({{322, 4, 1, 0}, {323, 4, 1, 0}, {324, 4, 1, 8}, {325, 4, 1, 64}}), "expected"));
-    CHECK(hostile.refusal({{320, 3, 0x7fffffff, 8}, {262, 3, 1, 3}}) == "");  // without its palette it is grey
+    CHECK(hostile.refusal({{320, 3, 0x7fffffff, 8}, {262, 3, 1, 3}}) == "");  // without its palette it counts as grey
     CHECK(contains(hostile.refusal({{259, 3, 1, 33005}}), "Compression is 33005 (JPEG 2000); expected none, LZW"));
     CHECK(contains(hostile.refusal({{259, 3, 1, 12345}}), "expected"));
 }
@@ -304,7 +304,7 @@ TEST_CASE("chains of pages that do not end are refused")
     HandMade large(8);
     large.add(65535, 2);
     CHECK(hostile.refusal_of(large.bytes()) == ": page 1 has a directory of 65535 fields; expected 1 to 4096");
-    // Directories that lie over each other, each of many fields.
+    // Overlapping directories with many fields each.
     HandMade woven(8);
     const Fields many(400, {256, 4, 1, 8});
     woven.directory(many, 0);
@@ -342,7 +342,7 @@ TEST_CASE("a bomb of zeros is read piece by piece, without more memory than the 
     const auto source = open_volume(path);
     CHECK(voxels_in<uint8_t>(*source, {{4000, 4000, 0}, {4001, 4001, 1}}) == std::vector<uint8_t>{0});
 
-    // A strip that decodes to more than its page says is read as far as the page goes.
+    // A strip that decodes to more than its page states is read up to the page's size.
     std::string bytes = bytes_of_file(path);
     fs::remove(path);
     spec = {.width = 64, .height = 64, .bits = 8, .compression = COMPRESSION_ADOBE_DEFLATE};

@@ -1,4 +1,4 @@
-// What programs write about a stack as a whole: ImageJ, OME-TIFF, and the resolution fields.
+// What programs state about a stack as a whole: ImageJ, OME-TIFF, and the resolution fields.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 const fs::path FIXTURES = "tests/data/tiff";  // tests run in the repository's root
 
-/// Pages of one voxel each, 1, 2, 3, ...: which pages were taken, and in which order, shows.
+/// Pages of one voxel each, 1, 2, 3, ...: shows which pages were read, and in which order.
 fs::path numbered(const fs::path& path, int pages, const std::string& description, TiffSpec spec = {})
 {
     spec.width = spec.height = 1;
@@ -179,7 +179,7 @@ TEST_CASE("spacing and unit of ImageJ files, in all spellings")
             .z == doctest::Approx(20000.0));
     CHECK(unit == "um");
 
-    // A resolution is a quotient of whole numbers; libtiff would give it as a float.
+    // A resolution is a quotient of whole numbers; libtiff would return a float.
     CHECK(spacing_of({.description = start + "unit=um\n", .x_resolution = 16.666667}).x ==
           doctest::Approx(0.06).epsilon(1e-7));
 
@@ -319,7 +319,7 @@ TEST_CASE("an OME-TIFF that is not whole says so")
     for (int i = 0; i < 3000; ++i) many += R"(<TiffData IFD="0" PlaneCount="1000000"/>)";
     CHECK(contains(refused(ome(one, many)), "planes; expected the 3 there are"));
 
-    // Cut anywhere it is refused, or it says the same.
+    // Truncated anywhere, it is either refused or means the same.
     const std::string whole = ome(one, R"(<TiffData IFD="0" PlaneCount="3"/>)");
     for (size_t length = 0; length < whole.size(); ++length) {
         const std::string said = refused(whole.substr(0, length));

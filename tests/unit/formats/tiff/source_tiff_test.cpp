@@ -21,7 +21,7 @@ std::string noise(size_t bytes, uint32_t seed)
 {
     std::mt19937 random(seed);
     std::string noise(bytes, '\0');
-    // Runs, so that every compression has something to find.
+    // Runs, so that every compression has something to compress.
     for (size_t i = 0; i < bytes; ++i)
         noise[i] = random() % 4 == 0 || i == 0 ? static_cast<char>(random()) : noise[i - 1];
     return noise;
@@ -54,7 +54,7 @@ std::string all_bytes(const VolumeSource& source)
     return bytes_in(source, {Size3(0), source.info().size});
 }
 
-/// A box of a volume whose voxels are given.
+/// A box of a volume with the given voxels.
 std::string part_of(const std::string& voxels, const Size3& size, const VoxelBox& box, size_t voxel_bytes)
 {
     std::string part;
@@ -130,7 +130,7 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
                 const bool predicts = compression == COMPRESSION_LZW || compression == COMPRESSION_ADOBE_DEFLATE ||
                                       compression == COMPRESSION_ZSTD;
                 if (predicts && variant % 2 == 1) spec.predictor = sample.format == SAMPLEFORMAT_IEEEFP ? 3 : 2;
-                // libtiff 4.5.0 writes predictor 3 wrongly in the other byte order; that has a test of its own.
+                // libtiff 4.5.0 writes predictor 3 incorrectly in the other byte order; a separate test covers that.
                 const char* const mode = std::array{"wl", "wl8", "wb", "wb8"}[random() % (spec.predictor == 3 ? 2 : 4)];
                 const std::string what = sentence(name_of(sample.type), ", compression ", compression, ", predictor ",
                                                   spec.predictor, ", variant ", variant, ", ", mode);
@@ -147,7 +147,7 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
                     CHECK(source->info().size == size);
                     CHECK(source->info().type == sample.type);
                     const std::string voxels = samples_of(spec, pages, channel);
-                    CHECK((all_bytes(*source) == voxels));  // in brackets: noise is no help in a message
+                    CHECK((all_bytes(*source) == voxels));  // in brackets, since noise does not help in a message
                     for (int i = 0; i < 3; ++i) {
                         const VoxelBox box = random_box(size, random);
                         CHECK((bytes_in(*source, box) == part_of(voxels, size, box, bytes_of(sample.type))));
@@ -162,8 +162,7 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
 
 TEST_CASE("floats with a predictor are read in either byte order")
 {
-    // As Adobe's technical note 3 says, by hand: of a row first all highest bytes, then the next ones; then
-    // differences.
+    // By hand, after Adobe's technical note 3: first the highest bytes of a row, then the next ones; then differences.
     const TemporaryFolder folder;
     for (const int samples : {1, 3}) {
         TiffSpec spec{.width = 7, .height = 1, .bits = 32, .format = SAMPLEFORMAT_IEEEFP, .samples = samples};

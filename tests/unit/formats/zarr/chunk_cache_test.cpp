@@ -34,12 +34,12 @@ TEST_CASE("a cache of chunks stays within its budget and forgets what was used l
     for (const int64_t chunk : {0, 1, 2}) get(chunk);
     get(0);
     CHECK(made == 3);
-    get(3);  // 1 goes
+    get(3);  // evicts 1
     get(0);
     CHECK(made == 4);
     get(1);
     CHECK(made == 5);
-    cache.get({1, 0}, [&] { return block_of(20000); });  // larger than the budget: it is there until the next one
+    cache.get({1, 0}, [&] { return block_of(20000); });  // larger than the budget: stays until the next one
     CHECK(cache.bytes() >= 20000);
     get(4);
 }

@@ -1,4 +1,4 @@
-// Zarr arrays and OME-Zarr images as other programs write them (tests/data/make_zarr.py), and as nobody should.
+// Zarr arrays and OME-Zarr images as other programs write them (tests/data/make_zarr.py), and malformed ones.
 
 #include <algorithm>
 #include <atomic>
@@ -66,7 +66,7 @@ bool holds_low_bits(const VolumeSource& source)
     });
 }
 
-/// A copy of one of the examples, to be spoiled.
+/// A copy of one of the examples, for tests to damage.
 class Copy : public TemporaryFolder {
 public:
     explicit Copy(const std::string& name) : root(path / name)
@@ -89,7 +89,7 @@ public:
     {
         return error_of([&] { voxels_of<int16_t>(*open_volume(root)); });
     }
-    /// What is said when `key` of `file` is `value`.
+    /// The message if `key` of `file` is `value`.
     std::string refusal_of(const std::string& file, const std::string& key, const Json& value) const
     {
         change(file, [&](Json& document) { document[key] = value; });
@@ -214,7 +214,7 @@ TEST_CASE("zarr: a damaged chunk is named, and all others can be read")
                 std::string spoiled = whole;
                 spoiled[at] = static_cast<char>(spoiled[at] ^ static_cast<char>(1 << bit));
                 copy.write_text("0.0.0", spoiled);
-                static_cast<void>(copy.refusal());  // an error or other voxels, and no more memory than the chunk's
+                static_cast<void>(copy.refusal());  // an error or different voxels, and no more memory than the chunk's
             }
         }
     }
@@ -293,7 +293,7 @@ TEST_CASE("zarr: hostile metadata is refused by field, at once")
         lacking.change(".zarray", [&](Json& document) { document.erase(key); });
         CHECK(contains(lacking.refusal(), std::string(key) + " is missing; expected"));
     }
-    // A side of 2^21 is one too many; nothing is allocated for it.
+    // A side of 2^21 is just too large; nothing is allocated for it.
     const Copy long_axis("dots");
     CHECK(
         contains(long_axis.refusal_of(".zarray", "shape", {1 << 21, 4, 5}), "size along z is 2097152; expected 1 to"));
@@ -348,7 +348,7 @@ TEST_CASE("ome-zarr: levels count where they lie on level 0 as they should, othe
 {
     const auto whole = open_volume(DATA / "image_04");
     REQUIRE(whole->levels() == 3);
-    // The mean of 2 x 2 x 2 at the lower corner, and of the one voxel at the upper one.
+    // The mean of 2 x 2 x 2 voxels at the lower corner, and of a single one at the upper corner.
     const std::vector<int16_t> coarse = level_of(*whole, 1, {{0, 0, 0}, {3, 2, 2}});
     CHECK(coarse.front() == -44);  // -99 + (0.5 + 5 + 50) is -43.5; ties go to even
     CHECK(coarse.back() == phantom(4, 2, 2) + 5);
@@ -377,7 +377,7 @@ TEST_CASE("ome-zarr: levels count where they lie on level 0 as they should, othe
 TEST_CASE("ome-zarr: where a level's size was rounded down, its last voxels stand for what it lacks")
 {
     const auto source = open_volume(DATA / "image_floor");
-    REQUIRE(source->levels() == 2);  // of 2 x 2 x 1 voxels, where 3 x 2 x 2 are wanted
+    REQUIRE(source->levels() == 2);  // of 2 x 2 x 1 voxels, instead of 3 x 2 x 2
     const std::vector<int16_t> stored = level_of(*source, 1, {{0, 0, 0}, {2, 2, 1}});
     const std::vector<int16_t> wanted = level_of(*source, 1, {{0, 0, 0}, {3, 2, 2}});
     CHECK(wanted == std::vector<int16_t>{stored[0], stored[1], stored[1], stored[2], stored[3], stored[3],  //
@@ -387,8 +387,8 @@ TEST_CASE("ome-zarr: where a level's size was rounded down, its last voxels stan
 
 namespace {
 
-/// An image whose levels have `side`, side / 2, ... voxels along each axis, in uncompressed chunks, none of which is
-/// there.
+/// An image whose levels have `side`, side / 2, ... voxels along each axis, in uncompressed chunks, none of which
+/// exists.
 class Sparse : public TemporaryFolder {
 public:
     Sparse(int64_t side, int64_t chunk, const std::string& type, const std::vector<Json>& fills)
@@ -426,7 +426,7 @@ TEST_CASE("ome-zarr: bricks of which no chunk is stored, in their level or below
     image.write("0/0.0.0", std::string(32 * 32 * 32, 'v'));
     REQUIRE(open_volume(image.path)->levels() == 3);
     CHECK_FALSE(image.range(0, {0, 0, 0}).has_value());
-    CHECK_FALSE(image.range(0, {1, 1, 1}).has_value());  // it reaches a voxel into the chunk
+    CHECK_FALSE(image.range(0, {1, 1, 1}).has_value());  // it reaches one voxel into the chunk
     CHECK(image.range(0, {2, 1, 1}).value() == ValueRange{7.0, 7.0});
     CHECK_FALSE(image.range(0, {4, 0, 0}).has_value());
     CHECK_FALSE(image.range(0, {-1, 0, 0}).has_value());
@@ -437,12 +437,12 @@ TEST_CASE("ome-zarr: bricks of which no chunk is stored, in their level or below
     CHECK(voxels_in<uint8_t>(*open_volume(image.path), {{63, 31, 31}, {97, 65, 65}}) ==
           std::vector<uint8_t>(34 * 34 * 34, 7));
 
-    // A coarse chunk says nothing of finer ones.
+    // A coarse chunk says nothing about finer ones.
     image.write("1/1.1.1", std::string(32 * 32 * 32, 'v'));
     CHECK_FALSE(image.range(1, {1, 1, 1}).has_value());
     CHECK(image.range(0, {2, 2, 2}).value() == ValueRange{7.0, 7.0});
 
-    // One that cannot be examined is no gap.
+    // A chunk that cannot be examined is not a gap.
     fs::remove_all(image.path / "1/1.1.1");
     fs::create_symlink("1.1.1", image.path / "1/1.1.1");
     CHECK_FALSE(image.range(1, {1, 1, 1}).has_value());
@@ -460,7 +460,7 @@ TEST_CASE("ome-zarr: a gap of NaN has an empty range, and only so many files are
     // 34 voxels along each axis are 6 chunks of 8, but 10 of 4: 1000 files.
     CHECK(Sparse(128, 8, "<i2", {-5}).range(0, {1, 1, 1}).value() == ValueRange{-5.0, -5.0});
     CHECK_FALSE(Sparse(128, 4, "<i2", {-5}).range(0, {1, 1, 1}).has_value());
-    // Those of finer levels count.
+    // Chunks of finer levels count.
     CHECK(Sparse(256, 64, "<i2", {0, 0, 0}).range(2, {0, 0, 0}).value() == ValueRange{0.0, 0.0});
     CHECK_FALSE(Sparse(256, 16, "<i2", {0, 0, 0}).range(2, {0, 0, 0}).has_value());
 }
