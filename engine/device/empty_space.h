@@ -19,7 +19,7 @@ public:
     /// Whether there is work left to do before a picture, and after it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// prepare() adds all passes due before a picture; the other adds one pass of the remaining work, if there is any.
+    /// Each adds one pass of its work, and may only be called while there is some.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 

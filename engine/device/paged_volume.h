@@ -116,7 +116,7 @@ private:
     bool directory_is_stale_ = true;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
-    size_t pending_ = 0;                                 ///< visited leaves that are requested and not loaded yet
+    size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
     std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks that want_around() asks for
     std::vector<int> around_reach_;
