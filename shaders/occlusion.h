@@ -29,7 +29,7 @@ SHARED_CONST uint OCCLUSION_REACH = 2u;
 SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3
 /// Workgroups per brick: more of them keep a GPU busy with few bricks.
 SHARED_CONST uint OCCLUSION_SPLIT = 8u;
-/// An entry of `around` is the packed slot of a brick, and above this bit its level relative to the job's; 0: no brick.
+/// An entry of `around` is a packed slot and, from this bit on, how many levels its brick is above the job's; 0: none.
 SHARED_CONST uint OCCLUSION_LEVEL_SHIFT = 24u;
 
 /// A brick whose cells are computed: one workgroup.
