@@ -28,7 +28,7 @@ constexpr uint64_t HOST_SHARES = 4;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Beyond this many boxes, only one that holds them all is kept for each cause: perhaps nobody collects them.
+/// Beyond this many boxes, only one that holds them all is kept for each cause, in case nobody collects them.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)

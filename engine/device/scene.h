@@ -3,7 +3,7 @@
 // surfaces, tables. Built and destroyed as a whole.
 //
 //   commands (paint, offsets, trace)  -> show()  -> what is on the device -+
-//   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> who shows pictures
+//   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> views
 //   slices of ambient occlusion       -> add_occlusion() ------------------+
 //
 // Pictures of it are made by engine/picture/frame.h. One thread, the one that owns the executor.

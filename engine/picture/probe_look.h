@@ -13,7 +13,7 @@ namespace shvr {
 struct ShellLook {
     double threshold = 0.0;  ///< intensity
     double opacity = 0.4;    ///< of one crossing
-    bool is_box = false;     ///< shape of the region; otherwise a ball
+    bool is_box = false;     ///< the region's shape; otherwise a ball
     bool operator==(const ShellLook&) const = default;
 };
 
