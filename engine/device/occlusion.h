@@ -50,7 +50,7 @@ public:
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     /// For each level: how many bricks on each side of a brick its light comes from.
     std::vector<int> reach() const;
-    /// Something is out of date.
+    /// Whether anything is stale.
     bool is_due();
     /// Bounds of one slice.
     struct Most {
