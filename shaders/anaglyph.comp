@@ -1,4 +1,4 @@
-// Red of what one eye sees, green and blue of what the other does. One pixel per thread.
+// Takes red from one eye's picture, green and blue from the other's. One pixel per thread.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -12,6 +12,6 @@ void main()
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, size))) return;
     const vec4 red = imageLoad(left, ivec3(at, 0)), rest = imageLoad(right, ivec3(at, 0));
-    // Where only one eye sees something opaque, that is opaque for both.
+    // What is opaque for one eye is opaque for both.
     imageStore(color, ivec3(target + at, 0), vec4(red.r, rest.gb, max(red.a, rest.a)));
 }

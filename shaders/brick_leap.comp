@@ -1,6 +1,6 @@
-// One brick per workgroup: which of its cells can show something, how far the nearest of those is, and which are
-// painted (pages.h).
-// MASKED: a cell is occupied, too, where a voxel of a visible group is.
+// One brick per workgroup: which of its cells may be visible, how far the nearest of those is, and which are painted
+// (pages.h).
+// MASKED: a cell is also occupied if one of its voxels is in a visible group.
 // variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,7 +9,7 @@
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push { BrickLeapParams params; };
-layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;   // of slots: minimum | maximum << 16
+layout(binding = 0, r32ui) uniform readonly uimage3D cell_ranges;   // per slot: minimum | maximum << 16
 layout(binding = 1, scalar) readonly buffer Jobs { BrickLeapJob list[]; } jobs;
 layout(binding = 2, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
 layout(binding = 3, r8ui) uniform writeonly uimage3D cell_leap;
@@ -28,13 +28,13 @@ shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {
     if (job.mask_slot == 0u) return CellPaint(false, false);
-    // A coarse cell holds too many voxels to look at: some of its brick are painted, so some of it may be.
+    // A coarse cell has too many voxels to examine: some of its brick are painted, so some of the cell may be.
     if (job.level > 0u) return CellPaint(true, true);
     return paint_in(job.mask_slot, cell);
 }
 #endif
 
-// One axis of the Chebyshev distance; what lies outside the brick does not count.
+// One axis of the Chebyshev distance; cells outside the brick do not count.
 uint nearer(uint source, uint at, uint stride, uint position)
 {
     uint best = distances[source][at];

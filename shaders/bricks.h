@@ -22,8 +22,8 @@ SHARED_FUNCTION uint grid_index(uvec3 position, uvec3 counts)
     return position.x + counts.x * (position.y + counts.y * position.z);
 }
 
-/// Where a slot lies in its atlas, in slots, 8 bits a side: no division where rays run, and atlases of up to 255 slots
-/// a side. Slot 0, the first corner, is never used by a brick.
+/// The position of a slot in its atlas, in slots, 8 bits per axis: rays need no division, and atlases have up to 255
+/// slots a side. Slot 0, the first corner, never holds a brick.
 SHARED_FUNCTION uint pack_slot(uvec3 slot)
 {
     return slot.x | slot.y << 8u | slot.z << 16u;
@@ -46,14 +46,14 @@ SHARED_FUNCTION uvec3 mask_slot_origin(uint packed_slot)
     return BRICK_SIZE * unpack_slot(packed_slot);
 }
 
-/// Where the search for a painted brick begins in a hashed table (Teschner and others 2003), and the uints of its
+/// Where the search for a painted brick starts in a hashed table (Teschner and others 2003), and the uints of its
 /// entries: x | y << 16, z, slot.
 SHARED_FUNCTION uint mask_hash(uvec3 brick)
 {
     return brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u;
 }
 SHARED_CONST uint MASK_ENTRY = 3u;
-/// A brick is at its hash or in one of the places after it: this many are looked at.
+/// A brick is at its hash or within this many entries from there.
 SHARED_CONST uint MASK_PROBES = 4u;
 
 SHARED_END

@@ -1,5 +1,5 @@
-// Linear light, premultiplied, to 8-bit sRGB over an opaque colour, at its own size or enlarged. One texel per thread;
-// at its own size within one level of 255 of what engine/base/image.cpp writes to a file.
+// Converts linear light, premultiplied, to 8-bit sRGB over an opaque colour, at original size or enlarged. One texel
+// per thread. At original size the result is within one level of 255 of what engine/base/image.cpp writes to a file.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,7 +16,7 @@ vec4 light_at(ivec2 texel)
     return imageLoad(color, ivec3(clamp(texel, ivec2(0), ivec2(params.last)), 0));
 }
 
-// Linear between the middles of texels.
+// Linear interpolation between texel centres.
 vec4 enlarged(vec2 at)
 {
     const vec2 corner = floor(at - 0.5);

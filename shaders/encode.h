@@ -1,4 +1,4 @@
-// Parameters of the pass that turns light into what a screen shows.
+// Parameters of the pass that converts linear light to a screen's pixels.
 #ifndef SHVR_ENCODE_H
 #define SHVR_ENCODE_H
 #include "shared.h"
@@ -6,13 +6,13 @@
 SHARED_BEGIN
 
 struct EncodeParams {
-    uvec2 target;        ///< first texel that is written
-    uvec2 size;          ///< texels that are written
-    vec2 first;          ///< where in the source the middle of that texel lies; texel i has its middle at i + 0.5
+    uvec2 target;        ///< first texel to write
+    uvec2 size;          ///< texels to write
+    vec2 first;          ///< centre of that texel in the source; texel i has its centre at i + 0.5
     vec2 step;           ///< source texels per target texel
-    uvec2 last;          ///< texel of the source; beyond it nothing was drawn
-    vec3 behind;         ///< linear light that is seen through a translucent background
-    uint swap_red_blue;  ///< as some screens have it
+    uvec2 last;          ///< last valid texel of the source; nothing was drawn beyond it
+    vec3 behind;         ///< linear light behind a translucent background
+    uint swap_red_blue;  ///< for screens in BGR order
 };
 
 SHARED_END

@@ -1,9 +1,8 @@
-// The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether there is paint, and which brick is
-// there.
+// The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether it is painted, and which brick holds it.
 //
-// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is of a group; samples in all
-// other cells need not look at the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell
-// within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without a sample.
+// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is in a group; samples in other
+// cells need not read the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
+// Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without sampling.
 #ifndef SHVR_LEAP_H
 #define SHVR_LEAP_H
 #include "bricks.h"
@@ -13,12 +12,12 @@ SHARED_BEGIN
 SHARED_CONST uint LEAP_SLOT_MASK = 0x00ffffffu;
 SHARED_CONST uint LEAP_PAINTED = 1u << 24u;
 SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
-/// Farther than this is not looked for: a jump of 15 cells crosses 60 voxels.
+/// Largest distance searched: a jump of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
-/// What decides whether a cell is empty under the transfer function of the moment.
+/// Determines whether a cell is empty under the current transfer function.
 struct OccupancyParams {
-    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;
     uvec3 brick_counts;
     float table_lower;  ///< as in RaycastParams
@@ -26,11 +25,11 @@ struct OccupancyParams {
     float table_scale;
     uint table_entries;
     uint skipping;        ///< 0: every cell counts as occupied
-    uint empty_distance;  ///< of cells that are not occupied
+    uint empty_distance;  ///< distance for cells that are not occupied
 };
 
 struct LeapBoundParams {
-    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;
     uvec3 changed_begin;
     uvec3 changed_end;
@@ -38,7 +37,7 @@ struct LeapBoundParams {
 
 struct LeapDistanceParams {
     uvec3 cell_counts;
-    uvec3 cell_begin;  ///< the cells that are computed
+    uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;
     uint axis;
 };

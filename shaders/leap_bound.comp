@@ -1,5 +1,5 @@
-// Where cells changed in a leap grid that is there: those around them may leap no farther than to the nearest of them,
-// as if all of those were occupied. A grid that leaps less far than it might, and never too far.
+// After cells changed in an existing leap grid: limits the leaps of cells around them to the nearest changed cell, as
+// if all of those were occupied. Leaps become shorter than necessary, but never too long.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,5 +1,5 @@
-// One cell per thread: is anything in it visible? Distance 0 where it is, `empty_distance` where it is not.
-// MASKED: a cell is occupied, too, where a voxel of a visible group is; and is it painted at all?
+// One cell per thread: is anything in it visible? If so its distance is 0, otherwise `empty_distance`.
+// MASKED: a cell is also occupied if one of its voxels is in a visible group; also records whether it is painted.
 // variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require

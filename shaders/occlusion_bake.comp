@@ -1,7 +1,7 @@
-// How much light reaches every voxel of a brick that may be seen (occlusion.h): the mean over rays of the share of the
-// radius that light comes along. Value of a ray = (1 / radius) sum over stretches of length * light that is left in the
-// middle of it. Only voxels in occupied cells are made: the ranges of cells overlap by a voxel, so a sample that shows
-// anything reads no others. PAGED: cells are those of paged bricks.
+// How much light reaches every potentially visible voxel of a brick (occlusion.h): the mean over rays of the share of
+// the radius along which light arrives. Value of a ray = (1 / radius) sum over stretches of length * light left in
+// their middle. Only voxels in occupied cells are computed: the ranges of cells overlap by a voxel, so a visible sample
+// reads no others. PAGED: cells are those of paged bricks.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -35,10 +35,10 @@ const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SP
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
 
-// In or beside which anything shows. With `grow` alone beside counts: voxels as far as one.
+// Whether any of these voxels is in an occupied cell, or with `grow` within one voxel of such a cell.
 bool any_cell_is_occupied(const OcclusionBakeParams params, const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
-    const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes: they stay together
+    const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes, so that they stay together
     const ivec3 first = first_voxel - grow >> 2, last = last_voxel + grow >> 2;
     bool found = false;
     for (int i = 0; i < side * side * side; ++i) {
@@ -59,7 +59,7 @@ vec3 place_of(const Ray ray, const OcclusionTap tap)
     return ray.origin + tap.distance * ray.direction + tap.lift * ray.lift;
 }
 
-// x: light that is left; y: what came in.
+// x: light left; y: light that arrived.
 vec2 after(vec2 light, const OcclusionTap tap, float opacity)
 {
     const float left = 1.0 - opacity;
@@ -71,7 +71,7 @@ float opacity_of(uint code)
     return float(code * code) * (1.0 / 65025.0);
 }
 
-// No buffer is read here and nothing depends on a count: SIMD devices would do it lane by lane.
+// Reads no buffer, and no loop count is variable: SIMD devices would run those lane by lane.
 float along(const OcclusionBakeParams params, const Ray ray, ivec3 voxel)
 {
     const int behind = int(gl_WorkGroupID.x);
@@ -98,8 +98,8 @@ float along(const OcclusionBakeParams params, const Ray ray, ivec3 voxel)
     return light.y;
 }
 
-// To the voxel, and to where other bricks keep a copy of it. An apron that no brick of this level writes repeats its
-// edge.
+// Stores the value at the voxel and at its copies in other bricks. Aprons that no brick of this level writes repeat
+// their edge voxels.
 void store(const OcclusionBakeParams params, const OcclusionJob job, ivec3 voxel, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
@@ -121,7 +121,7 @@ void main()
     load_around(job, params.reach);
     if (lane == 0u) cell_count = 0u;
     barrier();
-    // Skipped by trip counts, never by branches: SIMD devices run those masked.
+    // Skipped by loop counts, never by branches: SIMD devices execute branches masked.
     for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
         const uint cell = i * OCCLUSION_SPLIT + gl_WorkGroupID.z;
         const ivec3 first = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u);
@@ -158,7 +158,7 @@ void main()
             const vec3 direction = vec3(sqrt(1.0 - height * height) * turned, height);
             turned = vec2(turned.x * params.turn_cos - turned.y * params.turn_sin,
                           turned.x * params.turn_sin + turned.y * params.turn_cos);
-            // Rays from behind the surface come from before it; the weaker the surface, the fewer do.
+            // Rays from behind the surface are mirrored to its front; the weaker the surface, the fewer are.
             const vec3 ahead = dot(direction, normal) < surface - 1.0 ? -direction : direction;
             ray.direction = ahead * params.inverse_spacing;
             sum += along(params, ray, voxel);

@@ -1,4 +1,4 @@
-// One brick per workgroup: what stops light in it, at two sizes (occlusion.h).
+// One brick per workgroup: its opacity, in cells of two sizes (occlusion.h).
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,5 @@
-// What rays of a brick meet, brought together from the bricks around it (occlusion.h): halves of voxels, made of
-// densities and their slopes, and copies of the cells.
+// Gathers what rays of a brick sample from the bricks around it (occlusion.h): octants of voxels, made from densities
+// and gradients, and copies of the cells.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -10,7 +10,7 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(binding = 0, scalar) readonly buffer Params { OcclusionGatherParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Jobs { OcclusionJob list[]; } jobs;
-layout(binding = 2, scalar) readonly buffer Opacities { float values[]; } opacities;   // of the stretch of a near tap
+layout(binding = 2, scalar) readonly buffer Opacities { float values[]; } opacities;   // over the stretch of a near tap
 #ifdef FILTERED
 layout(binding = 3) uniform sampler3D atlas;
 #else
@@ -34,7 +34,7 @@ layout(binding = 13, r8ui) uniform writeonly uimage3D around_4;
 
 const uint CELLS_A_SIDE = OCCLUSION_NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
-// Where nothing shows, `near` is 0 from the start. Work is skipped by trip counts, never by branches.
+// Where nothing is visible, `near` is 0 from the start. Work is skipped by loop counts, never by branches.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
@@ -44,7 +44,7 @@ ivec3 place(uint i, uint side)
     return ivec3(i % side, i / side % side, i / (side * side));
 }
 
-// From the brick's corner to where that is found: in units of that brick's level.
+// Converts a position relative to the brick to one in the brick that holds it, in units of that brick's level.
 ivec3 in_brick_of(const OcclusionJob job, ivec3 voxel, int above)
 {
     return int(BRICK_SIZE) * ivec3(job.brick) + voxel >> above & int(BRICK_SIZE - 1u);
@@ -58,7 +58,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 slope = vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
                             code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                             code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1))) / (2.0 * side);
-    // Coarse voxels hold several: this one lies beside their middle.
+    // A coarse voxel covers several: this one lies off its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
     const float code = code_at(texel) + dot(slope, beside);
     const vec3 centre = float(1u << params.voxels.level) * (vec3(ivec3(BRICK_SIZE * job.brick) + voxel) + 0.5);
@@ -75,7 +75,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     return (packed & 255u) != 0u ? packed : 0u;
 }
 
-// A cell's code, of the stretch that a tap there tells of instead of the way through the cell.
+// A cell's code, for the stretch of a tap there instead of the path through the cell.
 uvec4 stretched(uint code, float exponent)
 {
     const float opacity = float(code * code) / 65025.0;
@@ -83,8 +83,8 @@ uvec4 stretched(uint code, float exponent)
     return uvec4(uint(255.0 * sqrt(1.0 - left) + 0.5));
 }
 
-// Copies of the cells of one size around the brick. One loop instead of three: on SIMD devices each of them runs once
-// more than it has to, for all of what is in it.
+// Copies the cells of one size around the brick. One loop instead of three: on SIMD devices each loop runs one extra
+// time, with all of its body.
 void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
@@ -93,7 +93,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
     const ivec3 behind = ivec3(0, 0, side * gl_WorkGroupID.x);
     for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < side * side * side;
          i += 64u * OCCLUSION_SPLIT) {
-        // Exact for these numbers, and divisions of integers are slow.
+        // Exact for these numbers; integer divisions are slow.
         const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);
@@ -124,7 +124,7 @@ void main()
     }
     barrier();
     const ivec3 in_cell = place(lane, CELL_SIZE);
-    const ivec3 behind = ivec3(0, 0, gl_WorkGroupID.x);   // the images hold jobs one behind the other
+    const ivec3 behind = ivec3(0, 0, gl_WorkGroupID.x);   // the images hold jobs stacked along z
     const uint end = cell_count;
     for (uint i = 0u; i < end; ++i) {
         const ivec3 texel = int(CELL_SIZE) * place(cells[i], CELLS_A_SIDE) + in_cell;

@@ -1,15 +1,15 @@
-// Paged bricks: how a ray finds the finest brick that is there.
+// Paged bricks: how a ray finds the finest brick that is loaded.
 //
 // The directory is a dense grid of cells of 2^cell_shift voxels a side, followed by blocks of eight children. An entry
 // is
 //   distance << 28 | level << 24 | payload
 // Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
-// payload is the first of eight entries, x fastest, for the halves of this cell. Otherwise the payload is the slot
-// (pack_slot) of a brick of that level that holds the cell, perhaps a coarser one than wanted: the nearest there is.
+// payload is the first of eight entries, x fastest, for the octants of this cell. Otherwise the payload is the slot
+// (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted.
 //
-// Within a brick, `cell_leap` tells of its 8^3 cells: distance << 1 | painted. One may leap as far as the distance,
-// Chebyshev, to the nearest cell that something visible may be in, as far as the brick reaches; where painted is 0, no
-// voxel of the cell is of a group.
+// Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is Chebyshev, to the
+// nearest cell of the brick that may contain something visible, or to the brick's end; where painted is 0, no voxel of
+// the cell is in a group.
 #ifndef SHVR_PAGES_H
 #define SHVR_PAGES_H
 #include "leap.h"
@@ -22,10 +22,10 @@ SHARED_CONST uint PAGE_NODE = 15u;
 SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
 SHARED_CONST uint CELL_PAINTED = 1u;
 SHARED_CONST uint CELL_DISTANCE_SHIFT = 1u;
-/// Cells of the directory's grid along one axis, at most: rebuilt for every new view.
+/// Maximum cells of the directory's grid along one axis; it is rebuilt for every new view.
 SHARED_CONST uint PAGE_GRID = 32u;
 
-/// A brick whose cells are to be looked at: one workgroup.
+/// A brick whose cells are examined: one workgroup.
 struct BrickLeapJob {
     uvec3 brick;  ///< of its level
     uint level;
@@ -33,7 +33,7 @@ struct BrickLeapJob {
     uint mask_slot;  ///< 0: no painted voxel in it
 };
 
-/// As OccupancyParams, of bricks that lie about in the atlas.
+/// As OccupancyParams, for bricks anywhere in the atlas.
 struct BrickLeapParams {
     float table_lower;
     float table_upper;

@@ -1,4 +1,4 @@
-// Brushes: what the region and labelling kernels share with C++.
+// Brushes: declarations that the region and labelling kernels share with C++.
 //
 // A region's voxels are bits: 32 along x in one word, rows of `words_per_row` words, y next, z last. A run is a
 // maximal row of set bits within one word; it goes by the index of its first bit, and the forest of runs is kept in
@@ -27,7 +27,7 @@ struct RegionParams {
     uint threshold_code;  ///< 0 ... 65536
     uint connectivity;    ///< 6 or 26
     uint seed;            ///< index of the seed's bit; flood fill
-    uvec3 brick_begin;    ///< the bricks that the region lies in
+    uvec3 brick_begin;    ///< the bricks that the region overlaps
     uvec3 brick_counts;
 };
 

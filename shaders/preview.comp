@@ -1,11 +1,11 @@
-// The first voxel that a brush would change on each pixel's ray, as a solid cube: its lit colour and the length along
-// the ray, for the ray caster to end at where it lies before other surfaces (surfaces.comp). `seen` says where it does.
-// In slices it is the voxel half-way along the ray, and colours are as they are. One thread a pixel.
+// The first voxel on each pixel's ray that a brush would change, as a solid cube: its lit colour and the length along
+// the ray. The ray caster ends there if it lies before other surfaces (surfaces.comp); `seen` marks these pixels. In
+// slices it is the voxel half-way along the ray, with unlit colours. One thread per pixel.
 //   SURFACED   there are other surfaces
 // variants: SURFACED
 //
-// Rays go from voxel to voxel (Amanatides and Woo 1987). The volume's cutting planes do not cut what they meet, since a
-// brush reaches behind them, too.
+// Rays step from voxel to voxel (Amanatides and Woo 1987). The volume's cutting planes do not cut these voxels, since a
+// brush also reaches behind the planes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -78,13 +78,13 @@ void main()
     const float begin = max(max(low.x, low.y), max(low.z, 0.0));
     const float end = min(min(high.x, high.y), min(high.z, length_to_far));
 
-    // Every variable that outlives a turn is carried from turn to turn: devices may run a loop until the last lane is
+    // Every variable that outlives an iteration is carried through the loop: devices may run it until the last lane is
     // done.
     const ivec3 direction_sign = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(safe, vec3(0.0))));
     const vec3 apart = abs(inverse);
     ivec3 voxel = clamp(ivec3(floor(near + begin * direction)), ivec3(0), preview.size - 1);
     vec3 next = (vec3(voxel + max(direction_sign, ivec3(0))) - near) * inverse;
-    // The face through which the ray came: that of the box it entered last, or none where it begins in the box.
+    // The face through which the ray entered: of the slab entered last, or none if the ray begins in the box.
     ivec3 face = begin <= 0.0 ? ivec3(0) : ivec3(low.x >= begin ? 1 : 0, low.x < begin && low.y >= begin ? 1 : 0,
                                                  low.x < begin && low.y < begin ? 1 : 0);
     float at = begin;

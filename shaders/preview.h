@@ -1,5 +1,5 @@
-// The voxels that a brush would change, as rays meet them. Positions are in voxels from the box around those voxels,
-// made in double on the CPU, so that nothing is lost far from the volume's first corner.
+// The voxels that a brush would change, as rays hit them. Positions are in voxels relative to the box around those
+// voxels, computed in double on the CPU, so that they stay accurate far from the volume's first corner.
 #ifndef SHVR_PREVIEW_H
 #define SHVR_PREVIEW_H
 #include "shared.h"
@@ -17,11 +17,11 @@ struct PreviewParams {
     uint words_per_row;  ///< bit b of word w is x = 32 w + b
     vec3 lower;          ///< the box's first corner in the volume, voxels
     vec3 color;          ///< linear light
-    uint is_striped;     ///< for what would be erased: told from a colour by any eye
+    uint is_striped;     ///< for voxels that would be erased: distinct from any colour, even without colour vision
 };
 
 struct PreviewOverParams {
-    uvec2 target;  ///< first texel of the picture that is changed
+    uvec2 target;  ///< first texel of the picture to change
     uvec2 size;    ///< texels
     float share;   ///< of the preview's colour
 };

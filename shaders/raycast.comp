@@ -1,16 +1,16 @@
-// Emission-absorption ray-casting of a volume of bricks: one pixel per thread. Its variants differ in what they bind:
+// Emission-absorption ray-casting of a volume of bricks: one pixel per thread. Its variants differ in their bindings:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
-//   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over bricks that are all there
-//   OCCLUDED   ambient light is what reaches the sample (occlusion.h)
+//   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over resident bricks
+//   OCCLUDED   ambient light is scaled by the share that reaches the sample (occlusion.h)
 //   SURFACED   rays end at opaque surfaces (surfaces.comp)
 //   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they
 //              drop it
 // variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
-// Samples lie in the middle of steps of one length, on a lattice that starts where the ray enters the drawn box; the
-// last, shorter step is a sample of its own. Leaps go from lattice point to lattice point, so the picture has the same
-// bits with skipping on or off. There is no cap on the number of steps.
+// Samples lie in the middle of steps of equal length, on a lattice that starts where the ray enters the drawn box; the
+// last, shorter step has its own sample. Leaps go from lattice point to lattice point, so pictures with and without
+// skipping have the same bits. The number of steps is not limited.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -32,12 +32,12 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 // are linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-// Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 where it did not.
+// Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 if it did not.
 layout(constant_id = 4) const uint PICK = 0u;
-// Notes which bricks rays reach. A picture that is complete does without.
+// Records which bricks rays visit. Pictures that are complete do without.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
-// Draws what lies half-way along each ray, as it is: one sample, grey, whatever the transfer function shows.
+// Draws one sample half-way along each ray, in grey, whatever the transfer function shows.
 layout(constant_id = 7) const uint SLICE = 0u;
 // Classifies a step by the densities at both of its ends.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
@@ -94,7 +94,7 @@ layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB
 #ifdef PAGED
 #include "library/pages.glsl"
 #else
-// Where a position is: in nothing visible (distance > 0), or in a brick.
+// What a position is in: a region with nothing visible (distance > 0), or a brick.
 struct Place {
     uint distance;   // in cells
     uint slot;
@@ -111,7 +111,7 @@ Place place_at(const RaycastParams params, vec3 position)
 struct Ray {
     vec3 origin;      // voxel space, at length 0
     vec3 direction;   // voxels per reference length
-    vec3 inverse;     // 1 / direction; a large number where the ray stands still
+    vec3 inverse;     // 1 / direction; a large number where the direction is 0
     vec3 ahead;       // 1 where the direction is positive, else 0
     vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
 };
@@ -127,7 +127,7 @@ vec4 table_entry(uint entry)
     return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
 }
 
-// Grey, evenly spaced to the eye: the inverse of the curve that pictures are encoded with (IEC 61966-2-1).
+// Grey, perceptually even: the inverse of the curve that pictures are encoded with (IEC 61966-2-1).
 vec4 slice_look(const RaycastParams params, float density)
 {
     const float grey = clamp((density - params.slice_black) * params.slice_scale, 0.0, 1.0);
@@ -135,7 +135,7 @@ vec4 slice_look(const RaycastParams params, float density)
     return vec4(vec3(light), 1.0);
 }
 
-// Colour and opacity of a full step for a density; the table is linear between its entries and nothing outside.
+// Colour and opacity of a full step for a density; the table is linear between its entries and 0 outside.
 vec4 classify(const RaycastParams params, float density)
 {
     const float last = float(params.table_entries - 1u);
@@ -146,8 +146,8 @@ vec4 classify(const RaycastParams params, float density)
     return look;
 }
 
-// The same where the density goes from `front` to `back`. The table has both axes; what the function leaves out at its
-// ends is a part of the step in which there is nothing.
+// The same for a density that goes from `front` to `back`. Both are axes of the table; the part of the step that is
+// outside the function's range is empty.
 vec4 classify_step(const RaycastParams params, float front, float back)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
@@ -167,7 +167,7 @@ vec4 classify_step(const RaycastParams params, float front, float back)
 }
 
 #ifdef MASKED
-// A painted voxel has the look of its group, whatever its density; the lookup is nearest, never interpolated.
+// A painted voxel has the look of its group, whatever its density; the mask is sampled at the nearest voxel.
 vec4 painted(const RaycastParams params, vec3 position, vec4 look)
 {
     const uvec3 voxel = uvec3(position);
@@ -181,21 +181,21 @@ vec4 painted(const RaycastParams params, vec3 position, vec4 look)
 }
 #endif
 
-// The density at a point that is at most half a voxel away from the brick whose first texel lies at `slot`.
+// The density at a point at most half a voxel outside the brick whose first texel is at `slot`.
 float value_near(vec3 in_brick, ivec3 slot)
 {
-    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons
+    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons included
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// Colour (shaded) and opacity of a full step, of which `stretch` is sampled, in the middle of it at a position in the
+// Colour (shaded) and opacity of a full step, sampled over a length of `stretch` with its middle at `position`, in the
 // brick at `place`.
 vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float stretch, const Place place,
                  inout Work work)
 {
-    // Cell and fraction come from the global position, and only the whole number moves into the brick: a bricked volume
-    // gives the same bits as one in a single texture.
+    // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
+    // volume gives the same bits as one in a single texture.
 #ifdef PAGED
     const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
     const uvec3 brick = uvec3(position) >> place.level + 5u;
@@ -244,14 +244,14 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     return look;
 }
 
-// Rounding may carry a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
-// held.
+// Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
+// clamped.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);
 }
 
-// How many whole steps a ray may go from `position` without leaving the empty cube around its cell.
+// The number of whole steps from `position` that stay inside the empty cube around its cell.
 uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
     const float reach = float(place.distance);
@@ -259,7 +259,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
     const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
     const vec3 box = vec3(uvec3(position) >> place.box_shift);
     const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
-    // What is known of a brick ends with it.
+    // A brick's data is valid only inside that brick.
     const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
                              box_size * (box + 1.0));
 #else
@@ -268,7 +268,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 #endif
     const vec3 lengths = (bound - position) * ray.inverse;
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
-    // The guard keeps a sample that rounding puts on the border from being leapt over.
+    // The guard keeps rays from leaping over a sample that rounding puts on the border.
     return 1u + uint(max(exit / params.step - 0.01, 0.0));
 }
 
@@ -282,8 +282,7 @@ void note(const Place place, inout Work work)
 #endif
 }
 
-// The one sample of a slice. What the transfer function hides is there nevertheless; what the view does not reach is
-// not.
+// The single sample of a slice. It is shown even where the transfer function hides it, but not outside the view.
 vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work)
 {
     Place place = place_at(params, position);
@@ -331,7 +330,7 @@ void main()
     ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
     ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
 
-    // Slabs; an axis the ray does not move along is an inside test (0 / 0 has no part in it).
+    // Slabs; an axis along which the ray does not move is an inside test (0 / 0 does not matter there).
     const vec3 a = (params.box_lower - near) / ray.direction;
     const vec3 b = (params.box_upper - near) / ray.direction;
     const vec3 entry = mix(min(a, b), vec3(0.0), still);
@@ -362,7 +361,7 @@ void main()
 #endif
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
-    // loop of its own, and lanes meet again at the costly sample.
+    // separate loop, and lanes meet again at the costly sample.
     uint i = 0u;
     while (i < steps && sum.a < params.opacity_limit) {
         vec3 position;
@@ -385,7 +384,7 @@ void main()
         ++i;
     }
 
-    // The rest of the ray is a step of its own, shorter and so more transparent.
+    // The rest of the ray is a shorter and therefore more transparent step.
     const float rest = extent - float(steps) * params.step;
 #ifdef SHELLED
     add_shells(params, ray, end - 0.5 * rest, shell, sum);
@@ -413,7 +412,7 @@ void main()
     if (PICK != 0u) {
         vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
 #ifdef SURFACED
-        if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may lie outside the volume
+        if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may be outside the volume
 #endif
         imageStore(color, ivec3(params.target + in_part, 0),
                    sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));

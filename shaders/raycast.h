@@ -9,33 +9,33 @@ SHARED_BEGIN
 SHARED_CONST uint TABLE_WIDTH = 256u;
 SHARED_CONST uint TABLE_HEIGHT = 16u;
 
-/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess where that is a whole number below this.
+/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
-/// No iso-surface, or the region where there is one: the specialization constant SHELL.
+/// The specialization constant SHELL: no iso-surface, or the shape of its region.
 SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
 struct RaycastParams {
-    // The ray of a pixel joins two points on planes close to the volume, made in double on the CPU; voxel space.
+    // The ray of a pixel joins two points on planes close to the volume, computed in double on the CPU; voxel space.
     vec3 near_corner;
     vec3 near_dx;
     vec3 near_dy;
     vec3 far_corner;
     vec3 far_dx;
     vec3 far_dy;
-    uvec2 pixel_begin;  ///< the part of the picture that is drawn
+    uvec2 pixel_begin;  ///< the part of the picture to draw
     uvec2 pixel_end;
     uvec2 target;    ///< texel of pixel_begin
-    vec3 box_lower;  ///< what is drawn of the volume, voxel space
+    vec3 box_lower;  ///< the drawn part of the volume, voxel space
     vec3 box_upper;
-    vec3 position_limit;  ///< an ulp before the end of the volume: samples in its upper faces belong to the last voxel
+    vec3 position_limit;  ///< an ulp before the volume's end: samples in its upper faces belong to the last voxel
     vec3 spacing;         ///< reference lengths per voxel
     vec3 inverse_spacing;
     uvec3 page_counts;    ///< cells of the directory's grid, see pages.h
     uint page_shift;      ///< log2 of such a cell's side in voxels
-    uint page_depth;      ///< how far the directory's nodes go down
+    uint page_depth;      ///< depth of the directory's nodes
     float step;           ///< reference lengths
     float opacity_limit;  ///< a ray stops at or above it
     float table_lower;    ///< codes; nothing is drawn below
@@ -49,16 +49,16 @@ struct RaycastParams {
     float specular;
     float shininess;
     float gradient_fade;  ///< codes per reference length
-    vec4 depth_plane;     ///< dot(xyz, voxel) + w: 0 where the drawn box begins along the view, 1 where it ends
+    vec4 depth_plane;     ///< dot(xyz, voxel) + w: 0 at the start of the drawn box along the view, 1 at its end
     vec3 blend_color;     ///< linear light
-    float blend_size;     ///< distance blending: its share at depth 1
-    float blend_rate;     ///< and how it grows there: depth^rate
-    float slice_black;    ///< slices: the code that is black
+    float blend_size;     ///< distance blending: share of the colour at depth 1
+    float blend_rate;     ///< growth of that share with depth: depth^rate
+    float slice_black;    ///< slices: the code drawn black
     float slice_scale;    ///< 1 / (codes from black to white)
-    float slice_paint;    ///< how much of a painted voxel's colour is its group's
-    vec3 shell_center;    ///< voxel space; of the region with an iso-surface
-    vec3 shell_reach;     ///< voxels; half of a box, or the ball's radius along each axis
-    float shell_code;     ///< what the surface is at
+    float slice_paint;    ///< share of a painted voxel's colour that comes from its group
+    vec3 shell_center;    ///< voxel space; centre of the region with an iso-surface
+    vec3 shell_reach;     ///< voxels; half of the box, or the ball's radius along each axis
+    float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
     float shell_opacity;  ///< of one crossing
 };

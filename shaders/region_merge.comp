@@ -12,7 +12,7 @@ layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 #include "library/forest.glsl"
 #include "library/region.glsl"
 
-// Links the higher root below the lower one; another thread may have moved a root meanwhile, then it tries again.
+// Links the higher root below the lower one; tries again if another thread has moved a root meanwhile.
 void unite(uint a, uint b)
 {
     a = find_root(a);
@@ -45,7 +45,7 @@ void unite_with_row(ivec3 here, uint word, int dx, int dy, int dz)
     const uint touching = word & shifted;
     for (uint starts = touching & ~(touching << 1); starts != 0u; starts &= starts - 1u) {
         const int bit = findLSB(starts);
-        const int other = bit + dx;   // -1 ... 32: may lie in a word beside
+        const int other = bit + dx;   // -1 ... 32: may be in a neighbouring word
         const ivec3 other_word = row + ivec3(other < 0 ? -1 : other > 31 ? 1 : 0, 0, 0);
         const uint other_bits = word_at(other_word);
         const uint mine = word_index(uvec3(here)) * 32u + run_start(word, uint(bit));

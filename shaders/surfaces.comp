@@ -1,10 +1,10 @@
-// The nearest opaque surface of each pixel's ray: rgb its lit colour in linear light, a the length along the ray from
-// the near plane, as raycast.comp counts it, in reference lengths; NO_SURFACE where there is none. One thread a pixel.
-//   LISTED   there is a list of surfaces beside the probe
+// The nearest opaque surface of each pixel's ray: rgb is its lit colour in linear light, a is the length along the ray
+// from the near plane, as in raycast.comp, in reference lengths; NO_SURFACE if there is none. One thread per pixel.
+//   LISTED   there is a list of surfaces, besides the probe
 // variants: LISTED
 //
-// Surfaces are solid: a ray that begins in one (the near plane cuts it, or the eye is in it) sees it at its beginning,
-// facing the eye. The volume's cutting planes do not cut them.
+// Surfaces are solid: a ray that starts inside one (the near plane cuts it, or the eye is in it) hits it at its start,
+// facing the eye. The volume's cutting planes do not cut surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -37,8 +37,8 @@ struct Hit {
 };
 const uint PROBE_INDEX = 0xffffffffu;
 
-// A surface comes first where its range does. At equal lengths the lower number does, so the order of the search is of
-// no account.
+// The surface whose range begins first wins; at equal lengths the lower number, so that the search order does not
+// matter.
 void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 {
     const float at = max(range.x, begin);
@@ -51,7 +51,7 @@ void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 }
 
 #ifdef LISTED
-// Two differences that must not be mixed: the first is exact for what is close to the origin, and the second small.
+// Two differences that must not be mixed: the first is exact for points near the origin, and the second is small.
 vec3 from_origin(const SurfaceParams scene, const Surface surface)
 {
     precise vec3 whole = surface.from - scene.origin;
@@ -60,8 +60,8 @@ vec3 from_origin(const SurfaceParams scene, const Surface surface)
     return sum;
 }
 
-// Every variable that outlives a turn is carried from turn to turn: lanes whose search is over keep theirs on devices
-// that run a loop until the last lane is done.
+// Every variable that outlives an iteration is carried through the loop: on devices that run it until the last lane is
+// done, finished lanes keep only those.
 void search(const SurfaceParams scene, const Line line, float begin, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
@@ -122,7 +122,7 @@ void main()
 #ifdef LISTED
     if (hit.index != PROBE_INDEX) {
         const Surface surface = surface_list.list[hit.index];
-        // As surface_range does it: from the line's point nearest to the surface.
+        // As in surface_range: from the line's point nearest to the surface.
         const vec3 from = from_origin(scene, surface) - line.origin;
         const float shift = dot(from + 0.5 * surface.along, line.direction);
         const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);

@@ -39,7 +39,7 @@ Lanes load(const uint16_t* codes)
     return lanes;
 }
 
-/// Smallest and largest code, column by column, of CELL_REACH rows that lie `pitch` apart. `length` is whole in LANES.
+/// Minimum and maximum code, column by column, of CELL_REACH rows `pitch` apart. `length`: a multiple of LANES.
 void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t length, uint16_t* minimum,
                  uint16_t* maximum)
 {
@@ -57,7 +57,7 @@ void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t
     }
 }
 
-/// Separable: first along z, then y, then x, so that the long loops run over neighbours in memory.
+/// Separable: first along z, then y, then x, so that the long loops run over adjacent memory.
 void find_ranges(BrickTexels& brick)
 {
     constexpr size_t SLICE = static_cast<size_t>(TEXELS * TEXELS);
@@ -68,7 +68,7 @@ void find_ranges(BrickTexels& brick)
         const uint16_t* const first = brick.codes.data() + z * CELL_STEP * SLICE;
         constexpr size_t EVEN = SLICE / LANES * LANES;
         reduce_rows(first, first, SLICE, EVEN, minimum_z[z], maximum_z[z]);
-        // The last lanes once more, ending with the slice.
+        // The last lanes again, ending with the slice.
         const size_t last = SLICE - LANES;
         reduce_rows(first + last, first + last, SLICE, LANES, minimum_z[z] + last, maximum_z[z] + last);
         std::fill(minimum_z[z] + SLICE, minimum_z[z] + SLICE_PITCH + LANES, uint16_t{0});
@@ -81,7 +81,7 @@ void find_ranges(BrickTexels& brick)
         for (size_t y = 0; y < CELLS; ++y) {
             alignas(64) uint16_t minimum_y[ROW_PITCH];
             alignas(64) uint16_t maximum_y[ROW_PITCH];
-            // Rows overlap beyond TEXELS: those lanes are never looked at.
+            // Rows overlap beyond TEXELS: those lanes are never read.
             const size_t first = y * CELL_STEP * static_cast<size_t>(TEXELS);
             reduce_rows(minimum_z[z] + first, maximum_z[z] + first, TEXELS, ROW_PITCH, minimum_y, maximum_y);
             for (size_t x = 0; x < CELLS; ++x, ++cell) {
@@ -97,7 +97,7 @@ void find_ranges(BrickTexels& brick)
 
 // ---- Slabs, and bricks made of them ---------------------------------------------------------------------------------
 
-/// The voxels of one layer of bricks, aprons included, as the source gives them.
+/// The voxels of one layer of bricks, aprons included, in the source's format.
 using Slab = std::vector<std::byte>;
 
 /// A run of bricks along x.
@@ -161,13 +161,13 @@ private:
     CodeRows code_rows_;
 };
 
-// ---- Who does what, when --------------------------------------------------------------------------------------------
+// ---- Scheduling -----------------------------------------------------------------------------------------------------
 
-/// The work in the order in which it is handed out: for each layer of bricks its reads, then its rows. No task waits
-/// for a later one, so workers that take them in turn never wait for each other in a circle.
+/// The tasks in the order in which workers take them: for each layer of bricks its reads, then its rows. No task waits
+/// for a later one, so workers that take them in turn never deadlock.
 ///
 /// Two slabs are kept: while the rows of one are built, the other is read. A read waits until the rows that used its
-/// slab are built; a row waits for the reads of its slab, and for `take` to have a place free among `rows_`.
+/// slab are built; a row waits for the reads of its slab, and until `take` has freed a place in `rows_`.
 class Pipeline {
 public:
     Pipeline(const VolumeSource& source, const IntensityWindow& window, int threads)
@@ -186,7 +186,7 @@ public:
 
     int64_t row_count() const { return rows_per_layer_ * counts_.z; }
 
-    /// What a worker does until there is nothing left.
+    /// The loop of a worker, until no task is left.
     void work()
     {
         try {
@@ -197,7 +197,7 @@ public:
         }
     }
 
-    /// The next row in order, once it is built. Throws what went wrong in a worker.
+    /// The next row in order, once it is built. Rethrows a worker's exception.
     const BrickRow& wait_for_row()
     {
         std::unique_lock lock(mutex_);
@@ -248,7 +248,7 @@ private:
 
     bool do_read(std::unique_lock<std::mutex>& lock, int64_t layer, int64_t read)
     {
-        // The copy of shared slices needs all of the layer before, and nobody may write over those while it runs.
+        // Copying the shared slices needs the whole previous layer, which nobody may overwrite meanwhile.
         changed_.wait(lock, [&] {
             const bool slab_is_free = layer < 2 || rows_done_[static_cast<size_t>(layer - 2)] == rows_per_layer_;
             const bool before_is_read =
@@ -312,7 +312,7 @@ private:
     int64_t rows_taken_ = 0;
     std::vector<int64_t> reads_done_, rows_done_;  ///< by layer
     std::vector<bool> row_is_built_;               ///< by place
-    std::vector<BrickRow> rows_;                   ///< row i in place i modulo their number
+    std::vector<BrickRow> rows_;                   ///< row i is at index i modulo their number
     bool is_stopped_ = false;
     std::exception_ptr failure_;
 };

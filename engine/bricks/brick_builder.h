@@ -1,6 +1,6 @@
 #pragma once
-// Cuts a source into bricks ready for the device: 16-bit codes with an apron of one voxel (edge voxels repeated at the
-// volume's border), and the value range of every 4^3 cell as trilinear filtering sees it.
+// Cuts a source into bricks for the device: 16-bit codes with an apron of one voxel (edge voxels repeat at the volume's
+// border), and the value range of every 4^3 cell, including the neighbours that trilinear filtering reads.
 
 #include <array>
 
@@ -30,7 +30,7 @@ struct BrickTexels {
 /// Number of bricks along each axis: ceil(size / BRICK_SIZE).
 glm::ivec3 brick_counts(const Size3& size);
 
-/// Makes single bricks, of any level. Each thread has one of its own.
+/// Builds single bricks of any level. Each thread needs an object of its own.
 class BrickMaker {
 public:
     BrickMaker(const VolumeSource& source, const IntensityWindow& window)
@@ -45,10 +45,10 @@ private:
     std::vector<std::byte> voxels_;
 };
 
-/// Builds every brick of level 0, in order of their index (x fastest), reading the source slab by slab, each slice
-/// once: two slabs of 34 slices are held at a time, as the source gives them, and a few rows of bricks. `take` is
-/// called once per brick, on the calling thread and in order, while the next bricks are built on `threads` workers,
-/// which also read. An exception of the source or of `take` ends the work and is thrown on.
+/// Builds every brick of level 0, in order of their index (x fastest). Reads the source slab by slab, each slice once;
+/// holds two slabs of 34 slices at a time, in the source's format, and a few rows of bricks. Calls `take` once per
+/// brick, in order, on the calling thread, while `threads` workers build the next bricks and read. Rethrows exceptions
+/// of the source or of `take`, and stops.
 void build_bricks(const VolumeSource& source, const IntensityWindow& window, int threads,
                   const std::function<void(const glm::ivec3& brick, const BrickTexels& texels)>& take);
 

@@ -31,7 +31,7 @@ void BrickSlots::use(const BrickKey& key)
     if (const auto found = placed_.find(key); found != placed_.end()) slots_[found->second].used = now_;
 }
 
-/// Of equally old ones the lowest slot goes first, so that equal histories have equal outcomes.
+/// Ties go to the lowest slot, so that equal histories have equal outcomes.
 void BrickSlots::list_evictable(BrickNeed below)
 {
     evictable_.clear();
@@ -42,13 +42,13 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // One that was used since it was listed no longer has its place in the list.
+    // A slot used since it was listed is out of order in the list.
     if (!evictable_.empty() && slots_[evictable_.back().slot].used != evictable_.back().used)
         evictable_is_stale_ = true;
     if (std::exchange(evictable_is_stale_, false)) list_evictable(BrickNeed::picture);
     if (evictable_.empty() && below > BrickNeed::picture) {
         list_evictable(below);
-        evictable_is_stale_ = true;  // it holds what the picture needs
+        evictable_is_stale_ = true;  // then it contains bricks that the picture needs
     }
     if (evictable_.empty()) return std::nullopt;
     const uint32_t slot = evictable_.back().slot;

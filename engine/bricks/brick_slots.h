@@ -1,7 +1,7 @@
 #pragma once
-// Which brick lies in which of a fixed number of slots, and which gives way to another: of those that nobody needs, the
-// one used longest ago. Deterministic plain data: no device, no clock, no files; what is in the slots is their owner's
-// affair (engine/device/paged_volume.h).
+// Assigns bricks to a fixed number of slots, and chooses which brick to evict: of those that are not needed, the least
+// recently used. Deterministic plain data: no device, no clock, no files; the owner manages the slots' contents
+// (engine/device/paged_volume.h).
 //
 // Finding a slot takes constant time; after needs_changed() the next eviction sorts all slots. One thread.
 
@@ -14,12 +14,12 @@
 
 namespace shvr {
 
-/// Who would miss a brick. What is needed for work on a region of level 0 goes before what a picture needs.
+/// What needs a brick. Work on a region of level 0 has priority over pictures.
 enum class BrickNeed : uint8_t { none, picture, region };
 
 class BrickSlots {
 public:
-    /// Slots 1 ... count - 1; slot 0 is never used. `need` is asked when room has to be made.
+    /// Slots 1 ... count - 1; slot 0 is never used. Calls `need` when it has to make room.
     BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)> need);
 
     uint32_t count() const { return uint32_t(slots_.size()); }
@@ -28,24 +28,24 @@ public:
     bool contains(const BrickKey& key) const { return placed_.contains(key); }
     std::optional<uint32_t> find(const BrickKey& key) const;
     bool is_pinned(uint32_t slot) const { return slots_[slot].is_pinned; }
-    /// Slots that are free, or whose bricks neither picture nor region would miss.
+    /// Number of slots that are free, or whose bricks neither a picture nor a region needs.
     size_t room() const;
-    /// Bricks that have lost their slots.
+    /// Bricks evicted so far.
     uint64_t evictions() const { return evictions_; }
 
-    /// What is used from now on was used later than all before.
+    /// Later uses count as more recent than all before.
     void tick() { ++now_; }
     void use(const BrickKey& key);
-    /// `need` may give other answers than before.
+    /// To be called when the answers of `need` may have changed.
     void needs_changed() { evictable_is_stale_ = true; }
 
     struct Placed {
         uint32_t slot = 0;
-        std::optional<BrickKey> evicted;  ///< that was there
+        std::optional<BrickKey> evicted;  ///< the brick that was in the slot
     };
-    /// A slot for a brick that has none, and that is used now: a free one, or one of a brick that nobody needs. For a
-    /// region, bricks that only the picture needs go after those. Nothing where there is no room. Pinned bricks stay
-    /// until they are removed.
+    /// Places a brick that has no slot and marks it as used now: in a free slot, or in that of a brick that is not
+    /// needed; for a region, then also in that of a brick that only the picture needs. Null where there is no room.
+    /// Pinned bricks stay until they are removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 
@@ -68,7 +68,7 @@ private:
     std::vector<Slot> slots_;
     std::unordered_map<BrickKey, uint32_t, BrickKeyHash> placed_;
     std::vector<uint32_t> free_;
-    std::vector<Candidate> evictable_;  ///< that nobody needs; the one to go first last
+    std::vector<Candidate> evictable_;  ///< bricks that are not needed; the next one to evict is last
     bool evictable_is_stale_ = true;
     uint64_t now_ = 1;
     uint64_t evictions_ = 0;

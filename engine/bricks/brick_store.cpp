@@ -13,12 +13,12 @@ namespace shvr {
 namespace {
 
 constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
-/// More sentences than a person reads; the count goes on.
+/// More messages than a user reads; failures are still counted.
 constexpr size_t MOST_MESSAGES = 20;
 
 /// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first
-/// picture. Linux holds a rank for each thread; where it does not (POSIX has one a process), or refuses, only haste is
-/// lost.
+/// picture. Linux has a priority for each thread; elsewhere (POSIX has one per process), or if the call fails, only
+/// speed is lost.
 void give_way()
 {
     constexpr int NICENESS = 5;
@@ -31,7 +31,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // A brick in the hands of each loader, and one that waits to be taken.
+    // One brick in progress for each loader, and one that waits to be taken.
     most_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {
@@ -82,7 +82,7 @@ std::vector<BrickStore::Finished> BrickStore::take(size_t most)
         const auto kept = kept_.find(key);
         finished.push_back({key, kept == kept_.end() ? nullptr : kept->second.texels});
     }
-    if (!finished.empty()) work_.notify_all();  // what was taken may make room
+    if (!finished.empty()) work_.notify_all();  // taking may have made room
     return finished;
 }
 
@@ -141,7 +141,7 @@ std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
     return found == failed_.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The mutex is held. The next wanted brick that nobody has or makes.
+/// The mutex is held. The next wanted brick that is neither kept nor being loaded.
 std::optional<BrickKey> BrickStore::next()
 {
     while (next_wanted_ < wanted_.size()) {
@@ -157,8 +157,8 @@ std::optional<BrickKey> BrickStore::next()
     return std::nullopt;
 }
 
-/// The mutex is held. Drops the bricks used longest ago that are not waiting to be taken, until there is room for one
-/// more.
+/// The mutex is held. Evicts the least recently used bricks that are not waiting to be taken, until there is room for
+/// one more.
 bool BrickStore::make_room()
 {
     const auto is_full = [&] { return kept_.size() + loading_.size() >= most_bricks_; };
@@ -199,7 +199,7 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
     const std::scoped_lock lock(mutex_);
     ++counts_.failures;
     failed_.emplace(key, message);
-    // Several bricks may lie in one broken chunk.
+    // One broken chunk may affect several bricks.
     if (known_messages_.size() < MOST_MESSAGES && known_messages_.insert(message).second) messages_.push_back(message);
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-// The host's tier of a volume's bricks: what somebody wants is read, decoded and cut by loader threads, most wanted
-// first, and kept within a byte budget. What is no longer wanted is not begun. A brick that cannot be read is named
-// once and never tried again.
+// The host's tier of a volume's bricks: loader threads read, decode and cut the wanted bricks, most wanted first, and
+// the store keeps them within a byte budget. Bricks that are no longer wanted are not started. A brick that cannot be
+// read is reported once and never tried again.
 //
-// One thread asks (want, take, get); the loaders are its own.
+// One thread makes all calls (want, take, get); the store owns the loader threads.
 
 #include <condition_variable>
 #include <exception>
@@ -26,33 +26,33 @@ public:
         Texels texels;  ///< null: it cannot be read
     };
     struct Counts {
-        uint64_t loads = 0;    ///< bricks that were read and cut
-        uint64_t hits = 0;     ///< bricks taken that had been kept
-        uint64_t dropped = 0;  ///< wanted bricks that were no longer wanted before they were begun
+        uint64_t loads = 0;    ///< bricks read and cut
+        uint64_t hits = 0;     ///< bricks taken from those kept
+        uint64_t dropped = 0;  ///< wanted bricks that became unwanted before a loader started them
         uint64_t failures = 0;
     };
 
-    /// The source must outlive the store. The budget is raised to what the loaders need to work at all.
+    /// The source must outlive the store. The budget is raised to the minimum that the loaders need.
     BrickStore(const VolumeSource& source, const IntensityWindow& window, uint64_t budget_bytes, int threads);
     ~BrickStore();
     BrickStore(const BrickStore&) = delete;
     BrickStore& operator=(const BrickStore&) = delete;
 
-    /// What is wanted from now on, most wanted first. Replaces the list before.
+    /// Sets the wanted bricks, most wanted first. Replaces the previous list.
     void want(std::vector<BrickKey> keys);
-    /// Of the wanted bricks those that are there, at most `most`; each is handed out once a list. Does not wait.
+    /// At most `most` of the wanted bricks that are ready; each is handed out once per list. Does not wait.
     std::vector<Finished> take(size_t most);
-    /// Waits until there is something to take; false where nothing more will come.
+    /// Waits until there is something to take; false if nothing more will arrive.
     bool wait();
-    /// One brick, now: read on this thread unless it is kept. Null where it cannot be read.
+    /// Returns one brick at once: reads it on this thread unless it is kept. Null if it cannot be read.
     Texels get(const BrickKey& key);
-    /// The source hands out other voxels of these bricks from now on: what is kept of them is dropped, and what loaders
-    /// hold that they read before is read again. Call it after the source has changed.
+    /// The source's voxels of these bricks have changed: drops kept copies, and re-reads bricks that a loader read
+    /// before. Call it after the source has changed.
     void renew(std::span<const BrickKey> keys);
-    /// Why a brick cannot be read; nothing where it can be, or nobody has tried.
+    /// Why a brick cannot be read; null if it can be, or was not tried.
     std::optional<std::string> failure_of(const BrickKey& key) const;
 
-    /// What could not be read, one sentence each, since the last call.
+    /// Read failures since the last call, one sentence each.
     std::vector<std::string> take_messages();
     Counts counts() const;
     uint64_t bytes() const;
@@ -80,17 +80,17 @@ private:
     std::vector<BrickKey> wanted_;
     size_t next_wanted_ = 0;                              ///< the loaders' place in the list
     std::unordered_set<BrickKey, BrickKeyHash> untaken_;  ///< wanted and not handed out
-    std::list<BrickKey> ready_;                           ///< in the order in which they came
+    std::list<BrickKey> ready_;                           ///< in order of arrival
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
-    std::list<BrickKey> by_age_;  ///< of `kept_`, oldest use first
+    std::list<BrickKey> by_age_;  ///< keys of `kept_`, least recently used first
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
-    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< of `loading_`, those to be read once more
+    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys of `loading_` that must be read again
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;
     uint64_t peak_bricks_ = 0;
-    std::vector<std::jthread> loaders_;  ///< last: they end before what they use
+    std::vector<std::jthread> loaders_;  ///< last, so that they stop before what they use is destroyed
 };
 
 }  // namespace shvr

@@ -10,10 +10,10 @@
 namespace shvr {
 namespace {
 
-/// Compilers vectorise a loop of known length even where they are told to be careful (-O2).
+/// Compilers vectorise a loop of known length even at -O2.
 constexpr size_t BLOCK = 64;
 
-/// Runs `convert_block(const T* voxels, uint16_t* codes)` on blocks of BLOCK voxels; the last one is filled up.
+/// Runs `convert_block(const T* voxels, uint16_t* codes)` on blocks of BLOCK voxels; the last one is padded.
 template <class T, class ConvertBlock>
 void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes, const ConvertBlock& convert_block)
 {
@@ -27,8 +27,8 @@ void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes
     }
 }
 
-/// Exact: voxels are clamped to those of the window that have a code of their own, whose differences from its lower
-/// end need 32 bits without a sign.
+/// Exact: voxels are clamped to those in the window with codes of their own, whose differences from its lower end fit
+/// in 32 unsigned bits.
 template <class T>
 void convert_whole(std::span<const std::byte> voxels, std::span<uint16_t> codes, const IntensityWindow& window)
 {
@@ -77,7 +77,7 @@ CodeRows::CodeRows(VoxelType type, const IntensityWindow& window)
                 window.codes_per_unit == std::floor(window.codes_per_unit) && window.codes_per_unit >= 1.0 &&
                 window.codes_per_unit <= 65535.0)
 {
-    // Where the window begins above or ends below every voxel, clamping to it would leave the type.
+    // If the window begins above or ends below every voxel, its bounds do not fit the type.
     const auto ends_within = [&]<class T>(T) {
         return window.lower <= double{std::numeric_limits<T>::max()} &&
                window.upper() >= double{std::numeric_limits<T>::min()};

@@ -1,5 +1,5 @@
 #pragma once
-// Turns voxels as a file holds them into the 16-bit codes of an `IntensityWindow`, a row at a time. Any thread.
+// Converts voxels from a file's format to the 16-bit codes of an `IntensityWindow`, a row at a time. Any thread.
 
 #include <span>
 
@@ -7,8 +7,8 @@
 
 namespace shvr {
 
-/// code = round((voxel - lower) * codes_per_unit), clamped to 0 ... 65535 (integers above the window: to the last one
-/// that has a code); NaN becomes 0. `voxels` has native byte order and need not be aligned; it holds exactly
+/// code = round((voxel - lower) * codes_per_unit), clamped to 0 ... 65535 (integers above the window get the code of
+/// the last integer inside it); NaN becomes 0. `voxels` has native byte order and need not be aligned; it holds exactly
 /// `codes.size()` voxels.
 class CodeRows {
 public:

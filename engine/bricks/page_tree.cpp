@@ -17,7 +17,7 @@ struct Box {
     glm::dvec3 lower, upper;
 };
 
-/// Least value of dot(normal, p) over a box.
+/// Minimum of dot(normal, p) over a box.
 double least(const glm::dvec3& normal, const Box& box)
 {
     double sum = 0.0;
@@ -30,7 +30,7 @@ double most(const glm::dvec3& normal, const Box& box)
     return -least(-normal, box);
 }
 
-/// What the rays of a picture can reach, in physical units, and how large a pixel is there.
+/// The space that the rays of a picture can reach, in physical units, and the size of a pixel in it.
 class Frustum {
 public:
     Frustum(const Camera& camera, const glm::uvec2& pixels) : camera_(camera), pixels_(pixels)
@@ -40,7 +40,7 @@ public:
         const glm::dvec3 up = glm::cross(right, forward_);
         const bool is_perspective = camera_.projection == Camera::Projection::perspective;
         const double half = is_perspective ? std::tan(glm::radians(0.5 * camera_.fov_y_degrees)) : 0.5 * camera_.height;
-        // A pixel more on each side: rounding must not cut what a ray at the border meets.
+        // One more pixel on each side: rounding must not cut off rays at the border.
         const glm::dvec2 margin = (glm::dvec2(pixels_) + 2.0) / glm::dvec2(pixels_);
         const double half_y = half * margin.y;
         const double half_x = half * margin.x * double(pixels_.x) / double(pixels_.y);
@@ -65,7 +65,7 @@ public:
         return camera_.far_distance <= 0.0 || least(forward_, box) - eye_depth_ <= camera_.far_distance;
     }
     double depth(const Box& box) const { return std::max(least(forward_, box) - eye_depth_, camera_.near_distance); }
-    /// Of a pixel at that depth, physical units.
+    /// Size of a pixel at that depth, physical units.
     double pixel_at(double depth) const
     {
         return camera_.projection == Camera::Projection::perspective ? pixel_ * std::max(depth, 0.0) : pixel_;
@@ -95,7 +95,7 @@ public:
         reference_ = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     }
 
-    /// False where there are too many leaves.
+    /// False if there are too many leaves.
     bool cut(double detail)
     {
         detail_ = detail;
@@ -149,7 +149,7 @@ private:
     const VolumeInfo& volume_;
     int levels_;
     const PageView& view_;
-    std::vector<Frustum> frustums_;  ///< of one eye, or two
+    std::vector<Frustum> frustums_;  ///< one per eye
     const std::function<bool(const BrickKey&)>& shows_;
     size_t most_leaves_;
     double reference_ = 1.0;
@@ -157,13 +157,13 @@ private:
     std::vector<PageTree::Leaf> leaves_;
 };
 
-/// The entry of a cell that shows nothing, `distance` cells from the next that does.
+/// The entry of an empty cell, `distance` cells from the next non-empty one.
 uint32_t empty_entry(uint32_t distance)
 {
     return distance << gpu::PAGE_DISTANCE_SHIFT;
 }
 
-/// Finds or makes the entry of a leaf that is finer than the grid.
+/// Finds or creates the entry of a leaf that is finer than the grid.
 uint32_t entry_below(PageTree& tree, uint32_t entry, int shift, const BrickKey& key)
 {
     const int leaf_shift = key.level + 5;
@@ -222,7 +222,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     tree.finest_level = levels - 1;
     for (const PageTree::Leaf& leaf : tree.leaves) tree.finest_level = std::min(tree.finest_level, leaf.key.level);
 
-    // No finer than the finest leaf, and no larger than what is quickly made anew.
+    // No finer than the finest leaf, and small enough to rebuild quickly.
     tree.cell_shift = tree.finest_level + 5;
     const int64_t longest = std::max({volume.size.x, volume.size.y, volume.size.z});
     while ((longest - 1) >> tree.cell_shift >= int64_t{gpu::PAGE_GRID}) ++tree.cell_shift;
@@ -233,7 +233,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     std::vector<std::pair<uint32_t, uint32_t>> places;  // entry, leaf
     for (uint32_t index = 0; index < tree.leaves.size(); ++index) {
         const BrickKey& key = tree.leaves[index].key;
-        const int coarser = key.level + 5 - tree.cell_shift;  // log2 of cells a side that the leaf covers, if above 0
+        const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the leaf's side in cells, if above 0
         const glm::ivec3 first = coarser > 0 ? key.brick << coarser : key.brick >> -coarser;
         const glm::ivec3 end = glm::min(coarser > 0 ? (key.brick + 1) << coarser : first + 1, glm::ivec3(tree.counts));
         for (int z = first.z; z < end.z; ++z)

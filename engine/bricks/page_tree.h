@@ -1,11 +1,11 @@
 #pragma once
 // Which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can show,
-// without what is outside the view, cut away or shown by no transfer function. Plain data made in double on the CPU; no
-// device.
+// without bricks that are outside the view, cut away or invisible under the transfer function. Plain data made in
+// double on the CPU; no device.
 //
-// A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel is at the brick's nearest
-// point, divided by `detail`. That is a matter of the view alone, never of what happens to be loaded or of a budget: it
-// is what makes pictures under different budgets equal.
+// A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel at the brick's nearest
+// point, divided by `detail`. This depends on the view alone, never on loaded bricks or a budget, so pictures under
+// different budgets are equal.
 
 #include <functional>
 
@@ -21,8 +21,8 @@ struct PageView {
     glm::uvec2 pixels{1};
     double detail = 1.0;  ///< voxels per pixel at least; 0: the finest level everywhere
     CutBox cut;
-    bool shows_all = false;  ///< whatever the transfer function says
-    /// Voxels whose bricks are shown whatever it says.
+    bool shows_all = false;  ///< ignore the transfer function
+    /// Bricks of these voxels are always shown.
     std::optional<VoxelBox> shown{};
     bool operator==(const PageView&) const = default;
 };
@@ -30,7 +30,7 @@ struct PageView {
 struct PageTree {
     struct Leaf {
         BrickKey key;
-        double depth = 0.0;  ///< of its nearest point, along the view; what is near is loaded first
+        double depth = 0.0;  ///< of its nearest point, along the view; near bricks are loaded first
     };
     static constexpr uint32_t NO_LEAF = 0xffffffffu;
 
@@ -39,14 +39,14 @@ struct PageTree {
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
     int depth = 0;             ///< levels of nodes below it
-    /// The directory of shaders/pages.h as far as the view alone decides it: what is empty, and the nodes. Where
-    /// `leaf_of_entry` names a leaf, the entry is to be filled with the brick that stands for it.
+    /// The directory of shaders/pages.h, as far as the view determines it: empty space, and the nodes. Where
+    /// `leaf_of_entry` names a leaf, the caller fills in the brick to draw for it.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
 };
 
-/// `levels` as VolumeSource::levels. `shows` says whether anything of a brick, or of the bricks below it, may be
-/// visible. A view that needs more than `most_leaves` is taken with half the detail, and half again.
+/// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the bricks below it, may be visible. A
+/// view that needs more than `most_leaves` gets half the detail, repeatedly.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t most_leaves = size_t{1} << 17);
 

@@ -1,7 +1,7 @@
 #pragma once
-// Bricks in slots on the device: their codes, aprons included, and the ranges of their cells. What is in which slot is
-// its owner's affair (paged_volume.h). Bricks go up in batches of BATCH, one being filled while the device copies the
-// other. One thread, the one that owns the device.
+// Bricks in slots on the device: their codes, aprons included, and the ranges of their cells. The owner decides which
+// brick goes to which slot (paged_volume.h). Bricks are uploaded in batches of BATCH: one batch is filled while the
+// device copies the other. One thread, the one that owns the device.
 
 #include <array>
 #include <vector>
@@ -15,22 +15,22 @@ namespace shvr {
 class BrickAtlas {
 public:
     static constexpr size_t BATCH = 32;  ///< twice 2.5 MiB of staging
-    /// Device bytes of a slot, how far rays may leap in it included.
+    /// Device bytes per slot, including the leap distances of its cells.
     static uint64_t slot_bytes();
 
-    /// `filtered`: for the device's own filter. Fails as gpu::Memory::create does.
+    /// `filtered`: in a format that the device can filter. Fails as gpu::Memory::create does.
     BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, uint64_t slots, bool filtered);
 
     const glm::uvec3& slots() const { return slots_; }
     /// Slot 0 is never used.
     uint32_t slot_count() const { return slots_.x * slots_.y * slots_.z; }
-    /// As kernels name the slot of that number.
+    /// The address of that slot as kernels use it.
     uint32_t packed(uint32_t slot) const;
 
-    /// Sends a brick to its slot with the next batch; may wait for the batch before the last one.
+    /// Uploads a brick to its slot with the next batch; may wait for the batch before the last one.
     void stage(uint32_t slot, const BrickTexels& texels);
     void flush();
-    /// Bricks that have been sent.
+    /// Bricks uploaded so far.
     uint64_t uploads() const { return upload_count_; }
 
     Resource import_codes(FrameGraph& graph) const { return graph.import("atlas", codes_.import()); }
@@ -47,7 +47,7 @@ private:
     gpu::Storage codes_, cell_ranges_;
     std::array<Staging, 2> staging_;
     size_t filling_ = 0;            ///< of staging_
-    std::vector<uint32_t> staged_;  ///< slots of the bricks in it
+    std::vector<uint32_t> staged_;  ///< slots of the bricks in that buffer
     uint64_t upload_count_ = 0;
 };
 

@@ -24,7 +24,7 @@ void DeviceMask::grow(uint64_t bricks)
     atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE));
     free_slots_.clear();
     slots_.clear();
-    // The first corner is NO_SLOT. What is taken first comes last.
+    // The first corner is NO_SLOT. Slots are taken from the end of the list.
     for (uint32_t z = slots.z; z-- > 0;)
         for (uint32_t y = slots.y; y-- > 0;)
             for (uint32_t x = slots.x; x-- > 0;)
@@ -57,8 +57,8 @@ void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
     send_table(mask);
 }
 
-/// Slots to those that are painted and have none; those that are no longer painted lose theirs. True where the atlas
-/// had to grow and all bricks have other slots.
+/// Gives slots to painted bricks without one, and takes them from bricks that are no longer painted. Returns true if
+/// the atlas had to grow, which moves all bricks to other slots.
 bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
 {
     std::vector<int64_t> added;
@@ -132,7 +132,7 @@ std::vector<uint32_t> DeviceMask::dense_table(const Mask& mask) const
     return entries;
 }
 
-/// The index of the last place, a power of two less one, then the places: as few as keep every brick near its hash.
+/// The index of the last entry (a power of two minus one), then the entries: as few as keep every brick near its hash.
 std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 {
     const glm::i64vec3 counts = mask.brick_counts();

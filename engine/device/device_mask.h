@@ -1,6 +1,6 @@
 #pragma once
-// The painted voxels on the device: a copy of the mask's bricks, brought up to date brick by brick. Nothing exists on
-// the device while nothing is painted, and it is given back when the last painted voxel goes.
+// The painted voxels on the device: a copy of the mask's bricks, updated brick by brick. It is allocated with the first
+// painted voxel and freed with the last.
 
 #include <map>
 #include <optional>
@@ -14,19 +14,19 @@ namespace shvr {
 
 class DeviceMask {
 public:
-    /// `hashed`: the table on the device is one of painted bricks only (shaders/library/mask.glsl).
+    /// `hashed`: the table on the device lists painted bricks only (shaders/library/mask.glsl).
     DeviceMask(gpu::Executor& executor, gpu::Memory& memory, bool hashed)
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}
 
-    /// Sends `bricks` of `mask` (those that changed) to the device; grows the atlas where they do not fit. Does not
-    /// wait: frames submitted later see them.
+    /// Uploads `bricks` of `mask` (the changed ones); grows the atlas where they do not fit. Does not wait: frames
+    /// submitted later see them.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
-    /// Of a painted brick on the device; gpu::NO_SLOT where it is not there.
+    /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
-    /// Voxels of the painted bricks of a volume of that size.
+    /// Boxes of voxels, one for each painted brick of a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
     /// Handles for a graph; nothing while nothing is painted.
     std::optional<MaskBinding> import(FrameGraph& graph) const;

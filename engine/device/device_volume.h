@@ -1,9 +1,9 @@
 #pragma once
-// A volume on the device, whichever way it is there: with all of its bricks (resident_volume.h), or with paged ones
-// (paged_volume.h). Callers need not know which; a resident volume has little to answer to most questions.
+// A volume on the device: resident, with all bricks there (resident_volume.h), or paged (paged_volume.h). Callers need
+// not know which; for a resident volume most of these calls are trivial.
 //
-// For a picture: look(), prepare(), the passes that draw, request_feedback(); after it take_feedback(); in between
-// advance(). One thread, the one that owns the executor.
+// For each picture: look(), prepare(), the passes that draw, request_feedback(), later take_feedback(). Between
+// pictures: advance(). One thread, the one that owns the executor.
 
 #include <functional>
 #include <memory>
@@ -24,18 +24,18 @@ namespace shvr {
 /// rows keep a brick's texels close in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
 
-/// The packed address of the slot of that index, x fastest.
+/// The packed address of the slot with that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
-/// The bricks of a level whose texels, aprons included, depend on voxels of level 0 in one of the boxes; each once.
+/// The bricks of a level whose texels, aprons included, depend on level 0 voxels in one of the boxes; each once.
 std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level);
 
-/// The bricks of level 0 that hold a box of voxels, without their slots.
+/// The bricks of level 0 that overlap a box of voxels, without their slots.
 RegionBricks bricks_around(const VoxelBox& voxels);
 
 class DeviceVolume {
 public:
-    /// A brick that has a slot, for work on all that are there.
+    /// A brick that has a slot, for work on all bricks on the device.
     struct Place {
         BrickKey key;
         uint32_t slot = 0;         ///< packed
@@ -49,96 +49,96 @@ public:
     const VolumeInfo& info() const { return info_; }
     const IntensityWindow& window() const { return window_; }
 
-    // ---- What is looked at
+    // ---- The view
 
-    /// From now on this is looked at. Costs nothing where it is the same as before. Returns finest_level().
+    /// Sets the view. Costs nothing if it is unchanged. Returns finest_level().
     virtual int look(const PageView& view, const Visibility& visibility) = 0;
-    /// The same from where it is looked at already, if from anywhere, with other things visible.
+    /// Sets what is visible, and keeps the view if there is one.
     virtual void look_by(const Visibility& visibility) = 0;
-    /// It is known which bricks the view needs.
+    /// Whether the bricks that the view needs are known.
     virtual bool has_view() const = 0;
-    /// Of the bricks that the view needs; samples may lie as far apart as its voxels.
+    /// The finest level among the bricks that the view needs; samples may be as far apart as its voxels.
     virtual int finest_level() const = 0;
 
-    /// A graph of what can be done beforehand of prepare(), one short step at a time; nothing when that is all.
+    /// A graph with one short step of the work of prepare() that can be done in advance; null when there is none left.
     /// The graph must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
-    /// Likewise, of what makes pictures of this come sooner without making them different.
+    /// Likewise, one step of work that makes later pictures faster without changing them.
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
     virtual bool refinement_is_due() const = 0;
-    /// Adds the passes that bring up to date what rays look into, and returns the handles to draw with. `painted`: the
-    /// mask's in that graph. `feedback`: rays record the bricks that they visit.
+    /// Adds the passes that update what rays read, and returns the handles to draw with. `painted`: the mask's handles
+    /// in that graph. `feedback`: rays record the bricks that they visit.
     virtual VolumeBinding prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
                                   bool feedback) = 0;
-    /// prepare() would upload what has changed since a picture was drawn.
+    /// Whether prepare() would upload changes made since the last picture.
     virtual bool is_stale() const = 0;
 
     // ---- Which bricks are needed
 
-    /// The bricks that the rays of one picture visited, on their way back from the device.
+    /// The bricks that the rays of one picture visited, in flight from the device.
     class Feedback {
         friend class PagedVolume;
         std::optional<uint32_t> read_back_;
-        std::shared_ptr<const PageTree> tree_;  ///< that it was drawn with
+        std::shared_ptr<const PageTree> tree_;  ///< the tree that the picture was drawn with
     };
-    /// Adds the read-back to a graph that was prepared with feedback and has drawn.
+    /// Adds the read-back to a graph prepared with feedback, after its draw passes.
     virtual Feedback request_feedback(FrameGraph& graph, const VolumeBinding& volume) const = 0;
-    /// `result`: of that graph.
+    /// `result`: the result of that graph.
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
-    /// The next picture alone says what is needed.
+    /// Forgets earlier visits: only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
-    /// Takes the bricks that have been loaded. Returns what may look different now. `wait`: for all that are wanted.
+    /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks.
     virtual std::vector<VoxelBox> advance(bool wait = false) = 0;
 
     enum class State : uint8_t {
-        complete,  ///< every brick that rays visited is there
+        complete,  ///< every brick that rays visited is on the device
         loading,
-        limited,  ///< there is no room for the rest: more is seen than the budget holds
+        limited,  ///< the budget cannot hold all visited bricks
     };
     virtual State state() const = 0;
-    /// Bricks that rays visited and that cannot be read; they are drawn from coarser ones.
+    /// Bricks that rays visited and that cannot be read; coarser ones are drawn instead.
     virtual size_t missing() const = 0;
-    /// Bricks that could not be read, one sentence each, since the last call.
+    /// Bricks that failed to load since the last call, one sentence each.
     virtual std::vector<std::string> take_messages() = 0;
-    /// Rays visited it, as far as that is known.
+    /// Whether rays visited the brick, as far as is known.
     virtual bool is_drawn(const BrickKey& key) const = 0;
-    /// Around visited bricks those as far away as `reach` says for their level are needed, too: light arrives from
-    /// there. Empty: none.
+    /// Also requests the bricks around visited ones, as far away as `reach` gives for their level, because ambient
+    /// light arrives from there. Empty: none.
     virtual void want_around(const std::vector<int>& reach) = 0;
-    /// Level 0 of `voxels`, where a person is likely to touch or paint next, is loaded before all else, unless that
-    /// takes more than a quarter of the room. Until the next call, or that of region().
+    /// Loads level 0 of `voxels` before all else, because the user is likely to touch or paint there next, unless it
+    /// takes more than a quarter of the room. Holds until the next call of this or of region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
-    // ---- What is changed
+    // ---- Changes
 
-    /// The source has other voxels of level 0 in these boxes; what depends on them is renewed. Frames submitted later
-    /// see it. Fails where voxels cannot be read.
+    /// The source's level 0 voxels in these boxes have changed; updates all that depends on them. Frames submitted
+    /// later see it. Fails where voxels cannot be read.
     virtual void renew(std::span<const VoxelBox> changed) = 0;
-    /// These bricks of level 0 have been painted, or are no longer.
+    /// The mask has changed in these bricks of level 0: they are painted now, or no longer.
     virtual void note_painted(const Mask& mask, std::span<const int64_t> bricks) = 0;
 
-    // ---- Work on level 0, and on all bricks that are there
+    // ---- Work on level 0, and on all bricks on the device
 
     virtual int levels() const = 0;
     /// Slots of the atlas along each axis.
     virtual glm::uvec3 atlas_slots() const = 0;
-    /// Every brick on the device, and a number that changes when they do.
+    /// Every brick on the device, and a number that changes whenever this list does.
     virtual std::vector<Place> places() const = 0;
     virtual uint64_t places_revision() const = 0;
     /// Handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) const = 0;
-    /// The bricks of a box of voxels, which keep their slots until the next call. Null where some are not there yet;
-    /// they are loaded before all others. `wait`: reads them now, and fails where that cannot be.
+    /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
+    /// device yet; these are loaded before all others. `wait`: reads them now, and fails if that is not possible.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
 
-    /// Of paged bricks, for reports.
+    /// Counts of paged bricks, for reports.
     struct Counts {
-        uint64_t slots = 0;     ///< bricks that the atlas holds
-        uint64_t resident = 0;  ///< that are there
+        uint64_t slots = 0;     ///< capacity of the atlas, in bricks
+        uint64_t resident = 0;  ///< bricks on the device
         uint64_t uploads = 0;
         uint64_t evictions = 0;
-        uint64_t leaves = 0;                           ///< of the tree
-        uint64_t reached = 0;                          ///< of those, by rays
+        uint64_t leaves = 0;                           ///< leaves of the tree
+        uint64_t reached = 0;                          ///< leaves that rays visited
         uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
         BrickStore::Counts store;
     };

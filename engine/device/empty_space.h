@@ -1,7 +1,7 @@
 #pragma once
-// What of the leap grid on the device is out of date, and when it is built again. A new look (transfer function,
-// visible groups) needs all of it before anything is drawn; where a few cells changed, a patch is enough for pictures,
-// and the rest is built when there is nothing else to do. One thread, the renderer's.
+// Tracks which part of the leap grid on the device is stale, and schedules its rebuild. A new look (transfer function,
+// visible groups) needs a full rebuild before anything is drawn. Where a few cells changed, a patch is enough for
+// pictures, and the rest is rebuilt when idle. One thread, the renderer's.
 
 #include <optional>
 
@@ -11,24 +11,24 @@ namespace shvr {
 
 class EmptySpace {
 public:
-    /// These cells may show other things than before.
+    /// The contents of these cells may have changed.
     void changed(const CellBox& cells);
-    /// What cells are to show by; `changed` and `mask` of it do not matter.
+    /// Sets the look to build the grid for; its `changed` and `mask` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// Whether there is something left to do before a picture, and after it.
+    /// Whether there is work left to do before a picture, and after it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Adds one pass of what is due; of both, only where there is one.
+    /// Each adds one pass of its work, and may only be called while there is some.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 
 private:
-    std::optional<LeapGridInput> look_;  ///< what the grid is built from, but for paint
-    bool holds_ = false;                 ///< pictures come out right, but for the patch
-    CellBox patch_;                      ///< cells that the grid does not know of yet
+    std::optional<LeapGridInput> look_;  ///< what the grid is built from, except paint
+    bool holds_ = false;                 ///< pictures are correct, except for the patch
+    CellBox patch_;                      ///< changed cells that the grid does not reflect yet
     uint32_t stage_ = 0;                 ///< the next of LEAP_STAGES
-    CellBox changed_;                    ///< the cells that the stages are about
+    CellBox changed_;                    ///< the cells that the running stages cover
 };
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// A transfer function as the device reads it: a table for one length of step, plain or pre-integrated, and which
-// stretches of it show anything. Baked in double on the CPU, kept as long as it is the same.
+// A transfer function as the device reads it: a table for one step length, plain or pre-integrated, and the intervals
+// of it that are visible. Baked in double on the CPU, and cached until something changes.
 
 #include <optional>
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Values along the plain table, and along a side of the pre-integrated one.
+/// Number of values in the plain table, and along each side of the pre-integrated one.
 inline constexpr uint32_t TABLE_ENTRIES = gpu::TABLE_WIDTH * gpu::TABLE_HEIGHT;
 inline constexpr uint32_t STEP_TABLE_SIDE = gpu::TABLE_WIDTH;
 
@@ -32,16 +32,16 @@ struct LookTable {
     std::vector<glm::vec4> texels;  ///< rows of gpu::TABLE_WIDTH
     std::vector<uint32_t> visible_intervals;
 
-    /// Values along each axis of it.
+    /// Values along each axis of the table.
     uint32_t entries() const { return preintegrated ? STEP_TABLE_SIDE : TABLE_ENTRIES; }
     bool is_of(const TransferFunction& function, double step, bool is_preintegrated) const;
 };
 
 LookTable make_look_table(const TransferFunction& function, double step_voxels, bool is_preintegrated);
-/// Of all 256 colour groups, by number: linear RGB, opacity of a step; nothing where they are hidden.
+/// Linear RGB and opacity of a step for all 256 colour groups, by number; 0 where hidden.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
-/// What all parameters of kernels have that look into a table of a function.
+/// Sets the parameters shared by all kernels that look up a transfer function table.
 template <class Params>
 void set_table(Params& params, const TransferFunction& function, const IntensityWindow& window, uint32_t entries)
 {
@@ -56,9 +56,9 @@ void set_table(Params& params, const TransferFunction& function, const Intensity
 class DeviceTable {
 public:
     DeviceTable(gpu::Memory& memory, std::string name) : memory_(memory), name_(std::move(name)) {}
-    /// What was sent is not what is wanted any more.
+    /// Marks the uploaded table as stale.
     void invalidate() { is_sent_ = false; }
-    /// Its handle; sends `texels` where they are not there yet.
+    /// Its handle; uploads `texels` unless they are up to date.
     Resource upload(FrameGraph& graph, std::span<const glm::vec4> texels);
 
 private:
@@ -68,16 +68,16 @@ private:
     bool is_sent_ = false;
 };
 
-/// The tables of a scene: of its transfer function, and of its groups. One thread, the renderer's.
+/// A scene's tables: of its transfer function, and of its groups. One thread, the renderer's.
 class LookTables {
 public:
     explicit LookTables(gpu::Memory& memory)
         : function_on_device_(memory, "transfer function"), groups_on_device_(memory, "groups")
     {}
 
-    /// For steps of that many reference lengths.
+    /// The table for steps of that many reference lengths.
     const LookTable& table_of(const Look& look, double step_voxels);
-    /// What may be seen, for whichever length of steps there is a table: it does not depend on that.
+    /// What is visible, from whichever table there is: the step length does not matter.
     Visibility visibility_of(const Look& look, const IntensityWindow& window);
     Resource upload_function(FrameGraph& graph, const Look& look, double step_voxels);
     Resource upload_groups(FrameGraph& graph, const Look& look, double step_voxels);

@@ -14,7 +14,7 @@ static_assert(MOST_OCCLUSION_RADIUS == OCCLUSION_MOST_RADIUS);
 
 namespace {
 
-/// Beyond the radius: how far rays are lifted off surfaces, half the largest cell, and the voxel itself.
+/// In addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
 template <class Visit>
@@ -71,7 +71,7 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
     return binding;
 }
 
-// ---- What is out of date --------------------------------------------------------------------------------------------
+// ---- Invalidation ---------------------------------------------------------------------------------------------------
 
 void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask)
 {
@@ -100,7 +100,7 @@ void Occlusion::mark_all(bool cells)
     }
 }
 
-/// What lies between the planes of before and after.
+/// Marks the space between the old and new cutting planes.
 void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
 {
     const Size3 size = volume_->info().size;
@@ -121,7 +121,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
 {
     if (!look_) return;
     for (auto& [key, entry] : entries_) {
-        // A coarse voxel has the paint of its middle, which may be that of a neighbour below.
+        // A coarse voxel has the paint of its centre, which may lie in a neighbour of the finer brick.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
         const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
@@ -130,7 +130,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
     }
 }
 
-/// Slots as the volume has them now.
+/// Updates the entries to the volume's present slots.
 void Occlusion::sync()
 {
     if (revision_ == volume_->places_revision()) return;
@@ -170,7 +170,7 @@ std::vector<int> Occlusion::reach() const
     return reach;
 }
 
-/// It, or a brick that far from it; coarse bricks may be where anything is.
+/// Whether the brick, or one within `reach` bricks of it, is painted; for coarse bricks, wherever paint may be.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
     if (mask_->empty() || key.level > 0) return !mask_->empty();
@@ -190,7 +190,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// A brick that shows nothing may hold voxels beside painted ones.
+/// A brick with nothing visible may still contain voxels beside painted ones.
 bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
 {
     if (!entry.needs_values || !volume_->is_drawn(key)) return false;
@@ -231,8 +231,8 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) con
 
 // ---- The work -------------------------------------------------------------------------------------------------------
 
-/// An entry of the table of bricks around another (shaders/occlusion.h); the brick itself, or the finest coarser one
-/// there is. `keys` gets the one that was found.
+/// An entry of the table of bricks around another (shaders/occlusion.h): the brick itself, or the finest coarser one on
+/// the device. The key of the brick found is added to `keys`.
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -285,7 +285,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
     return renewed;
 }
 
-/// Opacities of `stretch` reference lengths.
+/// Opacities for `stretch` reference lengths.
 OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const
 {
     OcclusionCellsInput input;
@@ -323,7 +323,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     const glm::dvec3& spacing = volume_->info().spacing;
     OcclusionInput input{.params = {}, .taps = occlusion_taps(radius_of(level)), .near = {}};
     input.params.rays = look_->rays;
-    // Where the radius is below a voxel nothing is near; tables are of some stretch all the same.
+    // For radii below a voxel there are no near taps; the tables need some stretch all the same.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

@@ -1,14 +1,14 @@
 #pragma once
-// Local ambient occlusion of the bricks that are on the device: which of them are out of date, and the work that renews
-// them, in slices, nearest to the eye first. Its images have the slots of the density atlas, so they need no table of
-// their own; nothing exists on the device until a look asks for it.
+// Local ambient occlusion of the bricks on the device: tracks which are stale and renews them in slices, nearest to the
+// eye first. Its images use the slots of the density atlas, so they need no table of their own. Nothing is allocated on
+// the device until a look asks for it.
 //
 //   bricks come, painted voxels, cut     -> cells of those bricks, and values as far as light comes from them
 //   transfer function                    -> all cells, all values
 //   radius, rays, hemisphere             -> all values
 //
-// Values that are out of date stay until they are renewed; where there have never been any, all light arrives. Renewing
-// what is out of date gives the same bits as making all of it. One thread, the one that owns the memory.
+// Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing what is stale gives
+// the same bits as recomputing everything. One thread, the one that owns the memory.
 
 #include <optional>
 #include <unordered_map>
@@ -27,45 +27,45 @@ class Occlusion {
 public:
     explicit Occlusion(gpu::Memory& memory) : memory_(memory) {}
 
-    /// What values are made from.
+    /// What the values depend on.
     struct Look {
         TransferFunction function;
-        Visibility visibility;             ///< of the same function
+        Visibility visibility;             ///< of the same transfer function
         std::array<double, 256> groups{};  ///< opacities per reference length; 0: hidden
-        CutBox cut;                        ///< what is cut away keeps no light off
+        CutBox cut;                        ///< what is cut away does not block light
         double radius = 16.0;              ///< reference lengths
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
     };
 
-    /// Gives all memory back.
+    /// Frees all memory.
     void clear();
-    /// From now on this is wanted. Fails where the budget does not hold the images.
+    /// Sets the look to compute for. Fails where the budget cannot hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
-    /// These voxels have been painted; or, with an apron (voxels of each brick's own level), hold other densities.
+    /// These voxels have been painted; or, with an apron (in voxels of each brick's own level), their densities
+    /// changed.
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
-    /// By level: bricks on each side of one that its light comes from.
+    /// For each level: how many bricks on each side of a brick its light comes from.
     std::vector<int> reach() const;
-    /// Something is out of date.
+    /// Whether anything is stale.
     bool is_due();
     /// Bounds of one slice.
     struct Most {
-        size_t bricks = 1;       ///< whose values are made, up to gpu::OCCLUSION_SLICE
-        size_t cell_bricks = 8;  ///< whose cells are made
+        size_t bricks = 1;       ///< bricks whose values are computed, up to gpu::OCCLUSION_SLICE
+        size_t cell_bricks = 8;  ///< bricks whose cells are computed
     };
-    /// Adds the next slice to a graph that must be submitted, and returns the voxels that it renews. `eye` in voxels.
+    /// Adds the next slice to a graph that must be submitted, and returns the voxels that it updates. `eye` in voxels.
     std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
                                const glm::dvec3& eye, const Most& most);
-    /// Handles for a graph that must be submitted; adds passes that reset what has never been made, so that all light
-    /// arrives there.
+    /// Handles for a graph that must be submitted; adds passes that set bricks that never had values to fully lit.
     OcclusionBinding bring_up_to_date(FrameGraph& graph);
 
     struct Counts {
-        uint64_t cells = 0;   ///< bricks whose cells have been made
-        uint64_t values = 0;  ///< bricks whose values have been made
+        uint64_t cells = 0;   ///< bricks whose cells have been computed
+        uint64_t values = 0;  ///< bricks whose values have been computed
     };
     const Counts& counts() const { return counts_; }
 
@@ -74,7 +74,7 @@ private:
         uint32_t slot = 0;
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
-        bool is_new = true;  ///< its values are of nothing
+        bool is_new = true;  ///< its values have never been computed
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -104,7 +104,7 @@ private:
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
     bool images_are_new_ = false;
     Entries entries_;
-    uint64_t revision_ = 0;  ///< of the volume's places
+    uint64_t revision_ = 0;  ///< of the volume's places()
     Counts counts_;
 };
 

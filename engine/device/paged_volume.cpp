@@ -10,9 +10,9 @@ namespace shvr {
 
 namespace {
 
-/// A region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
+/// Room for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
 constexpr uint64_t FEWEST_SLOTS = 64;
-/// Levels of no more bricks than this are always there.
+/// Levels with at most this many bricks are always on the device.
 constexpr int64_t COARSE_BRICKS = 64;
 
 int64_t brick_total(const Size3& size, int level)
@@ -50,7 +50,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// The coarsest level now, so that there is something to see at once; the next ones as soon as possible.
+/// Loads the coarsest level now, so that there is something to show at once, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
     for (int level = levels_ - 1; level >= 0; --level) {
@@ -59,7 +59,7 @@ void PagedVolume::pin_coarse_levels()
         for (int z = 0; z < counts.z; ++z)
             for (int y = 0; y < counts.y; ++y)
                 for (int x = 0; x < counts.x; ++x) {
-                    // A quarter of the room at most, and the whole of the coarsest level.
+                    // At most a quarter of the room, but always the whole coarsest level.
                     if (level < levels_ - 1 && coarse_.size() >= slots_.count() / 4) return;
                     coarse_.push_back({level, {x, y, z}});
                 }
@@ -73,14 +73,14 @@ void PagedVolume::pin_coarse_levels()
     }
 }
 
-// ---- What is looked at ----------------------------------------------------------------------------------------------
+// ---- The view -------------------------------------------------------------------------------------------------------
 
 bool PagedVolume::is_painted(const BrickKey& key) const
 {
     return painted_.contains(key);
 }
 
-/// Whatever the transfer function says.
+/// Whether the brick is shown whatever the transfer function hides.
 bool PagedVolume::is_always_shown(const BrickKey& key) const
 {
     if (!view_) return false;
@@ -117,7 +117,7 @@ int PagedVolume::look(const PageView& view, const Visibility& visibility)
     leaf_index_.clear();
     for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_[tree_->leaves[leaf].key] = leaf;
     is_reached_.assign(tree_->leaves.size(), false);
-    // What was needed a moment ago is likely to be needed again.
+    // Bricks needed a moment ago are likely to be needed again.
     for (size_t leaf = 0; before && !is_other_look && leaf < reached_before.size(); ++leaf) {
         if (!reached_before[leaf]) continue;
         const auto found = leaf_index_.find(before->leaves[leaf].key);
@@ -209,7 +209,7 @@ VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, co
     return volume;
 }
 
-/// Of bricks that have arrived, or look different.
+/// Computes leaps of bricks that have arrived, or whose look has changed.
 void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const DeviceMask& mask,
                             const std::optional<MaskBinding>& painted)
 {
@@ -228,7 +228,7 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
 {
     if (!std::exchange(directory_is_stale_, false)) return graph.import("page directory", directory_.import());
     fill_directory();
-    // Whole powers of two: views differ, and buffers of a frame are used again where they are of the same size.
+    // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
     entries_.resize(std::bit_ceil(entries_.size()));
     const uint64_t bytes = entries_.size() * sizeof(uint32_t);
     if (!directory_ || directory_.desc().bytes < bytes) {
@@ -252,7 +252,7 @@ void PagedVolume::take_feedback(const Feedback& feedback, const gpu::FrameResult
     if (feedback.read_back_) note_reached(feedback.tree_, result.read_backs[*feedback.read_back_]);
 }
 
-/// `bits`: of PageBinding::reached, of a picture drawn with `tree`.
+/// `bits`: PageBinding::reached of a picture drawn with `tree`.
 void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std::span<const std::byte> bits)
 {
     for (size_t word = 0; word < bits.size() / sizeof(uint32_t); ++word) {

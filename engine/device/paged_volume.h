@@ -6,12 +6,12 @@
 //        -> BrickStore (host budget, loader threads)
 //        -> atlas (device budget, least recently used is evicted) -> directory
 //
-// Only bricks that rays visit are requested: what is outside the view, empty, cut away or hidden behind something
-// opaque is not loaded. A missing brick is drawn from the finest coarser one there is; the coarsest levels are always
-// there. While the view rests a brick that is needed is never evicted, so nothing is loaded twice and the picture only
-// gets better.
+// Only bricks that rays visit are requested: bricks outside the view, empty, cut away or hidden behind something opaque
+// are not loaded. A missing brick is drawn from the finest coarser one available; the coarsest levels are always on the
+// device. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
+// improves.
 //
-// One thread, the one that owns the executor; nothing here waits for a loader except where it says so.
+// One thread, the one that owns the executor; nothing here waits for a loader unless its comment says so.
 
 #include <memory>
 #include <optional>
@@ -27,11 +27,11 @@ class PagedVolume final : public DeviceVolume {
 public:
     struct Options {
         bool filtered = false;      ///< VolumeBinding
-        int threads = 1;            ///< loaders
+        int threads = 1;            ///< loader threads
         uint64_t host_bytes = 0;    ///< of bricks kept on the host
-        uint64_t device_bytes = 0;  ///< of the atlas and what goes with it
+        uint64_t device_bytes = 0;  ///< of the atlas and its tables
     };
-    /// Reads the coarsest level. Fails where the budget does not hold enough bricks to work with.
+    /// Reads the coarsest level. Fails where the budget holds too few bricks to work with.
     PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                 const IntensityWindow& window, const Options& options);
 
@@ -39,7 +39,7 @@ public:
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return tree_ != nullptr; }
     int finest_level() const override { return tree_ ? tree_->finest_level : 0; }
-    /// What is prepared depends on the view: it is all left to prepare().
+    /// Preparation depends on the view, so all of it is left to prepare().
     std::optional<FrameGraph> next_preparation(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     std::optional<FrameGraph> next_refinement(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     bool refinement_is_due() const override { return false; }
@@ -58,9 +58,9 @@ public:
     void want_around(const std::vector<int>& reach) override;
     void prefer(const VoxelBox& voxels) override;
 
-    /// Bricks that see the voxels, of all levels, are read anew: at once where they are on the device (but where those
-    /// are very many, only the coarse ones that are always there; the others come again like any that are missing),
-    /// later where they are not.
+    /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once; if there
+    /// are too many, only the coarse ones that are always there, and the rest are requested again like missing ones.
+    /// Others are reloaded when they are needed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -104,28 +104,28 @@ private:
     gpu::Storage cell_leap_, directory_;
 
     BrickSlots slots_;
-    std::unordered_map<BrickKey, BrickTexels::Range, BrickKeyHash> known_ranges_;  ///< of every brick ever read
-    std::unordered_map<BrickKey, int64_t, BrickKeyHash> painted_;                  ///< painted bricks of level 0 below
+    std::unordered_map<BrickKey, BrickTexels::Range, BrickKeyHash> known_ranges_;  ///< of every brick read so far
+    std::unordered_map<BrickKey, int64_t, BrickKeyHash> painted_;                  ///< painted level 0 bricks below
 
     std::optional<PageView> view_;
     Visibility visibility_;
     std::shared_ptr<const PageTree> tree_;
     std::unordered_map<BrickKey, uint32_t, BrickKeyHash> leaf_index_;
     std::vector<bool> is_reached_;   ///< by leaf
-    std::vector<uint32_t> entries_;  ///< the directory as it is to be
+    std::vector<uint32_t> entries_;  ///< the directory to be uploaded
     bool directory_is_stale_ = true;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
-    size_t pending_ = 0;                                 ///< reached leaves that are wanted and may come
+    size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
-    std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< as want_around() asks
+    std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks that want_around() asks for
     std::vector<int> around_reach_;
-    uint64_t around_revision_ = 0;  ///< of reached_revision_, that around_ is of
+    uint64_t around_revision_ = 0;  ///< the value of reached_revision_ that around_ was made for
     uint64_t places_revision_ = 1, reached_revision_ = 1;
-    std::vector<BrickKey> coarse_;  ///< that are to be there always
+    std::vector<BrickKey> coarse_;  ///< bricks that are always on the device
     std::vector<BrickKey> leap_jobs_;
 
-    BrickStore store_;  ///< last: its loaders end before what they read
+    BrickStore store_;  ///< last, so that its loaders stop before what they read is destroyed
 };
 
 }  // namespace shvr

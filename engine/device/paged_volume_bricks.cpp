@@ -1,4 +1,4 @@
-// Paged bricks (paged_volume.h): which are requested, which are needed, what work on level 0 finds.
+// Paged bricks (paged_volume.h): which are requested, which are needed, and access for work on level 0.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Bricks that a change of voxels may read again while the caller waits.
+/// At most so many bricks are re-read after a change of voxels while the caller waits.
 constexpr size_t MOST_RENEWED_NOW = 256;
 
 }  // namespace
@@ -49,7 +49,7 @@ std::vector<DeviceVolume::Place> PagedVolume::places() const
     return places;
 }
 
-/// The picture that is looked at, or the work around the probe, would miss it.
+/// Whether the current picture, or the work around the probe, needs the brick.
 BrickNeed PagedVolume::need_of(const BrickKey& key) const
 {
     if (region_.contains(key)) return BrickNeed::region;
@@ -113,7 +113,7 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
     rebuild_tree();
 }
 
-/// What the source tells of bricks, or what is painted, has changed; what was reached stays so.
+/// Rebuilds the tree after the source's data or the paint has changed; keeps which bricks rays visited.
 void PagedVolume::rebuild_tree()
 {
     if (!view_) return;
@@ -129,7 +129,7 @@ void PagedVolume::update_wants()
         if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
     for (const BrickKey& key : coarse_)
         if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
-    // What has a place, or will have one.
+    // Bricks that are on the device, or will be.
     size_t room = slots_.room();
     room -= std::min(room, keys.size());
     pending_ = 0;
@@ -260,7 +260,7 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
             if (slots_.contains(key)) leap_jobs_.push_back(key);
         }
     }
-    if (tree_is_stale) rebuild_tree();  // what is painted is shown, whatever its density
+    if (tree_is_stale) rebuild_tree();  // painted voxels are shown, whatever their density
 }
 
 std::optional<DeviceVolume::Counts> PagedVolume::counts() const

@@ -44,7 +44,7 @@ public:
     {
         if (!atlas_regions_.empty()) executor_.run(copies(atlas, cell_ranges), {.timestamps = false});
     }
-    /// Copies all that was added. The staging buffer must outlive them.
+    /// Copies all that was added. The staging buffer must outlive the copies.
     FrameGraph copies(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
     {
         FrameGraph graph;
@@ -79,7 +79,7 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
     const gpu::DeviceTraits& traits = memory.device().traits();
     const uint64_t bricks = brick_count();
-    // Slot 0 stays unused: it is what the page table says of a brick that is not there.
+    // Slot 0 stays unused: in the page table it stands for a missing brick.
     atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
     const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
     const uint32_t codes_per_texel = filtered ? 1 : 2;
@@ -92,7 +92,7 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
         scratch = memory.create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
 
     Uploader uploader(executor, memory, bricks, codes_per_texel);
-    std::vector<uint32_t> slots;  // bricks come in the order of their index
+    std::vector<uint32_t> slots;  // bricks arrive in the order of their index
     build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
         slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
         uploader.add(glm::uvec3(brick), slots.back(), texels);
@@ -139,7 +139,7 @@ std::vector<DeviceVolume::Place> ResidentVolume::places() const
     return places;
 }
 
-// ---- What rays leap over --------------------------------------------------------------------------------------------
+// ---- Leaps over empty space -----------------------------------------------------------------------------------------
 
 int ResidentVolume::look(const PageView& /*view*/, const Visibility& visibility)
 {
@@ -181,7 +181,7 @@ std::optional<FrameGraph> ResidentVolume::next_refinement(const Visibility& visi
 {
     if (!refinement_is_due()) return std::nullopt;
     look_by(visibility);
-    if (!refinement_is_due()) return std::nullopt;  // there is more to do than to refine
+    if (!refinement_is_due()) return std::nullopt;  // the grid has to be prepared before it can be refined
     FrameGraph graph;
     VolumeBinding volume = import(graph);
     empty_space_.refine(graph, volume, leap_input(mask.import(graph)));
@@ -204,13 +204,13 @@ void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bri
     }
 }
 
-// ---- Other voxels ---------------------------------------------------------------------------------------------------
+// ---- Changed voxels -------------------------------------------------------------------------------------------------
 
 void ResidentVolume::renew(std::span<const VoxelBox> changed)
 {
     renew_bricks(bricks_that_see(changed, info().size, 0));
     for (const VoxelBox& box : changed) {
-        // A cell's range is that of its voxels and of one around; cells beyond the volume's end see its last voxels.
+        // A cell's range covers its voxels and one around; cells beyond the volume's end use its last voxels.
         const Size3 lower = glm::max(box.lower - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::CELL_SIZE};
         Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
         for (int axis = 0; axis < 3; ++axis)

@@ -1,7 +1,7 @@
 #pragma once
 // A volume with all of its bricks on the device: the atlas, the page table, the value range of every cell and the leap
-// grid, which is kept up to date with what is visible and painted. A volume whose bricks do not fit the device budget
-// is refused in words before any is read.
+// grid, which is updated when visibility or paint changes. A volume that does not fit the device budget is refused with
+// a message before any brick is read.
 //
 // One thread, the one that owns the executor.
 
@@ -16,7 +16,7 @@ public:
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, bool filtered, int threads);
 
-    /// Device memory that the bricks of such a volume take, cells and leap grid included.
+    /// Device memory that such a volume takes, cells and leap grid included.
     static uint64_t bytes_for(const VolumeInfo& info);
 
     uint64_t brick_count() const;
@@ -34,7 +34,7 @@ public:
                           bool feedback) override;
     bool is_stale() const override { return false; }
 
-    // All bricks are there, whatever rays visit.
+    // All bricks are on the device, so visits do not matter.
     Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
     void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
     void forget_visits() override {}
@@ -46,7 +46,7 @@ public:
     void want_around(const std::vector<int>&) override {}
     void prefer(const VoxelBox&) override {}
 
-    /// Waits for reads, and for the device where bricks are many.
+    /// Waits for reads, and for the device where many bricks changed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -77,7 +77,7 @@ private:
     uint64_t places_revision_ = 1;
     Visibility visibility_;
     EmptySpace empty_space_;
-    std::vector<Renewal> renewals_;  ///< that the device may still copy from
+    std::vector<Renewal> renewals_;  ///< the device may still be copying from these
 };
 
 }  // namespace shvr

@@ -14,21 +14,21 @@ namespace shvr {
 
 namespace {
 
-// Shares of the device memory that is left when a volume is loaded.
-/// A resident volume may take nearly all: pictures in parts, mask and tables need little beside it.
+// Shares of the device memory that is free when a volume is loaded.
+/// A resident volume may take nearly all: pictures in parts, mask and tables need little more.
 constexpr uint64_t RESIDENT_SIXTEENTHS = 15;
 /// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, whose size is not known yet.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// Beside ambient occlusion, which then takes about as much as they do.
+/// With ambient occlusion, which then takes about as much as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
-/// More bricks than any view of a common screen needs: 27 000 of them.
+/// More than any view on a common screen needs: 27 000 bricks.
 constexpr uint64_t MAX_ATLAS_BYTES = uint64_t{2} << 30;
 /// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
 
-/// Offsets show as far as interpolation and gradients reach.
+/// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Of more boxes only what holds them all is kept, for each cause: nobody may be there to take them.
+/// Beyond this many boxes, only one that holds them all is kept for each cause, in case nobody collects them.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -86,7 +86,7 @@ bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Opti
     return !pages(memory, source, options) && fits_resident(memory, source, options);
 }
 
-// ---- What has changed -----------------------------------------------------------------------------------------------
+// ---- Changes --------------------------------------------------------------------------------------------------------
 
 void Scene::show(const Document& document)
 {
@@ -200,7 +200,7 @@ std::vector<Scene::Changed> Scene::take_changed()
     return std::exchange(changed_, {});
 }
 
-// ---- How it looks ---------------------------------------------------------------------------------------------------
+// ---- Look -----------------------------------------------------------------------------------------------------------
 
 Visibility Scene::visibility_of(const Look& look)
 {

@@ -1,9 +1,9 @@
 #pragma once
-// One loaded volume and all that goes with it on the device: density offsets, mask, ambient occlusion, surfaces,
-// tables. Built whole and destroyed whole.
+// One loaded volume and everything on the device that belongs to it: density offsets, mask, ambient occlusion,
+// surfaces, tables. Built and destroyed as a whole.
 //
 //   commands (paint, offsets, trace)  -> show()  -> what is on the device -+
-//   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> who shows pictures
+//   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> views
 //   slices of ambient occlusion       -> add_occlusion() ------------------+
 //
 // Pictures of it are made by engine/picture/frame.h. One thread, the one that owns the executor.
@@ -29,17 +29,17 @@ public:
     struct Options {
         Sampling sampling = Sampling::automatic;
         Paging paging = Paging::automatic;
-        /// Leave room for ambient occlusion, which takes about as much again as the bricks.
+        /// Reserve room for ambient occlusion, which takes about as much memory as the bricks.
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
-            0;  ///< a quarter is for paged bricks, a quarter for coarser levels of sources that have none
+            0;  ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
     };
-    /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails as sources, budgets
-    /// and `options` make it.
+    /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails if the source
+    /// cannot be read, the budget is too small or the device cannot do what `options` ask for.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
-    /// Such a scene would be resident, and finds room beside all that is on the device now. Fails where the device
+    /// Whether such a scene would be resident and fits beside everything on the device now. Fails where the device
     /// cannot do what `options` ask for.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
@@ -52,66 +52,64 @@ public:
     SurfaceScene& surfaces() { return surfaces_; }
     LookTables& tables() { return tables_; }
 
-    // ---- What has changed
+    // ---- Changes
 
-    /// All of the document's paint and offsets.
+    /// Shows all paint and offsets of the document.
     void show(const Document& document);
-    /// What these changes are about, of which the document holds the result: paint, offsets and, once show_surfaces()
-    /// has been called, the trace. Returns whether paint or offsets are among them. Frames submitted later see it.
-    /// Fails where voxels cannot be read.
+    /// Shows these changes, which the document already contains: paint, offsets and, once show_surfaces() has been
+    /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails where
+    /// voxels cannot be read.
     bool show(const Document& document, std::span<const Change> changes);
-    /// Paint in these bricks. `within`: the voxels lie in this box.
+    /// The mask has changed in these bricks. `within`: a box that holds all changed voxels.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
-    /// Voxels in these boxes have other offsets than before. Offsets raise intensities no higher than the volume's
-    /// window.
+    /// Offsets have changed in these boxes. Offsets never raise intensities above the volume's window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
-    /// Opaque balls and rods that rays stop at: these, and those of the trace in the colours of `groups`. Fails as
-    /// `surface_tree` and gpu::Memory::create do; then the ones before stay.
+    /// Sets the opaque balls and rods that end rays: these, and those of the trace in the colours of `groups`. Fails as
+    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
-    /// The trace after these changes. What it costs follows the changes, but for those of thousands of nodes, and of a
-    /// group's size.
+    /// Shows the trace after these changes. The cost is proportional to the changes, except for thousands of nodes at
+    /// once or a change of a group's radius.
     void show_trace(const TraceGraph& trace, std::span<const Change> changes);
-    /// These and no trace.
+    /// Sets these surfaces, without a trace.
     void set_surfaces(const std::vector<SurfaceLook>& surfaces) { set_keyed_surfaces(keyed(surfaces)); }
     void set_keyed_surfaces(std::vector<KeyedSurface> surfaces);
-    /// Those of `keys` go and `surfaces` come, at a cost that follows the change. False: nothing happened,
-    /// `set_keyed_surfaces` is as cheap.
+    /// Removes the surfaces with `keys` and adds `surfaces`, at a cost proportional to the change. Returns false, and
+    /// does nothing, where `set_keyed_surfaces` is as cheap.
     bool replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces);
 
-    /// Takes bricks that have been loaded. `wait`: for all that are wanted.
+    /// Takes loaded bricks. `wait`: waits for all requested bricks.
     void advance(bool wait = false);
 
     enum class Cause : uint8_t {
-        edit,    ///< a person's command
-        bricks,  ///< they have come to the device, finer than before
+        edit,    ///< a user's command
+        bricks,  ///< finer bricks have arrived on the device
         light    ///< ambient occlusion has been renewed
     };
     struct Changed {
         VoxelBox voxels;
         Cause cause = Cause::edit;
     };
-    /// Voxels that may look different since the last call, whatever the reason.
+    /// Voxels that may look different since the last call, with the reason.
     std::vector<Changed> take_changed();
     bool has_changed() const { return !changed_.empty(); }
 
-    // ---- How it looks
+    // ---- Look
 
-    /// What of a volume may be seen; it does not depend on the length of a step.
+    /// Which densities are visible; the step length does not matter.
     Visibility visibility_of(const Look& look);
-    /// Below this, in codes a voxel, gradients fade out.
+    /// Gradients below this, in codes per voxel, fade out.
     double gradient_fade_codes(const Light& light) const;
-    /// Whether the look wants ambient occlusion and has room for it. Where memory is short, a message says so once, and
-    /// pictures go without until it is switched off.
+    /// Whether the look wants ambient occlusion and memory has room for it. If memory is short, warns once and draws
+    /// without it until it is switched off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
-    /// The look wants ambient occlusion: bricks that it needs are wanted, too.
+    /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);
     /// The next slice of ambient occlusion in a graph that must be submitted.
     void add_occlusion(FrameGraph& graph, const Camera& camera, const Occlusion::Most& most);
 
-    /// What pictures go without (bricks that cannot be read, features without room), one sentence each, since the last
-    /// call.
+    /// What pictures lack (bricks that cannot be read, features without room) since the last call, one sentence each.
     std::vector<std::string> take_messages();
 
 private:
@@ -120,13 +118,13 @@ private:
 
     gpu::Memory& memory_;
     VolumeStatistics statistics_;
-    std::shared_ptr<OffsetSource> offsets_;  ///< what volume_ is made of
+    std::shared_ptr<OffsetSource> offsets_;  ///< the source that volume_ reads from
     std::unique_ptr<DeviceVolume> volume_;
     DeviceMask mask_;
     Occlusion occlusion_;
     bool occlusion_has_no_room_ = false;
     SurfaceScene surfaces_;
-    /// What is shown beside the trace, and the trace's colours; null: no trace is shown.
+    /// What is shown beside the trace, and the trace's colours; null while no trace is shown.
     struct TraceLook {
         std::vector<SurfaceLook> surfaces;
         Groups groups;

@@ -8,9 +8,9 @@ namespace shvr {
 
 namespace {
 
-/// Points of rays and boxes are off by a few ulps of the largest number that goes into them; this is 16.
+/// Points of rays and boxes are off by a few ulps of the largest number involved; this allows 16.
 constexpr double ROUNDING = 0x1p-20;
-/// Instead of infinity, of which a share is not a number.
+/// In place of infinity, since zero times infinity is not a number.
 constexpr double FAR = 1e20;
 
 template <class Value>
@@ -26,7 +26,7 @@ Resource send(FrameGraph& graph, const std::string& name, const std::vector<Valu
 {
     std::ranges::sort(places);
     places.erase(std::unique(places.begin(), places.end()), places.end());
-    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // was there for a while
+    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since
     if (places.empty()) return target;
     std::vector<Value> written;
     std::vector<BufferRegion> regions;
@@ -80,7 +80,7 @@ std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)
                        send(graph, "surface list", forest_.list(), std::move(written.list), list)};
 }
 
-/// Of the coordinates, in reference lengths.
+/// The largest of the coordinates, in reference lengths.
 double SurfaceScene::largest() const
 {
     double most = 0.0;

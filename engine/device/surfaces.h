@@ -1,6 +1,6 @@
 #pragma once
-// The opaque surfaces of a scene on the device, and what a camera adds to draw them. Nothing exists there while there
-// are none. One thread, the one that owns the memory.
+// The opaque surfaces of a scene on the device, and the parameters to draw them with a camera. Nothing is allocated
+// there while there are none. One thread, the one that owns the memory.
 
 #include <optional>
 
@@ -15,16 +15,16 @@ class SurfaceScene {
 public:
     explicit SurfaceScene(gpu::Memory& memory) : memory_(memory) {}
 
-    /// Replaces all of them. Fails where the budget does not hold them; then the ones before stay. Waits for the device
-    /// where there were some.
+    /// Replaces all of them. Fails where the budget cannot hold them; then the earlier ones stay. Waits for the device
+    /// unless there were none.
     void set(SurfaceForest forest);
-    /// Replaces a few: as SurfaceForest::replace.
+    /// Replaces a few, as SurfaceForest::replace does.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
     bool empty() const { return forest_.nodes().empty(); }
 
-    /// Handles for a graph that must be submitted, and that sends what has changed; nothing where there are none.
+    /// Handles for a graph that must be submitted; uploads what has changed. Null where there are none.
     std::optional<SurfaceList> upload(FrameGraph& graph);
-    /// What `camera` sees of `volume`, but for the probe.
+    /// The parameters for `camera` and `volume`, except the probe's.
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 
 private:
@@ -32,7 +32,7 @@ private:
     gpu::Memory& memory_;
     SurfaceForest forest_;
     gpu::Storage nodes_, list_;
-    bool is_sent_ = false;  ///< but for what `replace` wrote
+    bool is_sent_ = false;  ///< except what `replace` wrote
 };
 
 }  // namespace shvr

@@ -8,14 +8,14 @@ namespace shvr {
 
 namespace {
 
-/// Finds the look of a group once.
+/// Looks up each group only once.
 class TraceLook {
 public:
     TraceLook(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing)
         : trace_(trace), groups_(groups), least_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
     {}
 
-    /// Nothing where the group is hidden.
+    /// Null if the group is hidden.
     std::optional<KeyedSurface> of(uint32_t number, const TraceNode& node)
     {
         const Look& look = look_of(node.group);
@@ -115,7 +115,7 @@ public:
         lower_ = glm::min(lower_, position - radius);
         upper_ = glm::max(upper_, position + radius);
     }
-    /// A voxel more on each side: what has no radius is drawn with some.
+    /// One voxel larger on each side, for nodes without a radius.
     VoxelBox box(const glm::dvec3& spacing) const
     {
         if (lower_.x > upper_.x) return {};
@@ -135,7 +135,7 @@ VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, c
     for (const auto& [group, radius] : trace.internode_radii()) thickest = std::max(thickest, radius);
     const auto add_node = [&](uint32_t number) {
         const auto found = trace.nodes().find(number);
-        if (found == trace.nodes().end()) return;  // its own change tells where it was
+        if (found == trace.nodes().end()) return;  // its own change gives its old position
         reach.add(found->second);
         reach.add(found->second.position, thickest);
     };

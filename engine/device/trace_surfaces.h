@@ -1,5 +1,5 @@
 #pragma once
-// What a trace looks like: balls for nodes, rods for internodes, in the colours of their groups; and what of it a
+// What a trace looks like: balls for nodes, rods for internodes, in the colours of their groups; and which of these a
 // command changes. Pure.
 
 #include <optional>
@@ -13,21 +13,22 @@
 
 namespace shvr {
 
-/// Hidden groups are left out. `spacing`: of the volume; what has no radius is drawn with half a voxel's, along the
-/// finest axis.
+/// Hidden groups are left out. `spacing`: of the volume. Nodes without a radius are drawn with half a voxel's, along
+/// the finest axis.
 std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
-/// The surfaces that changes are about, and those of them that there are now.
+/// The keys of the surfaces that changes affect, and those of these surfaces that exist now.
 struct ChangedSurfaces {
     std::vector<uint64_t> keys;
     std::vector<KeyedSurface> now;
 };
-/// Of changes of which the trace holds the result. Null where they may be about all of it: a group's radius has
+/// For changes that the trace already contains. Null where they may affect all of it, because a group's radius has
 /// changed.
 std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const Groups& groups,
                                                 const glm::dvec3& spacing, std::span<const Change> changes);
 
-/// What may look different after these changes, of which the trace holds the result; empty where none is of a trace.
+/// The box that may look different after these changes, which the trace already contains; empty where none is of a
+/// trace.
 VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing);
 
 }  // namespace shvr

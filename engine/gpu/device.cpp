@@ -45,7 +45,7 @@ bool instance_extension_is_present(const char* name, const char* layer)
     });
 }
 
-/// Real devices before software, discrete before integrated.
+/// Hardware devices before software, discrete before integrated.
 int rank(VkPhysicalDeviceType type)
 {
     switch (type) {
@@ -61,7 +61,7 @@ std::optional<uint32_t> compute_family(VkPhysicalDevice physical)
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical, count, items);
     });
-    // A family with graphics as well can present, which the window will need; one queue serves everything.
+    // A family with graphics can also present, which the window needs; one queue serves everything.
     const VkQueueFlags wanted[] = {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT, VK_QUEUE_COMPUTE_BIT};
     for (VkQueueFlags flags : wanted)
         for (uint32_t i = 0; i < families.size(); ++i)
@@ -135,7 +135,7 @@ void Device::create_instance(const DeviceOptions& options)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        // Performance advice is left out: it objects to the one layout (GENERAL) that spares every transition.
+        // Without performance advice: it objects to the single layout (GENERAL) that avoids all transitions.
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = this};
@@ -228,7 +228,7 @@ void Device::create_device(bool presents)
                                            .pNext = &has13};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
-    // Scalar layout is optional in 1.3, and every desktop driver and lavapipe have it; the shared headers stand on it.
+    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
     if (!has12.scalarBlockLayout) fail("device ", traits_.name, " lacks scalarBlockLayout; expected a desktop driver");
     if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
         fail("device ", traits_.name, " cannot load R16_UNORM storage images; expected a desktop driver");

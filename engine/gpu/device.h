@@ -1,6 +1,6 @@
 #pragma once
-// The Vulkan device: instance, physical device, one queue, what it can do, names for its objects, and the validation
-// layer's messages. Vulkan 1.3 is required, nothing optional is: what is optional is probed here and told in `traits`.
+// The Vulkan device: instance, physical device, one queue, capabilities, names for its objects, and the validation
+// layer's messages. Only Vulkan 1.3 is required; optional features are probed here and reported in `traits`.
 //
 // One thread at a time may use a device. Validation messages may arrive on any thread and are collected under a lock.
 
@@ -15,17 +15,17 @@
 
 namespace shvr::gpu {
 
-/// Throws `Error` naming the call and the result where `result` is a failure.
+/// Throws `Error`, naming the call and the result, if `result` is a failure.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
     std::string device;       ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
     bool validation = false;  ///< Khronos layer with synchronisation validation; fails where it is not installed
-    std::vector<std::string> instance_extensions;  ///< those of a window's surface; with any, the device can present
+    std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
 };
 
-/// What the rest of the program may ask of the device.
+/// Device properties for the rest of the program.
 struct DeviceTraits {
     std::string name;
     std::string driver;              ///< name and version
@@ -39,7 +39,7 @@ struct DeviceTraits {
     uint64_t max_allocation_bytes = 0;
 };
 
-/// What the pairs of Vulkan calls list that are asked for the count first and for the items then.
+/// For Vulkan calls that are made twice, first for the count and then for the items: returns the items.
 template <class T, class Call>
 std::vector<T> enumerate(Call call)
 {

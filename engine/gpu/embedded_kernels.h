@@ -1,6 +1,6 @@
 #pragma once
-// The kernels that were compiled into the program, one for each shaders/NAME.comp. The build writes the table (see
-// tools/embed_kernels.cmake), so a new kernel needs no registration. Any thread may read it.
+// The kernels compiled into the program, one for each shaders/NAME.comp. The build generates the table
+// (tools/embed_kernels.cmake), so a new kernel needs no registration. Any thread may read it.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ struct EmbeddedKernel {
     size_t word_count;
 };
 
-/// In order of their names.
+/// Sorted by name.
 std::span<const EmbeddedKernel> embedded_kernels();
 
 }  // namespace shvr::gpu

@@ -61,14 +61,14 @@ glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
 
 }  // namespace
 
-/// One graph on its way: everything that lives until the device is done with it.
+/// One graph in flight: everything that lives until the device has finished it.
 struct Submission::Frame {
     Executor& executor;
     const FrameGraph graph;
     const Executor::Options options;
     const CompiledGraph compiled;
     std::vector<Storage*> storages;  // per resource, transients only
-    std::vector<Storage*> taken;     // transients to give back
+    std::vector<Storage*> taken;     // transients to release
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
@@ -249,7 +249,7 @@ void Submission::Frame::end_chunk() const
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
-/// Images are made in an undefined layout and live in GENERAL from their first frame on.
+/// Images are created in an undefined layout and stay in GENERAL from their first frame on.
 void Submission::Frame::transition_new_images() const
 {
     std::vector<VkImageMemoryBarrier2> barriers;
@@ -402,7 +402,7 @@ void Submission::Frame::submit()
         }
     }
     fence = created;
-    // Barriers are global, so they settle imports that no living pass touches, too.
+    // Barriers are global, so they also affect imports that no kept pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
 }
@@ -504,14 +504,14 @@ void Executor::trim(uint64_t runs)
 {
     std::erase_if(transients_, [&](const auto& t) {
         if (t->taken || t->last_run + runs > runs_) return false;
-        t->storage.reset_idle();  // the frame that used it last is done
+        t->storage.reset_idle();  // the frame that last used it is done
         return true;
     });
 }
 
 Submission Executor::submit(FrameGraph graph, const Options& options)
 {
-    constexpr uint64_t RUNS_KEPT = 64;  // sizes change with brushes and windows: what is not asked for again goes
+    constexpr uint64_t RUNS_KEPT = 64;  // sizes change with brushes and windows: unused ones are freed
     ++runs_;
     trim(RUNS_KEPT);
     auto frame = std::make_unique<Submission::Frame>(*this, std::move(graph), options);

@@ -1,13 +1,13 @@
 #pragma once
-// Runs frame graphs: finds kernels and objects by name, records barriers, dispatches and copies, and brings back
+// Runs frame graphs: looks up kernels and objects by name, records barriers, dispatches and copies, and returns
 // read-backs, times and work counters.
 //
 //     gpu::Submission frame = executor.submit(std::move(graph));      // returns at once
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
-// Frames reach the device in the order they were submitted, and each knows what those before it left in flight. Long
-// passes are split by their tile into several submissions to the queue, so that none of them takes long. Who needs
-// other work to get in between makes several small frames and keeps few of them in flight. One thread at a time.
+// Frames run on the device in submission order, and each knows what earlier frames left in flight. Long passes are
+// split by their tile into several queue submissions, so that none takes long. Callers that must let other work run in
+// between make several small frames and keep few of them in flight. One thread at a time.
 
 #include <memory>
 #include <string>
@@ -28,7 +28,7 @@ struct PassReport {
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     uint32_t dispatches = 0;
-    uint64_t bytes = 0;              ///< sizes of the resources it binds: what it could touch
+    uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
 };
@@ -41,7 +41,7 @@ struct FrameResult {
 
 class Executor;
 
-/// A frame on its way. Move-only; destroying it waits for the device. Must not outlive the executor.
+/// A frame in flight. Move-only; destroying it waits for the device. Must not outlive the executor.
 class Submission {
 public:
     Submission();
@@ -50,10 +50,10 @@ public:
     Submission& operator=(Submission&&) noexcept;
 
     explicit operator bool() const { return frame_ != nullptr; }
-    /// Whether the device is done with it; never waits.
+    /// Whether the device has finished it; never waits.
     bool done() const;
     void wait() const;
-    /// Waits where it must. Afterwards this is empty.
+    /// Waits if necessary. Afterwards this object is empty.
     FrameResult finish();
     const FrameGraph& graph() const;
 
@@ -76,14 +76,14 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits. Afterwards imported objects carry the states the frame will leave them in.
+    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave.
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
-    /// The same, and waits.
+    /// Submits and waits.
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    /// Gives back the memory of transient resources that the last `runs` runs did not use.
+    /// Frees the memory of transient resources that the last `runs` runs did not use.
     void trim(uint64_t runs = 0);
 
 private:

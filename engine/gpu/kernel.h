@@ -1,6 +1,7 @@
 #pragma once
-// Kernels: SPIR-V reflected once, pipelines made per set of specialization constants. Bindings go by the names in the
-// GLSL source; a missing, unknown or wrongly used name is refused with the list of what the kernel declares.
+// Kernels: SPIR-V reflected once, and one pipeline per set of specialization constants. Bindings are matched by the
+// names in the GLSL source; a missing, unknown or wrongly used name is refused with a list of the kernel's
+// declarations.
 
 #include <array>
 #include <map>
@@ -68,11 +69,11 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// All kernels of the program, made when first asked for.
+/// All kernels of the program, created on first use.
 class Kernels {
 public:
     explicit Kernels(Device& device) : device_(device) {}
-    /// Fails naming the known kernels, or the known constants.
+    /// On failure, names the known kernels or the known constants.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
 

@@ -13,7 +13,7 @@ std::string mebibytes(uint64_t bytes)
     return sentence(double((bytes + 1023) / 1024) / 1024.0, " MiB");
 }
 
-/// Memory types in order of preference; the last one is what every implementation has.
+/// Memory types in order of preference; every implementation has the last one.
 std::optional<uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                     std::initializer_list<VkMemoryPropertyFlags> wishes)
 {

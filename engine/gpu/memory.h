@@ -1,6 +1,6 @@
 #pragma once
-// Device memory with an account book: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard. Nothing is allocated before the budget has been asked.
+// Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
+// (device, host) are hard limits. Every allocation is checked against its budget first.
 //
 // One thread at a time.
 
@@ -27,7 +27,7 @@ struct Budget {
 
 class Memory;
 
-/// A buffer or an image with memory of its own. Move-only; destroyed with its owner, after waiting for the device.
+/// A buffer or an image with its own memory. Move-only; its destructor waits for the device.
 class Storage {
 public:
     Storage() = default;
@@ -37,12 +37,12 @@ public:
 
     explicit operator bool() const { return memory_ != nullptr; }
     const ResourceDesc& desc() const;
-    /// What a frame graph needs to know of it; the state is the one the last submitted frame left.
+    /// What a frame graph needs to import it; the state is the one that the last submitted frame left.
     Import import() const;
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// As reset(), for callers that know the device is done with it.
+    /// As reset(), for callers that know the device is idle.
     void reset_idle();
 
 private:
@@ -59,7 +59,7 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// Fails, naming the resource, what it needs and what is left, where the budget or the device does not hold it.
+    /// Fails, naming the resource, its size and what is left, if the budget or the device cannot hold it.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device);
 
     /// Vulkan's side of a storage, for the executor.
@@ -71,7 +71,7 @@ public:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        uint64_t bytes = 0;  ///< as the device counts them
+        uint64_t bytes = 0;  ///< as counted by the device
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
         ResourceState state;  ///< what the last submitted frame left in flight

@@ -1,4 +1,4 @@
-// SPIR-V reflection through SPIRV-Cross's C interface: what a kernel declares, under the names of its GLSL source.
+// SPIR-V reflection through SPIRV-Cross's C interface: a kernel's declarations, under their names in the GLSL source.
 
 #include <algorithm>
 
@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// The members of a block; of its struct, where the block holds one struct or one array of structs.
+    /// The members of a block; or of its struct, if the block holds one struct or one array of structs.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);

@@ -18,7 +18,7 @@ Stages stages_of(const PassData& pass)
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
-/// Why a handle may not be used, worded for the pass that uses it; nothing where it is the current one.
+/// Why a pass may not use this handle, worded for that pass; null if the handle is current.
 std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
 {
     if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
@@ -142,7 +142,7 @@ Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
-    // Nothing is in flight: what the host wrote before the submission is visible to all of it (Vulkan 1.3, 7.9).
+    // Nothing is in flight: the whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
     resources_[resource.index].state = {};
     return resource;
 }
@@ -232,13 +232,13 @@ void FrameGraph::keep(Resource resource)
 
 namespace {
 
-/// A pass lives when it has an effect outside the frame, or when a living pass needs what it wrote. A write keeps the
-/// earlier writers of the same resource: passes may write only a part of it.
+/// A pass is kept if it has an effect outside the frame, or if a kept pass needs its output. A write also keeps the
+/// earlier writers of the same resource, because passes may write only a part of it.
 std::vector<bool> living_passes(const FrameGraph& graph)
 {
     const auto& passes = graph.passes();
     const auto& resources = graph.resources();
-    std::vector<bool> needed(resources.size());  // does a living pass, later in order, touch it?
+    std::vector<bool> needed(resources.size());  // does a kept pass, later in order, use it?
     std::vector<bool> alive(passes.size());
     for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].kept;
     for (size_t i = passes.size(); i-- > 0;) {
@@ -274,7 +274,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
     return barrier;
 }
 
-/// A barrier is global, so it settles every resource whose stages it covers, not only those that asked for it.
+/// A barrier is global, so it covers every resource in its stages, not only those that required it.
 void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 {
     for (ResourceState& state : states) {
@@ -292,7 +292,7 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
             state = {.written_by = stages};
             continue;
         }
-        // Waiting for a read that came after all others waits for those as well.
+        // Waiting for a read that follows all others waits for those as well.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;

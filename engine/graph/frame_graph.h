@@ -1,17 +1,17 @@
 #pragma once
-// The frame graph: what one frame computes, as plain data. It knows nothing of Vulkan and is tested without a device.
+// The frame graph: the work of one frame, as plain data. It does not depend on Vulkan and is tested without a device.
 //
 // A frame is declared anew each time, in order, by ordinary code: a pass is a function from handles to handles, a
-// condition is an `if`. Writing a resource gives a new version of its handle and ends the old one, so a wrong order
-// cannot be said: a stale handle is refused with the resource, both versions and the line of the pass that ended it.
-// `compile()` drops passes nobody needs and derives the barriers; the result is a list of steps that an executor
-// records and that tests and `shvr profile --graph` print. Because a handle exists only after the pass that made it,
-// the order of declaration is already a valid order, and steps keep it.
+// condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so that a
+// wrong order cannot be expressed: a stale handle is refused with the resource, both versions and the line of the pass
+// that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a list of steps, which
+// an executor records and which tests and `shvr profile --graph` print. A handle exists only after the pass that made
+// it, so the order of declaration is a valid order, and steps keep it.
 //
 // Images stay in one layout (GENERAL), so hazards are global stage-to-stage memory barriers, at most one a step.
 //
-// One thread builds and compiles a graph. Mistakes in a graph are ours, yet they are thrown as `Error`, so that tests
-// can show each of them.
+// One thread builds and compiles a graph. Errors in a graph are programming errors, but they are thrown as `Error` so
+// that tests can check each of them.
 
 #include <array>
 #include <cstdint>
@@ -44,7 +44,7 @@ struct ResourceDesc {
 ResourceDesc buffer_desc(uint64_t bytes);
 ResourceDesc image_desc(Format format, const glm::uvec3& texels);
 
-/// Which version of which resource. Cheap to copy; valid only in the graph that made it.
+/// A version of a resource. Cheap to copy; valid only in the graph that made it.
 struct Resource {
     uint32_t index = ~0u;
     uint32_t version = 0;
@@ -58,15 +58,15 @@ inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
 std::string names_of(Stages stages);
 
-/// What is still in flight on a resource. Carried from frame to frame for imported ones.
+/// What is in flight on a resource. Carried from frame to frame for imported resources.
 struct ResourceState {
     Stages written_by = 0;   ///< stages of the last write
-    Stages visible_to = 0;   ///< stages which that write has been made visible to
+    Stages visible_to = 0;   ///< stages that can see the last write
     Stages read_by = 0;      ///< stages that have read since the last write
-    Stages after_reads = 0;  ///< stages that are ordered after all those reads
+    Stages after_reads = 0;  ///< stages ordered after all those reads
     bool operator==(const ResourceState&) const = default;
 };
-/// Nothing is known of what came before; the first use waits for everything.
+/// Earlier use is unknown; the first use waits for everything.
 inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0, STAGE_COMPUTE | STAGE_TRANSFER, 0};
 
 /// An object that outlives the frame; `id` is the executor's name for it.
@@ -111,7 +111,7 @@ struct PassData {
     std::vector<std::byte> push;                                         ///< push constants
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
-    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; bounds the time of one dispatch
+    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
     uint32_t fill_value = 0;
     uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
@@ -121,12 +121,12 @@ struct PassData {
 
 class FrameGraph;
 
-/// Adds to one pass while it is being declared.
+/// Adds bindings and settings to one pass while it is being declared.
 class Pass {
 public:
     void read(const std::string& name, Resource resource);
     [[nodiscard]] Resource write(const std::string& name, Resource resource);
-    /// Reads and writes in place.
+    /// The pass reads and writes the resource in place.
     [[nodiscard]] Resource modify(const std::string& name, Resource resource);
     void constant(const std::string& name, uint32_t value);
     /// Push constants: at most 128 bytes; the executor checks the size against the kernel's block.
@@ -136,15 +136,15 @@ public:
         static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 128);
         set_push(std::as_bytes(std::span(&value, 1)));
     }
-    /// A small read-only buffer that the executor makes for this pass alone.
+    /// A small read-only buffer that the executor creates for this pass alone.
     template <class T>
     void block(const std::string& name, std::span<const T> values)
     {
         static_assert(std::is_trivially_copyable_v<T>);
         add_block(name, std::as_bytes(values));
     }
-    /// Threads, not groups: the group size comes from the kernel. A tile splits the work into several dispatches, and
-    /// several submissions, none of which takes long. Tiles must be multiples of the group size.
+    /// In threads, not groups: the group size comes from the kernel. A tile splits the work into several dispatches,
+    /// and into several short submissions. Tiles must be multiples of the group size.
     void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
 
 private:
@@ -165,19 +165,19 @@ struct Step {
 struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
-    std::vector<bool> used;                   ///< per resource: does any living pass touch it?
+    std::vector<bool> used;                   ///< per resource: does a pass that is kept use it?
 };
 
 class FrameGraph {
 public:
     using Location = std::source_location;
 
-    /// An object that lives on after the frame. Writing it is a side effect: such a pass is never dropped.
+    /// A resource that outlives the frame. Writing it is a side effect: such a pass is never dropped.
     Resource import(const std::string& name, const Import& import);
-    /// An object of this frame alone. It must be written before it is read.
+    /// A resource of this frame alone. It must be written before it is read.
     Resource create(const std::string& name, const ResourceDesc& desc);
 
-    /// A buffer of this frame alone that holds `values` from the start; the executor brings them to the device.
+    /// A buffer of this frame alone, filled with `values`; the executor uploads them.
     template <class T>
     Resource upload(const std::string& name, std::span<const T> values)
     {
@@ -187,8 +187,8 @@ public:
 
     /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
-    /// The same of a kernel with variants (kernel_variants.h): `choices` says of each macro in its line "// variants:
-    /// ...", in any order, whether the kernel is compiled with it. Fails where one is unknown, missing or named twice.
+    /// The same for a kernel with variants (kernel_variants.h): `choices` gives a value for each macro in its line "//
+    /// variants: ...", in any order. Fails if one is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
     [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",
@@ -197,10 +197,10 @@ public:
                                          const std::string& name = "upload", Location at = Location::current());
     [[nodiscard]] Resource copy(Resource from, Resource to, std::vector<BufferRegion> regions,
                                 const std::string& name = "copy", Location at = Location::current());
-    /// The whole resource as bytes on the host once the frame is done; keeps its passes alive. The result is the
-    /// index for `FrameResult::read_backs`.
+    /// Returns the whole resource to the host as bytes once the frame is done; keeps the passes that made it. The
+    /// result is an index into `FrameResult::read_backs`.
     uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
-    /// Keeps the passes that made `resource`, though nobody in this graph reads it.
+    /// Keeps the passes that made `resource`, even if nothing in this graph reads it.
     void keep(Resource resource);
 
     CompiledGraph compile() const;

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Steps by index of their pass, and the steps that touch each resource.
+/// Steps by index of their pass, and for each resource the steps that use it.
 struct Schedule {
     struct Lifetime {
         size_t first_step = 0, last_step = 0;
@@ -74,7 +74,7 @@ std::string desc_text(const ResourceDesc& desc)
     return sentence(shvr::name_of(desc.format), " ", extent_text(desc.texels), ", ", bytes_text(desc.bytes));
 }
 
-/// A DOT string of several lines. Names may hold anything.
+/// A DOT string of several lines. Names may contain anything.
 std::string quoted(const std::vector<std::string>& lines)
 {
     std::string text = "\"";
@@ -195,7 +195,7 @@ std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled)
         for (const Binding& binding : pass.bindings) {
             const std::string label = " [label=" + quoted({binding.name}) + look;
             if (binding.reads) text += sentence("    resource", binding.resource, " -> pass", i, label, "];\n");
-            // A later write points back up, which must not turn the drawing upside down.
+            // The edge of a later write points back up, and must not turn the drawing upside down.
             const char* const ending = binding.reads || is_placed[binding.resource] ? ", constraint=false];\n" : "];\n";
             if (binding.writes) text += sentence("    pass", i, " -> resource", binding.resource, label, ending);
             is_placed[binding.resource] = true;

@@ -1,6 +1,6 @@
 #pragma once
-// A frame graph as text: for people (Graphviz) and for programs (JSON). Both show what was declared and what compile()
-// made of it: culled passes, barriers, lifetimes. Any thread may call these.
+// A frame graph as text: for people (Graphviz) and for programs (JSON). Both show the declared graph and the result of
+// compile(): culled passes, barriers, lifetimes. Any thread may call these.
 
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace shvr {
 
-/// A step's barrier as people read it: "compute -> transfer", with "(order only)" where no memory moves.
+/// A step's barrier as text: "compute -> transfer", with "(order only)" for an execution barrier without memory.
 std::string to_text(const Barrier& barrier);
 
-/// For `dot`: boxes are passes, in order of execution; ellipses are resources, double-lined where they outlive the
-/// frame; what was culled is dashed and grey. A box names the barrier in front of it.
+/// For `dot`: boxes are passes, in order of execution; ellipses are resources, double-lined if they outlive the frame;
+/// culled items are dashed and grey. A box shows the barrier before its pass.
 std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled);
 
 /// {"passes": [...], "resources": [...]}; README.md lists the keys.

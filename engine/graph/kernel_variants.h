@@ -1,6 +1,7 @@
 #pragma once
-// Which macros a kernel may be compiled with: those of its line "// variants: A B" in shaders/NAME.comp. The build
-// writes the table (tools/embed_kernels.cmake) and compiles every subset, so that no order is known twice. Any thread.
+// The macros that a kernel may be compiled with: those in the line "// variants: A B" of shaders/NAME.comp. The build
+// generates the table (tools/embed_kernels.cmake) and compiles every subset, so that the order is stated in one place
+// only. Any thread.
 
 #include <initializer_list>
 #include <span>
@@ -9,7 +10,7 @@
 
 namespace shvr {
 
-/// A macro of a kernel, and whether it is wanted.
+/// A macro of a kernel, and its value.
 struct VariantChoice {
     std::string_view macro;
     bool is_on = false;
@@ -19,13 +20,13 @@ struct KernelVariants {
     std::string_view kernel;                   ///< "raycast" for shaders/raycast.comp
     std::span<const std::string_view> macros;  ///< in the kernel's order; empty where it has no variants
 };
-/// Of all kernels that have any.
+/// Of all kernels with variants.
 std::span<const KernelVariants> kernel_variants();
 
 /// The name of the compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` names each
-/// macro of the kernel once, in any order; otherwise it fails and says which the kernel has.
+/// macro of the kernel once, in any order; otherwise it fails and lists the kernel's macros.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices);
-/// The same with a table of one's own.
+/// The same, with the caller's own table.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices,
                        std::span<const KernelVariants> known);
 

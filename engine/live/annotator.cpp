@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Voxels around a raised one that may look different: its samples, and theirs for gradients.
+/// How far, in voxels, an offset may change the picture: through samples, and through gradients.
 constexpr int64_t RAISED_REACH = 2;
 
 VoxelBox reach_of_raised(const VoxelBox& raised, const Size3& size)
@@ -179,7 +179,7 @@ std::optional<VoxelBox> Annotator::advance()
     try {
         return advance_stroke();
     } catch (const Error&) {
-        drop_stroke();  // what cannot be kept is not painted, nor is the rest
+        drop_stroke();  // what cannot be recorded is not painted, nor is the rest of the stroke
         throw;
     }
 }

@@ -1,11 +1,11 @@
 #pragma once
-// Carries out annotation commands: asks the device what a brush selects, records the result in the history and brings
-// the changed voxels back to the device. Scripts, keys, menus and the stylus all go through here.
+// Carries out annotation commands: asks the device which voxels a brush selects, records the result in the history and
+// uploads the changed voxels. Scripts, keys, menus and the stylus all go through here.
 //
 //   PaintOp -> positions along the stroke -> RegionQuery (device) -> VoxelSelection -> records -> Work -> device
 //
-// A script paints a whole stroke and waits. A hand begins a stroke, extends it and ends it; what it covers is painted
-// as the device answers, as one command however many answers that took. One thread, the renderer's.
+// A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
+// answers, as one command however many answers that takes. One thread, the renderer's.
 
 #include <optional>
 
@@ -16,10 +16,10 @@
 
 namespace shvr {
 
-/// `op` with a number where the offset is automatic.
+/// `op`, with a number in place of an automatic offset.
 PaintOp with_offset(PaintOp op, const TransferFunction& function);
 
-/// Where a session keeps its work.
+/// The files in which a session keeps its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
 
 class Annotator {
@@ -27,8 +27,8 @@ public:
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
 
-    /// For saving, file names and the trace's selection. What changes annotation goes through the functions below, so
-    /// that the device shows it.
+    /// For saving, file names and the trace's selection. Use the functions below to change annotations, so that the
+    /// device shows the change.
     Work& work() { return work_; }
     const Work& work() const { return work_; }
     const Document& document() const { return work_.document(); }
@@ -37,7 +37,7 @@ public:
     /// Counts the changes of groups and offsets.
     uint64_t revision() const { return revision_; }
 
-    /// As Work's; shows on the device what is there.
+    /// As Work::open; also updates the device.
     std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
 
     /// The voxels that `op` selects, whatever their group.
@@ -51,24 +51,24 @@ public:
     /// regions of a stroke see the volume as it was before it.
     int64_t paint(const PaintOp& op);
 
-    /// A stroke by hand: `brush.path` is not read. Nothing waits; `advance` paints. Later regions may see the offsets
+    /// Begins a stroke by hand; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see offsets
     /// that earlier ones have painted.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
     void end_stroke();
     /// A stroke is open, or part of it has not been painted yet.
     bool stroke_is_running() const { return stroke_.has_value(); }
-    /// It has begun and not ended.
+    /// The stroke has begun and not ended.
     bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
     /// Ends it at once: what is painted stays, the rest is dropped.
     void drop_stroke();
     /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the
-    /// stroke cannot go on (too large a brush, bricks or a journal that fail); then the rest of it is dropped.
+    /// stroke cannot go on (the brush is too large, or bricks or the journal fail); then the rest of it is dropped.
     std::optional<VoxelBox> advance();
-    /// How many voxels the last stroke that ended has changed, counted as `paint` does.
+    /// The number of voxels that the last finished stroke changed, counted as in `paint`.
     int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
 
-    /// Carries out changes made by trace_edit.h as one command, while no stroke is running. Returns the command, valid
+    /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
     /// until the history changes; null where `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
 
@@ -77,7 +77,7 @@ public:
     const Command* redo();
 
 private:
-    /// What answers add up to.
+    /// Accumulates the answers of a stroke.
     struct Answered {
         VoxelSelection selection;
         std::optional<DensityStroke> density;  ///< where the brush paints offsets
@@ -85,9 +85,9 @@ private:
     struct Stroke {
         PaintOp brush;
         RegionQuery query;
-        std::vector<glm::dvec3> positions{};  ///< those from `next` on have not been asked about
+        std::vector<glm::dvec3> positions{};  ///< regions for those from `next` on have not been queried yet
         size_t next = 0;
-        std::optional<glm::dvec3> last{};  ///< where the hand was
+        std::optional<glm::dvec3> last{};  ///< the last position of the hand
         bool has_ended = false;
         bool is_recorded = false;  ///< the last command of the history is this stroke's
         int64_t voxels = 0;

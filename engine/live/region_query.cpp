@@ -10,10 +10,10 @@ namespace shvr {
 
 namespace {
 
-/// Regions of one frame: until their labels take this much, and at most so many, since each has buffers of its own.
+/// Limits of one frame: total size of its regions' labels, and number of regions, since each has its own buffers.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MAX_REGIONS = 64;
-/// Bricks of a frame's regions together, unless one region needs more.
+/// Total bricks of a frame's regions, unless a single region needs more.
 constexpr uint32_t MAX_BRICKS = 48;
 
 gpu::RegionParams region_params(const RegionAt& asked, const PaintOp& op, uint32_t threshold_code)
@@ -65,7 +65,7 @@ FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> p
         BrushRegion region = make_region(op.region, position, op.radius_voxels, volume.spacing, volume.size);
         if (region.rows.empty() || region.words_per_row() == 0) continue;
         const VoxelBox both = frame.regions.empty() ? region.box : united(around, region.box);
-        // All regions of a frame read the same bricks, which must find room at once.
+        // All regions of a frame read the same bricks, which must fit at once.
         const glm::uvec3 bricks = bricks_around(both).counts;
         if (!frame.regions.empty() && both != around && bricks.x * bricks.y * bricks.z > MAX_BRICKS) break;
         around = both;

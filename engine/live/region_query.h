@@ -1,10 +1,9 @@
 #pragma once
-// Asks the device which voxels of some regions a brush selects. Whoever asks goes on and collects the answer later, or
-// waits for it.
+// Asks the device which voxels of some regions a brush selects. The caller collects the answer later, or waits for it.
 //
 //   positions -> frame_of_regions (CPU) -> RegionQuery::ask -> passes of the brush (device) -> RegionQuery::answer
 //
-// One question at a time for each object. One thread, the renderer's.
+// One query in flight per object. One thread, the renderer's.
 
 #include <optional>
 #include <span>
@@ -15,22 +14,22 @@
 
 namespace shvr {
 
-/// A region of the volume, and the position that it is around.
+/// A region of the volume, and the position that it surrounds.
 struct RegionAt {
     BrushRegion region;
     glm::dvec3 centre_voxel{0.0};
 };
 
-/// As many regions as one frame takes, in order.
+/// The regions that fit in one frame, in order.
 struct FrameOfRegions {
-    std::vector<RegionAt> regions;  ///< those that hold a voxel of the volume
-    size_t end = 0;                 ///< the first position without a region yet
+    std::vector<RegionAt> regions;  ///< those that contain a voxel of the volume
+    size_t end = 0;                 ///< index of the first position without a region yet
 };
 /// The regions of `op` around `positions`, from `first` on.
 FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> positions, size_t first,
                                 const VolumeInfo& volume);
 
-/// What the device answers for one region.
+/// The device's answer for one region.
 struct RegionAnswer {
     BrushRegion region;
     glm::dvec3 centre_voxel{0.0};
@@ -48,16 +47,16 @@ public:
     explicit RegionQuery(Renderer& renderer) : renderer_(renderer) {}
     RegionQuery(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
 
-    /// Which voxels of `regions` (at least one) does `op` select? Its brush, threshold and connectivity count. Drops an
-    /// earlier question. Where bricks of the regions are not on the device yet, reads them, or asks nothing and returns
-    /// false.
+    /// Queries which voxels of `regions` (at least one) `op` selects, by its brush, threshold and connectivity. Drops
+    /// an earlier query. If bricks of the regions are not on the device yet, either reads them, or submits nothing and
+    /// returns false.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
     bool is_asking() const { return bool(frame_); }
     /// Whether `answer` would not wait.
     bool is_answered() const { return frame_ && frame_.done(); }
-    /// One for each region, in order. Waits where it must; afterwards nothing is asked.
+    /// The answers, one per region, in order. Waits if necessary; afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
-    /// Of the last answer; 0 where the device has no timestamps.
+    /// Device time of the last answer; 0 where the device has no timestamps.
     double gpu_ms() const { return gpu_ms_; }
 
 private:

@@ -7,8 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// The cube around a voxel; a cube that would reach over the border is moved inside, so that it is as large as
-/// possible.
+/// The cube around a voxel, shifted inside the volume at its borders, so that it is as large as possible.
 BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 {
     for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,6 @@
 #pragma once
-// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device answers and
-// the answer is mirrored to the host without waiting: ask, go on, and take it some milliseconds later.
+// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device computes them
+// and the host collects the answer some milliseconds later, without waiting.
 //
 // One thread, the renderer's.
 
@@ -28,11 +28,11 @@ public:
         : renderer_(renderer), query_(renderer, {.name = "mirror relevance", .timestamps = true})
     {}
 
-    /// Asks for the cube around a point (voxels), cut at the volume's border. Drops an answer not yet taken. Asks
-    /// nothing while bricks of the cube are being loaded. Fails where the point is not a number.
+    /// Queries the cube around a point (voxels), clipped to the volume. Drops an answer not yet taken. Submits nothing
+    /// while bricks of the cube are being loaded. Fails where the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
-    /// Nothing until the device has answered.
+    /// The answer; null until the device has finished.
     std::optional<RelevanceBits> take();
 
 private:

@@ -56,8 +56,8 @@ void Screen::clear()
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // A slice shows no more of the probe than what its brush would change. A twentieth of a voxel is less than a pixel
-    // of any slice that shows all of the volume.
+    // Of the probe, slices show only what its brush would change. A twentieth of a voxel is less than a pixel of any
+    // slice that shows the whole volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
     const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();
@@ -67,7 +67,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Bricks that arrive are those that one pane needs: the others are drawn with theirs when their turn comes.
+/// Arriving bricks are those that one pane needs; the other panes are drawn with theirs when their turn comes.
 void Screen::take_changed()
 {
     renderer_.scene().advance();
@@ -96,7 +96,7 @@ bool Screen::is_loading() const
     return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
-/// The volume loads what one pane needs at a time. One that is interrupted is to be drawn again when its turn comes.
+/// The volume loads the bricks of one pane at a time. An interrupted pane is redrawn when its turn comes again.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;
@@ -119,7 +119,7 @@ void Screen::advance()
         return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
     });
     if (next == parts_.size()) return;
-    // One at a time, so that little is on its way, whichever view submitted it.
+    // One view at a time, so that little is in flight in total.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);
@@ -144,7 +144,7 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};
     Pane shown = part.pane;
-    shown.shot.camera = *part.view->shown_camera();  // so that they lie on what is seen, which may lag behind
+    shown.shot.camera = *part.view->shown_camera();  // so that strokes match the shown picture, which may lag
     const PixelBox& box = parts_[0].pane.box;
     return strokes_of(shown,
                       {.main = camera_,

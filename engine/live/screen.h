@@ -1,9 +1,9 @@
 #pragma once
-// What somebody looks at: the panes of a picture, each a View, that take turns at the device.
+// The interactive picture: its panes, each a View, which take turns on the device.
 //
-// Sketches come first, pane by pane, so that all of the screen follows the hand; then each pane is made sharp, the
-// first one first. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call
-// waits for the device but where it says so.
+// Sketches come first, pane by pane, so that the whole screen follows the user; then the panes are drawn sharp, in
+// order. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call waits for the
+// device unless its comment says so.
 
 #include <memory>
 
@@ -17,17 +17,17 @@ class Screen {
 public:
     Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
 
-    /// What is to be seen; all of it is drawn anew. Not to be called where nothing changed.
+    /// Sets what to show and redraws everything. Only call it where something changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
-    /// The same session from elsewhere: panes that stay as they are, are not drawn again.
+    /// Moves the camera or the probe in the same session; unchanged panes are not redrawn.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
-    /// Slices go where the probe goes.
+    /// Sets the probe; slices follow it.
     void show_probe(const ProbeLook& probe);
     void update_occlusion();
 
     void advance();
     void wait();
-    /// Gives up all panes, and with them the device's memory; look() makes new ones.
+    /// Frees all panes and their device memory; look() makes new ones.
     void clear();
     bool complete() const;
 
@@ -35,14 +35,14 @@ public:
         Pane pane;
         std::unique_ptr<View> view;
     };
-    /// The panes that are wanted; the first is the camera's.
+    /// The panes; the first is the camera's.
     const std::vector<Part>& parts() const { return parts_; }
-    /// The lines over what is shown of a pane, in its pixels.
+    /// The lines drawn over a pane, in its pixels.
     std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {}) const;
-    /// Something of the first pane can be seen.
+    /// Whether the first pane has something to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
-    /// What is shown, with the lines over maps and slices but without the probe's; waits for the device.
+    /// The picture as shown, with the lines over maps and slices but without the probe's; waits for the device.
     Image8 read_back();
 
     // Of all panes together
@@ -67,8 +67,8 @@ private:
     glm::uvec2 pixels_{0};
     glm::dvec3 probe_voxel_{0.0};
     std::vector<Part> parts_;
-    size_t turn_ = 0;                                           ///< of parts_: whose bricks are being loaded
-    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< of panes that are gone
+    size_t turn_ = 0;                                           ///< index of the pane whose bricks are being loaded
+    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< of removed panes
 };
 
 }  // namespace shvr

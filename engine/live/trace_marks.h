@@ -9,8 +9,8 @@
 
 namespace shvr {
 
-/// The nodes and internodes that stand out: what is selected, and the node that a person would take. Segments of more
-/// than MOST_MARKS internodes are marked in part.
+/// The highlighted nodes and internodes: the selection, and the node that a click would take. Segments of more than
+/// MOST_MARKS internodes are marked in part.
 struct TraceMarks {
     std::vector<OverlayScene::Ball> balls;
     std::vector<OverlayScene::Line> lines;

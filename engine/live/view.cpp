@@ -12,7 +12,7 @@ namespace shvr {
 namespace {
 
 constexpr double PREPARATION_MS = 5.0;
-/// Seen through a translucent background.
+/// Linear light behind a translucent background.
 constexpr glm::vec3 BEHIND(0.05f);
 
 double now_s()
@@ -52,7 +52,7 @@ void View::bricks_arrived(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels, false);
 }
 
-/// What covers the probe shows it when all of it is renewed (submit_occlusion).
+/// The patch over the probe is redrawn once all occlusion is renewed (submit_occlusion).
 void View::light_changed(const VoxelBox& voxels)
 {
     occlusion_was_renewed_ = true;
@@ -60,10 +60,10 @@ void View::light_changed(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels);
 }
 
-/// The pixels in which a camera, or either of two, may see them.
+/// The pixels in which the camera, or either of two, may show the voxels.
 PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
-    // A voxel's paint is looked up in its own cube, so nothing beyond it changes.
+    // A voxel's paint fills only its own cube, so nothing beyond it changes.
     const glm::dvec3& spacing = scene().info().spacing;
     const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
     const PixelBox one = pixels_of_box(sight.shot.camera, sight.pixels, lower, upper);
@@ -142,7 +142,7 @@ bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
-    if (base_.job || patch_.job) return false;  // on their way
+    if (base_.job || patch_.job) return false;  // in flight
     if (sight_ != shown_sight_) {
         pass_times_.clear();
         changed_during_base_.clear();
@@ -159,11 +159,11 @@ bool View::submit_next(bool sketches_alone)
     }
     if (sketches_alone) return false;
     if (submit_occlusion()) return true;
-    if (scene().has_changed()) return false;  // to be taken first, so that no tile is drawn twice
+    if (scene().has_changed()) return false;  // must be collected first, so that no tile is drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
-        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // all is still: make it sharp
+        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draw it sharp
         return submit_next(sketches_alone);
     }
     return running_.empty() && submit_refinement();
@@ -189,7 +189,7 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
-    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts, those without the probe, too
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts, even those without the probe
     Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", work_.import()));
     running.feedback = std::move(drawn.feedback);
     return drawn.target;
@@ -211,7 +211,7 @@ bool View::occlusion_is_due() const
            scene().occlusion().is_due();
 }
 
-/// A slice of what keeps ambient light off. Its bricks lie behind each other, so sharp tiles wait until all are done.
+/// Submits a slice of ambient occlusion. Bricks overlap on the screen, so sharp tiles wait until all slices are done.
 bool View::submit_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
@@ -255,7 +255,7 @@ bool View::submit_tiles()
     if (!nearest) return false;
     if (submit_preparation(*shown_sight_)) return true;
 
-    // As many neighbours in its row as a step affords.
+    // As many neighbours in its row as fit in one step.
     const auto is_due = [&](uint32_t x) { return may_draw(tiles_[x + counts.x * nearest->y]); };
     uint32_t begin = nearest->x, end = nearest->x + 1;
     const double tile_ms = cost_ms(uint64_t(TILE) * TILE);
@@ -298,7 +298,7 @@ void View::submit(FrameGraph graph, Running running)
     running_.push_back(std::move(running));
 }
 
-// ---- What is done ---------------------------------------------------------------------------------------------------
+// ---- Completed work -------------------------------------------------------------------------------------------------
 
 void View::note(const std::string& pass, double ms)
 {
@@ -309,8 +309,8 @@ void View::note(const std::string& pass, double ms)
     known->longest_ms = std::max(known->longest_ms, ms);
 }
 
-/// A picture costs twenty times more here than there, so the estimate rises at once and falls slowly: a graph that
-/// takes less time than it might is the smaller evil.
+/// A pixel may cost twenty times more in one place than in another, so the estimate rises at once and falls slowly: a
+/// graph that is too short does less harm than one that is too long.
 void View::learn(double ms, uint64_t pixels)
 {
     constexpr double FALL = 0.1;
@@ -329,7 +329,7 @@ void View::account(const gpu::FrameResult& result, uint64_t pixels)
         if (!host_tells_time()) note(pass.name, pass.gpu_ms);
     }
     const double ms = host_tells_time() ? host_ms : gpu_ms;
-    // What only the host can time is put down to the pass that takes nearly all of it.
+    // If only the host can measure time, all of it is assigned to the pass that takes most.
     if (host_tells_time() && !result.passes.empty()) note(pixels > 0 ? "raycast" : result.passes.back().name, ms);
     if (pixels == 0) return;
     learn(ms, pixels);

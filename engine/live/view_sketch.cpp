@@ -1,4 +1,4 @@
-// Sketches of a view (view.h): the whole picture, and the pixels that the probe may cover, as coarse as they must be.
+// Sketches of a view (view.h): the whole picture, and the pixels that the probe may cover, as coarse as time requires.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double MOST_SCALE = 8.0;
 
-/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; no more than `most`, and
-/// no coarser than is any use. Whole pictures take `ms`.
+/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; at most `most`, and no
+/// coarser than is useful. Whole pictures take `ms`.
 double share_for(double ms, double target_ms, double most)
 {
     return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MOST_SCALE, most), most);
@@ -33,7 +33,7 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
         if (const auto& eye = sight->shot.right_eye)
             part = united(part, pixels_of_ball(*eye, sight->pixels, probe->center, probe->reach(spacing)));
     }
-    // Where all is still it is made sharp, whatever it costs.
+    // Without motion it is drawn sharp, whatever it costs.
     const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     sketch_ms_ = 0.0;
@@ -54,7 +54,7 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
     sketch.job = std::move(content);
 }
 
-/// The next graph of a sketch; false where all of them are on their way.
+/// Submits the next graph of a sketch; false if all are in flight.
 bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
@@ -83,7 +83,7 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, running);
     sketch.next_row += rows;
-    if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, when all are there
+    if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, once all are drawn
         encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
         sketch.next_encoded = sketch.next_row;
     }
@@ -93,7 +93,7 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
 
 void View::submit_encoding(Sketch& sketch, Purpose purpose)
 {
-    constexpr double ENLARGING_MS = 2e-5;  ///< a pixel, on two cores of a server; a GPU does not notice
+    constexpr double ENLARGING_MS = 2e-5;  ///< per pixel, on two cores of a server; negligible on a GPU
     const uint32_t width = sketch.job->target.end.x - sketch.job->target.begin.x;
     const auto affordable = std::max(uint32_t(options_.step_ms / (ENLARGING_MS * width)), 8u);
     const uint32_t end = std::min(sketch.next_encoded + affordable, sketch.job->target.end.y);
@@ -105,7 +105,7 @@ void View::submit_encoding(Sketch& sketch, Purpose purpose)
     ++sketch.running;
 }
 
-/// Rows of the sketch's target, from the light that starts at the sketch's part.
+/// Encodes rows of the sketch's target from `light`, which starts at the sketch's part.
 void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end)
 {
     const Sketch::Content& job = *sketch.job;
@@ -131,7 +131,7 @@ void View::flip(Sketch& sketch)
 void View::finish_sketches()
 {
     if (!base_.is_drawn() || !patch_.is_drawn()) return;
-    // A picture and the probe in it are shown together.
+    // A picture and its probe are shown at the same time.
     if (patch_.job) flip(patch_);
     if (!base_.job) return;
     average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double FIT_FOV_DEGREES = 30.0;
 constexpr double FIT_MARGIN = 1.05;
-/// Sine of the smallest angle between `up` and the view at which "up" still means something.
+/// Sine of the smallest angle between `up` and the view at which `up` is still meaningful.
 constexpr double SMALLEST_UP_SINE = 1e-6;
 /// In finest spacings; see `ray_planes`.
 constexpr double NEAR_HAIR = 1e-3;
@@ -50,7 +50,7 @@ struct Axes {
     glm::dvec3 right, up, forward;
 };
 
-/// Nothing where the camera has no direction.
+/// Null if the camera has no direction.
 std::optional<Axes> frame_of(const Camera& camera)
 {
     const glm::dvec3 view = camera.target - camera.eye;
@@ -156,8 +156,8 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     const Sphere sphere = bounding_sphere(volume);
     const bool is_perspective = camera.projection == Camera::Projection::perspective;
 
-    // The view axis passes through eye and target; points on it are reckoned from whichever is closer to the volume.
-    // A far eye would round every point of the planes to its own coarse grid.
+    // The view axis passes through eye and target; points on it are computed from whichever is closer to the volume,
+    // because the coordinates of a far eye have coarser rounding.
     const bool anchor_is_eye = glm::distance(camera.eye, sphere.centre) <= glm::distance(camera.target, sphere.centre);
     const glm::dvec3 anchor = anchor_is_eye ? camera.eye : camera.target;
     const double anchor_depth = anchor_is_eye ? 0.0 : glm::distance(camera.eye, camera.target);

@@ -1,6 +1,6 @@
 #pragma once
-// Cameras, and the rays they make. All of it is double precision on the CPU; the device gets two parallel planes of
-// points close to the volume and joins them, so that a camera a million voxels away loses nothing.
+// Cameras and their rays. All of it is in double precision on the CPU; the device gets two parallel planes of points
+// close to the volume and joins them, so that a camera a million voxels away loses no accuracy.
 
 #include <numbers>
 #include <string>
@@ -61,10 +61,10 @@ struct RayPlanes {
     glm::dvec3 far_corner, far_dx, far_dy;
     bool empty =
         false;  ///< near plane behind far plane, or volume out of the clip range: nothing of the volume is seen
-    // Shares of the way from the near plane to the far one, for what may lie beyond the volume.
-    double begin = 0.0;   ///< where the camera's clip range begins; at most 0 unless `empty`
-    double middle = 0.5;  ///< where its target is, or the plane of the two that is closer to it
-    double end = 1.0;     ///< where the clip range ends; infinite without a far clip plane
+    // Positions between the near plane (0) and the far plane (1), which may lie outside the volume.
+    double begin = 0.0;   ///< the start of the camera's clip range; at most 0 unless `empty`
+    double middle = 0.5;  ///< the camera's target, or the closer of the two planes if it lies outside them
+    double end = 1.0;     ///< the end of the clip range; infinite without a far clip plane
 };
 
 /// The planes stand perpendicular to the view direction, touching the volume's bounding sphere (or at the clip

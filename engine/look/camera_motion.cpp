@@ -17,7 +17,7 @@ bool is_perspective(const Camera& camera)
     return camera.projection == Camera::Projection::perspective;
 }
 
-/// Where the line from eye to target is seen.
+/// The pixel at which the line from eye to target is seen.
 glm::dvec2 axis_pixel(const Camera& camera, const glm::uvec2& pixels)
 {
     return 0.5 * glm::dvec2(pixels) - glm::dvec2(camera.shift_right * pixels.y, 0.0);

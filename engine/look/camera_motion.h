@@ -1,6 +1,6 @@
 #pragma once
-// How a person moves a camera, and the way between points and pixels. Pure; any thread. Lengths are physical units of
-// the volume, angles are degrees. Pixels have x to the right and y down, and their centres at + 0.5.
+// Camera motion, and conversion between points and pixels. Pure; any thread. Lengths are physical units of the volume,
+// angles are degrees. Pixels have x to the right and y down, and their centres at + 0.5.
 
 #include <optional>
 
@@ -15,23 +15,23 @@ struct CameraAxes {
 /// Fails as check_camera does.
 CameraAxes axes_of(const Camera& camera);
 
-/// Turns the eye about `pivot`, right and up as seen from the camera; the target turns along.
+/// Turns the eye about `pivot`, right and up as seen from the camera; the target turns with it.
 Camera orbited(const Camera& camera, const glm::dvec3& pivot, double right_degrees, double up_degrees);
-/// Turns the view about its own axis, clockwise for the viewer.
+/// Rolls the view about its own axis, clockwise for the viewer.
 Camera rolled(const Camera& camera, double degrees);
 /// Moves eye and target along the camera's right, up and forward.
 Camera moved(const Camera& camera, const glm::dvec3& right_up_forward);
-/// Scales the view by `factor` (above 1: closer) about the point seen at `pixel`, at the depth of the target.
+/// Scales the view by `factor` (above 1: closer) about the point at `pixel`, at the depth of the target.
 Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double factor);
 
-/// Where a point is seen: pixel coordinates, and its distance from the eye along the view. Nothing where a perspective
-/// camera has it beside or behind its eye.
+/// Where a point is seen: pixel coordinates, and its distance from the eye along the view. Null for points beside or
+/// behind the eye of a perspective camera.
 struct Projected {
     glm::dvec2 pixel{0.0};
     double depth = 0.0;
 };
 std::optional<Projected> project(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& point);
-/// The point seen at a pixel at a depth.
+/// The point at a pixel and a depth.
 glm::dvec3 unproject(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double depth);
 /// The size of a pixel at a depth.
 double pixel_size(const Camera& camera, const glm::uvec2& pixels, double depth);
@@ -45,11 +45,11 @@ struct PixelBox {
 };
 /// The smallest box around both.
 PixelBox united(const PixelBox& a, const PixelBox& b);
-/// The pixels that may show something of a box (volume space), a pixel to spare; the whole picture where the box
+/// The pixels that may show some of a box (volume space), with a margin of one pixel; the whole picture where the box
 /// reaches behind the eye.
 PixelBox pixels_of_box(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower,
                        const glm::dvec3& upper);
-/// The same of a ball.
+/// The same for a ball.
 PixelBox pixels_of_ball(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center, double radius);
 
 }  // namespace shvr

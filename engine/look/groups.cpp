@@ -36,7 +36,7 @@ ColorGroup group_of(const Groups& groups, uint8_t group)
         const auto found = groups.find(at);
         const GroupSettings settings = found == groups.end() ? GroupSettings{} : found->second;
         if (at == group && !settings.name.empty()) look.name = settings.name;
-        // The topmost group without a colour has one of the ten; what is below it takes that.
+        // The topmost group without a colour gets one of the ten; groups below it inherit that.
         if (!color) color = settings.color;
         if (!color && settings.parent == 0) color = default_group(at).color;
         if (!opacity) opacity = settings.opacity;

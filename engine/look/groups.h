@@ -1,6 +1,6 @@
 #pragma once
-// Colour groups override the transfer function where a voxel is painted. They form a tree: what is not set for a group
-// comes from its parent, and hiding a group hides all below it. Changing a group touches no voxel.
+// Colour groups override the transfer function where a voxel is painted. They form a tree: a group inherits what it
+// does not set from its parent, and hiding a group hides all below it. Changing a group changes no voxel.
 
 #include <cstdint>
 #include <map>
@@ -11,18 +11,18 @@
 
 namespace shvr {
 
-/// What a person has set for a group.
+/// A user's settings for a group.
 struct GroupSettings {
     std::string name;                 ///< empty: "group N"
     uint8_t parent = 0;               ///< 0: none
-    std::optional<glm::dvec3> color;  ///< linear light; the parent's, or one of ten in turn
-    std::optional<double> opacity;    ///< per reference length; the parent's, or 1
+    std::optional<glm::dvec3> color;  ///< linear light; default: the parent's, or one of ten in turn
+    std::optional<double> opacity;    ///< per reference length; default: the parent's, or 1
     bool visible = true;              ///< false: neither its voxels nor those of groups below it are drawn
     bool operator==(const GroupSettings&) const = default;
 };
 using Groups = std::map<uint8_t, GroupSettings>;  ///< 1 ... 255; a group without an entry has nothing set
 
-/// The look that results.
+/// The resulting look.
 struct ColorGroup {
     std::string name;
     glm::dvec3 color{1.0};
@@ -35,9 +35,9 @@ struct ColorGroup {
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);
 
-/// 0 where the group has none.
+/// 0 if the group has no parent.
 uint8_t parent_of(const Groups& groups, uint8_t group);
-/// Whether `group` is `above`, or below it in the tree. `above` may not become the child of such a group.
+/// Whether `group` is `above`, or below it in the tree. Then it must not become the parent of `above`.
 bool is_within(const Groups& groups, uint8_t group, uint8_t above);
 /// A group that is its own ancestor, if any. The other functions need groups without cycles.
 std::optional<uint8_t> group_in_cycle(const Groups& groups);

@@ -1,5 +1,5 @@
 #pragma once
-// How a volume looks, whoever looks at it from wherever: what pictures depend on beside camera and probe. Plain values.
+// The look of a volume: what pictures depend on, except camera and probe. Plain values.
 
 #include "engine/look/groups.h"
 #include "engine/look/panes.h"
@@ -18,7 +18,7 @@ struct Look {
     SliceSettings slices;
 };
 
-/// Whether a light makes ambient occlusion.
+/// Whether a light uses ambient occlusion.
 inline bool shows_occlusion(const Light& light)
 {
     return light.shaded && light.ambient > 0.0 && light.occlusion.strength > 0.0;

@@ -11,15 +11,15 @@ namespace shvr {
 namespace {
 
 constexpr double WIDTH = 1.5;        ///< pixels
-constexpr double TRACE_WIDTH = 2.5;  ///< of what stands out of the trace
-constexpr double HALO = 2.0;         ///< pixels more, of what sets a stroke off from what is below it
+constexpr double TRACE_WIDTH = 2.5;  ///< of highlighted parts of the trace
+constexpr double HALO = 2.0;         ///< extra pixels that set a stroke off from its background
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
-/// Of x, y and z, and of the four edges of a frustum that run away from the eye.
+/// Colours of x, y and z, and of the four edges of a frustum that lead away from the eye.
 constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
                                            glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
 
-/// The part of a line that a pane shows, a little more of it (Liang and Barsky 1984).
+/// The part of a line inside a pane, with a small margin (Liang and Barsky 1984).
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& from, const glm::dvec2& to,
                                                          const glm::uvec2& pixels)
 {
@@ -84,7 +84,7 @@ private:
     std::vector<Stroke> strokes_;
 };
 
-/// Corners of what a camera sees: near 0 ... 3 and far 4 ... 7, each top left, top right, bottom left, bottom right.
+/// Corners of a camera's frustum: near 0 ... 3 and far 4 ... 7, each top left, top right, bottom left, bottom right.
 /// Without a far plane it ends where the volume does.
 std::array<glm::dvec3, 8> frustum_corners(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume)
 {
@@ -110,7 +110,7 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
         const auto from = project(pane.shot.camera, pixels, corners[a]);
         const auto to = project(pane.shot.camera, pixels, corners[b]);
         if (!from || !to || corners[a] == corners[b]) return;
-        // Edges before the frustum's middle are solid, those behind it stippled.
+        // Edges in front of the frustum's middle are solid, those behind it stippled.
         const bool is_far = glm::dot(0.5 * (corners[a] + corners[b]) - middle, forward) > 0.0;
         strokes.line(from->pixel, to->pixel, 0.5 * (COLORS[a % 4] + COLORS[b % 4]), is_far);
     };
@@ -120,7 +120,7 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
             edge(plane + size_t(a), plane + size_t(b));
 }
 
-/// Where the other two slices cut this one, in the colours of the axes they lie across, open around the probe.
+/// Lines of the other two slices in this one, in the colours of their axes, with a gap around the probe.
 void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
     constexpr double OPEN = 12.0;  ///< pixels
@@ -139,7 +139,7 @@ void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     strokes.line({pixel.x + OPEN, pixel.y}, {end.x, pixel.y}, level);
 }
 
-/// At the border of the pane, towards where the probe is.
+/// An arrow at the border of the pane, pointing towards the probe.
 void add_arrow(Strokes& strokes, const glm::uvec2& pixels, const glm::dvec2& way, const glm::dvec3& color)
 {
     constexpr double SPARE = 14.0, SHAFT = 34.0, HEAD = 11.0;
@@ -151,7 +151,7 @@ void add_arrow(Strokes& strokes, const glm::uvec2& pixels, const glm::dvec2& way
     for (const double side : {-1.0, 1.0}) strokes.line(tip, tip - HEAD * along + 0.6 * side * HEAD * across, color);
 }
 
-/// Where a pane meets others.
+/// The border between a pane and its neighbours.
 void add_border(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels)
 {
     constexpr glm::dvec3 GREY(0.2);
@@ -172,18 +172,18 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (const auto at = project(camera, pixels, probe.center)) {
         way = at->pixel - 0.5 * glm::dvec2(pixels);
         const glm::dvec2 inside = glm::abs(way) - 0.5 * glm::dvec2(pixels);
-        if (inside.x < 0.0 && inside.y < 0.0) return;  // it fills the pane, or holds the eye
+        if (inside.x < 0.0 && inside.y < 0.0) return;  // it fills the pane, or contains the eye
     }
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }
 
-/// Not smaller than a person sees, however far away it is.
+/// A ring, large enough to be seen however far away the ball is.
 void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene::Ball& ball)
 {
     constexpr double LEAST = 5.0, APART = 2.5;  ///< pixels
     const Camera& camera = pane.shot.camera;
     double radius = ball.radius;
-    if (pane.kind == Pane::Kind::slice) {  // the circle in which the plane cuts it
+    if (pane.kind == Pane::Kind::slice) {  // the circle in which the plane cuts the ball
         const double depth = glm::dot(ball.center - camera.eye, axes_of(camera).forward);
         const double away = depth - 0.5 * (camera.near_distance + camera.far_distance);
         if (!(std::abs(away) < radius)) return;
@@ -203,7 +203,7 @@ void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, cons
 
 void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
-    if (pane.kind != Pane::Kind::slice)  // where a line lies beside the plane
+    if (pane.kind != Pane::Kind::slice)  // in slices, a line lies off the plane
         for (const OverlayScene::Line& line : scene.lines) {
             const auto from = project(pane.shot.camera, pixels, line.from);
             const auto to = project(pane.shot.camera, pixels, line.to);
@@ -212,7 +212,7 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }
 
-/// The pixels that a stroke touches, and how much of each.
+/// The pixels that a stroke touches, and its coverage of each.
 template <class Paint>
 void for_each_covered(const Stroke& stroke, const PixelBox& pane, const Paint& paint)
 {
@@ -268,7 +268,7 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     if (pane.kind == Pane::Kind::map || pane.kind == Pane::Kind::slice) add_border(strokes, pane, pixels);
     if (pane.kind == Pane::Kind::map) add_frustum(strokes, pane, pixels, scene, volume);
     if (pane.kind == Pane::Kind::slice) add_cross(strokes, pane, pixels, scene);
-    // Two eyes see a line at two depths where only one of them has a camera: an anaglyph goes without.
+    // An anaglyph gets no outline: it has a line for one camera only, which two eyes would see at two depths.
     if (scene.probe.is_outlined && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
         add_probe(strokes, pane.shot.camera, pixels, scene.probe);
     if (!pane.shot.right_eye) add_trace(strokes, pane, pixels, scene);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t LEAST_PANE = 16;    ///< pixels a side
 constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
-constexpr double MAP_MARGIN = 1.5;     ///< and what looks at it
+constexpr double MAP_MARGIN = 1.5;     ///< and the camera that looks at it
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -23,13 +23,13 @@ glm::uvec2 size_of(const PixelBox& box)
     return box.end - box.begin;
 }
 
-/// The height of an orthographic view that holds `extent` (width, height).
+/// The height of an orthographic view that contains `extent` (width, height).
 double height_for(const glm::dvec2& extent, const glm::uvec2& pixels)
 {
     return std::max(extent.y, extent.x * pixels.y / pixels.x);
 }
 
-/// The whole volume from a side; `around`: heights of the view for one of the volume.
+/// The whole volume from a side; `around`: height of the view relative to the volume's.
 Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& volume, double around)
 {
     Camera camera = camera_looking(side, volume);
@@ -41,8 +41,8 @@ Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& vo
     return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
 }
 
-/// The plane across `axis` through the probe, seen as the sides of the volume are: z from the top, y from the front, x
-/// from the right.
+/// The plane through the probe perpendicular to `axis`, seen as the volume's sides are: z from the top, y from the
+/// front, x from the right.
 Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel, double zoom)
 {
     const char* const SIDE_BY_AXIS[] = {"right", "front", "top"};
@@ -51,7 +51,7 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
     const double voxel = std::clamp(probe_voxel[axis], 0.0, std::nextafter(size[axis], 0.0));
-    // Where it is enlarged the probe stays in the middle.
+    // When enlarged, the probe stays in the middle.
     if (zoom > 1.0) {
         const glm::dvec3 way = glm::clamp(probe_voxel, glm::dvec3(0.0), size) * volume.spacing - camera.target;
         camera.target += way;
@@ -100,7 +100,7 @@ std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& se
         const glm::dvec3 way = double(side) * half * axes.right;
         eye.eye += way;
         if (half > 0.0 && (settings.toe_in || !is_perspective)) {
-            eye.up = axes.up;  // turned about it, so that neither eye rolls
+            eye.up = axes.up;  // the eyes turn about it, so that neither rolls
             continue;
         }
         eye.target += way;

@@ -1,6 +1,6 @@
 #pragma once
-// Which views a picture is made of: one, two for two eyes, a map of where the camera is, or slices through the probe. A
-// picture is a list of panes; each pane is a camera and a rectangle. Pure; any thread.
+// The views that make up a picture: one; two for two eyes; maps that show where the camera is; or slices through the
+// probe. A picture is a list of panes; each pane is a camera and a rectangle. Pure; any thread.
 
 #include <optional>
 #include <string>
@@ -37,14 +37,14 @@ constexpr std::span<const Spelling<StereoOutput>> spellings_of(StereoOutput)
 
 struct StereoSettings {
     StereoOutput output = StereoOutput::side_by_side;
-    double eye_distance = 1.0 / 30.0;  ///< in distances from eye to target, where both eyes see the same
-    bool toe_in = false;               ///< eyes turned towards the target, as long ago; otherwise off-axis
+    double eye_distance = 1.0 / 30.0;  ///< as a share of the distance to the target, where both eyes see the same
+    bool toe_in = false;               ///< turn the eyes towards the target, an older method; otherwise off-axis
     bool operator==(const StereoSettings&) const = default;
 };
 
 struct SliceSettings {
-    std::optional<double> black, white;  ///< intensities; the ends of the volume's range
-    double paint_share = 0.5;            ///< how much of a painted voxel's colour is its group's
+    std::optional<double> black, white;  ///< intensities; default: the ends of the volume's range
+    double paint_share = 0.5;            ///< share of a painted voxel's colour that comes from its group
     double zoom = 1.0;                   ///< of the slices; 1: the whole volume fits
     bool operator==(const SliceSettings&) const = default;
 };
@@ -61,8 +61,8 @@ struct ViewSettings {
 struct Shot {
     Shot(const Camera& seen_from) : camera(seen_from) {}  // a camera is a shot
     Camera camera;
-    std::optional<Camera> right_eye;  ///< an anaglyph: `camera` gives red, this one green and blue
-    bool is_slice = false;  ///< half-way between the camera's clip planes the voxels are drawn as they are, grey
+    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, this one green and blue
+    bool is_slice = false;            ///< draws the voxels half-way between the camera's clip planes as they are, grey
     bool operator==(const Shot&) const = default;
 };
 
@@ -70,20 +70,20 @@ struct Pane {
     enum class Kind { main, left_eye, right_eye, map, slice };
     Kind kind = Kind::main;
     Shot shot;
-    PixelBox box;      ///< of the whole picture
+    PixelBox box;      ///< in the whole picture
     std::string name;  ///< "top", "slice across z", ...
-    int axis = -1;     ///< of a slice: what it lies across
+    int axis = -1;     ///< of a slice: the axis perpendicular to it
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
-/// The panes of a picture, the one that `main` sees first. They cover the picture, but for a row or column where it
-/// does not divide. `probe_voxel`: what slices go through. A picture that is too small to be divided has one pane.
+/// The panes of a picture; the first is the view of `main`. They cover the picture, except for a row or column where it
+/// does not divide evenly. `probe_voxel`: the point that slices go through. A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// The cameras of two eyes, left and right. Off-axis, a point at the target's depth is seen at the same pixel by both
-/// and nothing is seen higher by one than by the other; with `toe_in`, and for orthographic cameras, which have no
-/// other parallax, the eyes turn about the target instead.
+/// The cameras of two eyes, left and right. Off-axis, both see a point at the target's depth at the same pixel, and
+/// there is no vertical parallax. With `toe_in`, and for orthographic cameras, which have no other parallax, the eyes
+/// turn about the target instead.
 std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings);
 
 }  // namespace shvr

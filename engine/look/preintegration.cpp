@@ -9,8 +9,8 @@ namespace shvr {
 
 namespace {
 
-/// Extinction where the opacity of a reference length is 1 over a stretch of densities: no light gets through the
-/// smallest part of the shortest step, and differences of its integrals are still exact to 1e-8.
+/// Extinction where the opacity of a reference length is 1 over a range of densities: the smallest part of the shortest
+/// step is opaque, and differences of its integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MOST_PARTS = 16;
 
@@ -19,24 +19,24 @@ double extinction_of(double opacity)
     return opacity >= 1.0 ? OPAQUE : std::min(-std::log1p(-opacity), OPAQUE);
 }
 
-/// Exactly `from` where both are the same.
+/// Exactly `from` if both are the same.
 double between(double from, double to, double share)
 {
     return std::min(from + (to - from) * share, 1.0);
 }
 
-/// Mean of -ln(1 - o) over opacities o that go linearly from `from` to `to`.
+/// Mean of -ln(1 - o) over opacities o that change linearly from `from` to `to`.
 double mean_extinction(double from, double to)
 {
     const double a = 1.0 - from, b = 1.0 - to;
-    // Simpson's rule where the closed form cancels: off by less than 1e-13 of the value there.
+    // Simpson's rule where the closed form cancels: its error there is below 1e-13 of the value.
     if (std::abs(a - b) <= 1e-3 * std::max(a, b))
         return (extinction_of(from) + 4.0 * extinction_of(0.5 * (from + to)) + extinction_of(to)) / 6.0;
     const auto integral = [](double u) { return u > 0.0 ? u - u * std::log(u) : 0.0; };
     return (integral(a) - integral(b)) / (a - b);
 }
 
-/// Integrals over density from the first entry to each: of extinction, and of extinction times colour.
+/// Integrals over density, from the first entry to each: of extinction, and of extinction times colour.
 struct Integrals {
     std::vector<double> density, extinction;
     std::vector<glm::dvec3> light;
@@ -63,7 +63,7 @@ Integrals integrals_of(const TransferFunction& function, uint32_t side)
             const double s0 = extinction_of(o0), middle = extinction_of(0.5 * (o0 + o1)), s1 = extinction_of(o1);
             const double sum = s0 + 4.0 * middle + s1;
             const double own = (end - x) * mean_extinction(o0, o1);
-            // Colours change little in a part this short: weighed by Simpson's rule.
+            // Colours change little in such a short part: weighted by Simpson's rule.
             const double back = sum > 0.0 ? (2.0 * middle + s1) / sum : 0.5;
             extinction += own;
             light += own * glm::mix(p.color, q.color, glm::mix(from, to, back));
@@ -75,7 +75,7 @@ Integrals integrals_of(const TransferFunction& function, uint32_t side)
             x = end;
         }
     }
-    sums.extinction.resize(side, extinction);  // where rounding, or a function of no width, has left some out
+    sums.extinction.resize(side, extinction);  // entries missing due to rounding, or to a function of zero width
     sums.light.resize(side, light);
     return sums;
 }
@@ -99,7 +99,7 @@ glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint
         light += through * opacity * color;
         through *= 1.0 - opacity;
     }
-    // One part's opacity is not taken from 1 again: small ones would cancel.
+    // The opacity of a part is not computed by subtraction from 1: small ones would cancel.
     const double extinction = std::abs(sums.extinction[back] - sums.extinction[front]);
     return glm::dvec4(light, -std::expm1(-scale * extinction));
 }

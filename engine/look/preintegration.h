@@ -1,8 +1,8 @@
 #pragma once
 // Pre-integrated classification (Roettger, Kraus and Ertl 2000; Engel, Kraus and Ertl 2001): colour and opacity of a
-// whole step along which the density goes linearly from one value to another, so that nothing in between is missed,
-// however narrow. Extinction is integrated between control points in closed form; the colour of a step is composited of
-// at most 16 parts, so light that the front of a step emits is not dimmed by its back. All in double.
+// whole step along which the density changes linearly from one value to another, so that no feature in between is
+// missed, however narrow. Extinction is integrated between control points in closed form. The colour of a step is
+// composited from at most 16 parts, so that the back of a step does not dim light from its front. All in double.
 
 #include <cstdint>
 #include <span>
@@ -14,12 +14,12 @@
 
 namespace shvr {
 
-/// Entry [back * side + front], both of them `side` (2 or more) values from lower() to upper(): linear RGB times
-/// opacity, and opacity, of a step of `step_voxels` reference lengths. About 20 ms for 256 on one core.
+/// Entry [back * side + front], each of `side` (2 or more) values from lower() to upper(): linear RGB times opacity,
+/// and opacity, of a step of `step_voxels` reference lengths. About 20 ms for a side of 256 on one core.
 std::vector<glm::vec4> preintegrated_table(const TransferFunction& function, double step_voxels, uint32_t side);
 
-/// As `visible_intervals` of transfer_function.h, of such a table: whether a step from one end of an interval to the
-/// other shows anything.
+/// As `visible_intervals` of transfer_function.h, for such a table: whether a step from one end of an interval to the
+/// other is visible.
 std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, uint32_t side);
 
 }  // namespace shvr

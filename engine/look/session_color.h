@@ -1,6 +1,6 @@
 #pragma once
-// Colours as files spell them: "#rrggbb" or "#rrggbbaa", sRGB, to and from linear light. Alpha is straight and has no
-// curve. Any thread.
+// Colours as spelled in files: "#rrggbb" or "#rrggbbaa", sRGB, to and from linear light. Alpha is straight and linear.
+// Any thread.
 
 #include <optional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Nothing where the text is no such colour; alpha 1 where it states none.
+/// Null if the text is no such colour; alpha is 1 if not given.
 std::optional<glm::dvec4> color_of(std::string_view text);
 
 /// Rounded to 8 bits a channel; "#rrggbb" where alpha is 1.

@@ -1,5 +1,5 @@
 #pragma once
-// What a picture is made with beside camera, transfer function and groups, as plain values. Pure; any thread.
+// Settings of a picture, except camera, transfer function and groups, as plain values. Pure; any thread.
 
 #include <cstdint>
 #include <optional>
@@ -11,16 +11,16 @@
 
 namespace shvr {
 
-/// The largest OcclusionSettings::radius: what the bricks around a brick hold (engine/passes/occlusion.h).
+/// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
 inline constexpr double MOST_OCCLUSION_RADIUS = 60.0;
 
-/// How much of the ambient light reaches a place (shaders/occlusion.h).
+/// How much of the ambient light reaches a point (shaders/occlusion.h).
 struct OcclusionSettings {
-    double strength = 0.0;     ///< 0: off, 1: nothing is left of the ambient light where none arrives
-    double radius = 16.0;      ///< reference lengths that light comes from
-    uint32_t rays = 32;        ///< for each voxel
-    bool full_sphere = false;  ///< rays from behind surfaces, too
-    double curve = 1.0;        ///< exponent of what arrives: above 1 darker
+    double strength = 0.0;     ///< 0: off; 1: fully blocked places get no ambient light
+    double radius = 16.0;      ///< distance that light comes from, in reference lengths
+    uint32_t rays = 32;        ///< per voxel
+    bool full_sphere = false;  ///< also rays from behind surfaces
+    double curve = 1.0;        ///< exponent of the light that arrives: above 1 darker
     bool automatic = true;     ///< false: the window renews it on request
     bool operator==(const OcclusionSettings&) const = default;
 };
@@ -39,13 +39,13 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
-/// Distance colour blending (Rheingans and Ebert 2001): the farther, the more of another colour. Its share at depth d,
-/// 0 where what is drawn of the volume's box begins along the view and 1 where it ends, is clamp(size d^rate, 0, 1),
-/// with 0^0 = 1. Size 0: none. What is transparent stays so.
+/// Distance colour blending (Rheingans and Ebert 2001): mixes in a colour with growing distance. Its share at depth d
+/// is clamp(size d^rate, 0, 1), with 0^0 = 1; d is 0 where the drawn box of the volume begins along the view and 1
+/// where it ends. Size 0: off. Transparency is unchanged.
 struct DistanceBlend {
     double size = 0.0;
     double rate = 1.0;
-    std::optional<glm::dvec3> color;  ///< linear light; the background's
+    std::optional<glm::dvec3> color;  ///< linear light; default: the background's
     bool operator==(const DistanceBlend&) const = default;
 };
 
@@ -57,7 +57,7 @@ constexpr std::span<const Spelling<Sampling>> spellings_of(Sampling)
     return SAMPLINGS;
 }
 
-/// Whether bricks are paged on the device. Automatic: where there are levels to choose from, or the budget requires it.
+/// Whether bricks are paged on the device. Automatic: if the volume has several levels, or the budget requires it.
 enum class Paging { automatic, always, never };
 inline constexpr Spelling<Paging> PAGINGS[] = {
     {Paging::automatic, "automatic"}, {Paging::always, "always"}, {Paging::never, "never"}};
@@ -73,10 +73,9 @@ struct RenderSettings {
     glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
     Sampling sampling = Sampling::automatic;
     Paging paging = Paging::automatic;
-    double detail = 1.0;  ///< voxels per pixel at least, where there are levels to choose from; 0: the finest always
+    double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
-    bool preintegration =
-        false;  ///< steps are classified by both of their ends (preintegration.h); for steps of at most 1
+    bool preintegration = false;  ///< classify steps by both of their ends (preintegration.h); for steps of at most 1
     bool operator==(const RenderSettings&) const = default;
 };
 

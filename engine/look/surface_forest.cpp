@@ -26,7 +26,7 @@ SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInf
     std::ranges::sort(places_, {}, &Place::key);
 }
 
-/// From the large hierarchy: the last surface of the leaf takes its place.
+/// Removes a surface from the large hierarchy: the last surface of its leaf takes its place.
 void SurfaceForest::remove(uint64_t key)
 {
     const auto found = std::ranges::lower_bound(places_, key, {}, &Place::key);

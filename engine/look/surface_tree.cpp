@@ -16,7 +16,7 @@ namespace {
 
 constexpr double NEAREST = -double(LARGEST_SIDE), FARTHEST = 2.0 * double(LARGEST_SIDE),
                  LARGEST_RADIUS = double(LARGEST_SIDE);
-/// Balls that contain the other one but for this share of what they differ by are taken for the larger alone.
+/// If a ball contains the other except for this share of their difference, only the larger one is drawn.
 constexpr double CONTAINED = 1e-5;
 
 struct Box {
@@ -45,7 +45,8 @@ std::string name_of(uint64_t key)
     return KINDS[key >> 32] + std::to_string(uint32_t(key));
 }
 
-/// For the device, where kinds are told apart as well. Numbers above 2^30 share some, which matters to ties alone.
+/// The device's tie-breaking number, which includes the kind. Some numbers above 2^30 coincide, which affects ties
+/// only.
 uint32_t order_of(uint64_t key)
 {
     return uint32_t(key >> 32) << 30 | (uint32_t(key) & 0x3fffffffu);
@@ -100,14 +101,14 @@ struct Item {
     uint32_t surface = 0;
 };
 
-/// Halves by the surface area heuristic (MacDonald and Booth 1990) over bins (Wald 2007).
+/// Splits by the surface area heuristic (MacDonald and Booth 1990) over bins (Wald 2007).
 class Builder {
 public:
     Builder(std::vector<Item>& items, size_t most_in_leaf, std::vector<gpu::SurfaceNode>& nodes)
         : items_(items), most_in_leaf_(most_in_leaf), nodes_(nodes)
     {}
 
-    /// Of items begin ... end. Every split leaves at least a sixteenth on each side, so the depth is bounded.
+    /// Adds items begin ... end. Every split leaves at least a sixteenth on each side, so the depth is bounded.
     void add(size_t begin, size_t end)
     {
         Box box;
@@ -170,7 +171,7 @@ private:
             boxes[bin].add(items_[i].box);
             ++counts[bin];
         }
-        std::array<double, BINS> below{};  // cost of what lies below each border
+        std::array<double, BINS> below{};  // cost of the items below each border
         Box box;
         size_t count = 0;
         for (size_t bin = 0; bin + 1 < BINS; ++bin) {

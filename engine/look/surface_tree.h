@@ -1,6 +1,6 @@
 #pragma once
-// Opaque surfaces of a scene as a person gives them, and as the device searches them: a hierarchy of boxes in
-// depth-first order with a way past each. Plain data; any thread.
+// Opaque surfaces of a scene, as a user specifies them and as the device searches them: a hierarchy of boxes in
+// depth-first order with a skip link in each. Plain data; any thread.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// A ball, where both ends are the same, or a rod: the convex hull of two balls.
+/// A ball, if both ends are the same, or a rod: the convex hull of two balls.
 struct SurfaceLook {
     glm::dvec3 from{0.0}, to{0.0};              ///< volume space, physical units
     double radius_from = 1.0, radius_to = 1.0;  ///< physical units, above 0
@@ -21,8 +21,8 @@ struct SurfaceLook {
     bool operator==(const SurfaceLook&) const = default;
 };
 
-/// What a surface is of: those of a session go by their place, then nodes and internodes of the trace by their numbers.
-/// Of two at the same length along a ray the one before is seen.
+/// What a surface belongs to. Sorted: those of a session by their index, then nodes and internodes of the trace by
+/// their numbers. Of two surfaces at the same length along a ray, the earlier one is seen.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {
@@ -34,13 +34,13 @@ struct KeyedSurface {
     SurfaceLook look;
 };
 
-/// Keys by their place.
+/// Uses each surface's index as its key.
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 
-/// 60 bytes each, and at most as many of nodes: below what any device takes for one buffer, 128 MiB.
+/// 60 bytes each, and at most as many bytes of nodes: below the smallest buffer limit of any device, 128 MiB.
 inline constexpr size_t MOST_SURFACES = 1'000'000;
 
-/// Surfaces in a leaf at most. Less is more boxes to load, more is more rods to meet.
+/// Maximum surfaces per leaf. Fewer means more boxes to load, more means more rods to intersect.
 inline constexpr size_t SURFACES_IN_LEAF = 4;
 
 struct SurfaceTree {
@@ -49,8 +49,8 @@ struct SurfaceTree {
     std::vector<uint64_t> keys;      ///< of `list`
 };
 
-/// Fails, naming the surface, where there are more than MOST_SURFACES, or one of them is not finite, is no larger than
-/// nothing, or is farther than 2^20 reference lengths from where the volume may be. `most_in_leaf` is for tests.
+/// Fails, naming the surface, if there are more than MOST_SURFACES, or if one is not finite, has no size, or is farther
+/// than 2^20 reference lengths from any place the volume may be. `most_in_leaf` is for tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t most_in_leaf = SURFACES_IN_LEAF);
 

@@ -68,8 +68,8 @@ std::vector<glm::vec4> bake_table(const TransferFunction& function, double step_
     const double width = function.upper() - function.lower();
     std::vector<glm::vec4> table(entries);
     for (uint32_t entry = 0; entry < entries; ++entry) {
-        // Multiplied before it is divided, and the last one by name: where a table has one entry for each whole
-        // intensity, every entry lies exactly on its intensity.
+        // Multiply before dividing, and set the last one explicitly: in a table with one entry per whole intensity,
+        // every entry is then exactly at its intensity.
         const double intensity =
             entry + 1 == entries ? function.upper() : function.lower() + width * entry / (entries - 1);
         glm::dvec4 value = function.at(intensity);

@@ -1,11 +1,11 @@
 #pragma once
 // The 1-D transfer function: control points (intensity, colour, opacity), linear in between, nothing outside.
 //
-// Opacity is what is interpolated, and is meant per reference length (one voxel along the finest axis); the extinction
-// that follows is sigma = -ln(1 - opacity) / reference length. Colours are sRGB in files, and are decoded once, before
-// interpolation: everything after is linear light. The opacity of a step of another length is corrected here, in
-// double, as -expm1(step * log1p(-opacity)), and baked into a float table (accuracy: pow() in a shader loses all
-// relative accuracy for small opacities).
+// The interpolated quantity is opacity, per reference length (one voxel along the finest axis); the extinction is then
+// sigma = -ln(1 - opacity) / reference length. Colours are sRGB in files and are decoded once, before interpolation:
+// everything after is linear light. Opacities of steps of other lengths are corrected here, in double, as -expm1(step *
+// log1p(-opacity)), and baked into a float table, because pow() in a shader loses all relative accuracy for small
+// opacities.
 
 #include <span>
 #include <vector>

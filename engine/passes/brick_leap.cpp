@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Bricks of one dispatch: bounds what it costs on a slow device.
+/// Bricks of one dispatch: bounds its time on a slow device.
 constexpr size_t BATCH = 2048;
 
 }  // namespace
@@ -18,7 +18,7 @@ bool Visibility::shows(double lower_code, double upper_code) const
 {
     const double lower = double(params.table_lower), upper = double(params.table_upper);
     if (params.skipping == 0) return true;
-    // A code more on each side than the kernels' guard: what may be seen must never be left out here.
+    // One code more on each side than the kernels' guard: nothing visible may be excluded here.
     const double from = lower_code - 1.0, to = upper_code + 1.0;
     if (params.table_entries < 2 || to < lower || from > upper) return false;
     const double last = double(params.table_entries - 1);

@@ -1,6 +1,6 @@
 #pragma once
-// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup a brick, run when bricks arrive, and for
-// all that are there when the transfer function or the groups change.
+// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick, run when bricks arrive, and
+// for all bricks on the device when the transfer function or the groups change.
 
 #include <array>
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace shvr {
 
-/// What decides whether a range of codes shows anything.
+/// Decides whether a range of codes is visible.
 struct Visibility {
     gpu::BrickLeapParams params{};
     std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::array<uint32_t, 8> visible_groups{};
-    /// As the kernels do it (shaders/library/occupancy.glsl).
+    /// As kernels compute it (shaders/library/occupancy.glsl).
     bool shows(double lower_code, double upper_code) const;
 };
 bool operator==(const Visibility& a, const Visibility& b);

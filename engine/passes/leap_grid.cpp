@@ -4,7 +4,8 @@ namespace shvr {
 
 namespace {
 
-/// The cells that a stage must compute: what the changed cells can reach, and what later stages read around that.
+/// The cells that a stage must compute: those that the changed cells can affect, and what later stages read around
+/// them.
 CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
     // A distance is at most LEAP_LIMIT, so the last stage covers one reach around the change. Stage s is read along the
@@ -61,7 +62,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // As the last stage: the cells whose distance the changed ones may bound.
+    // As in the last stage: the cells whose distance the changed ones may limit.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});

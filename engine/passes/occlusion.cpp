@@ -10,23 +10,23 @@ namespace shvr {
 
 namespace {
 
-/// Half a voxel more than what keeps a ray that grazes a plane out of it: real edges are a voxel or two wide.
+/// Half a voxel more than keeps grazing rays out of a plane: real edges are a voxel or two wide.
 constexpr double LIFT = 1.5;
 constexpr double LIFT_OF_LARGE_CELLS = 0.5;  ///< per voxel of their side beyond the first
 
-/// In units, for a radius of 16: two looks at halves of voxels, two at cells of two voxels and two at those of four,
-/// whose stretches grow with larger radii. Smaller ones have fewer looks.
+/// In units, for a radius of 16: two taps each in half voxels, in cells of two voxels and in cells of four; their
+/// stretches grow with the radius. Smaller radii have fewer taps.
 constexpr double NEAR_STRETCH = 0.875;
-constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border, for rays along its edges and those across
+constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border: a compromise between rays along its edges and across
 constexpr uint32_t NEAR_TAPS = 2;
 constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
 constexpr uint32_t FAR_SIZES[] = {0, 0, 1, 1};
 constexpr uint32_t MOST_APRON = 14;     ///< in cells of any size, for the largest radius
-constexpr double MOST_STRETCHED = 1.2;  ///< before there is one look more
+constexpr double MOST_STRETCHED = 1.2;  ///< before another tap is added
 static_assert(NEAR_TAPS + std::size(FAR_STRETCHES) == gpu::OCCLUSION_MOST_TAPS);
 static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::OCCLUSION_NEAR_APRON);
 
-/// From one direction to the next: the golden angle.
+/// Angle between successive directions: the golden angle.
 const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 }  // namespace
@@ -76,7 +76,7 @@ OcclusionTaps occlusion_taps(double radius)
 
 uint32_t occlusion_reach(double radius)
 {
-    // A tap lies within the radius and its lift; 4 holds that, and the voxel itself.
+    // A tap lies within the radius plus its lift; 4 covers the lift and the voxel itself.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 
@@ -189,7 +189,7 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     std::ranges::copy(input.taps.aprons, params.aprons);
     params.cell_counts = volume.cell_counts;
     std::ranges::fill(params.taps, gpu::OcclusionTap{.distance = 1.0f, .lift = 0.0f, .stretch = 0.0f});
-    // Those of a size begin at a place of their own.
+    // The taps of each size start at a fixed place.
     for (uint32_t size = 0, i = 0; size <= gpu::OCCLUSION_SIZES; ++size)
         for (uint32_t of_size = 0; i < input.taps.end[size]; ++i, ++of_size)
             params.taps[gpu::OCCLUSION_TAPS_EACH * size + of_size] = input.taps.taps[i];

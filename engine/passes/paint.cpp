@@ -76,7 +76,7 @@ Resource select_fill(FrameGraph& graph, const VolumeBinding& volume, const Regio
 Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
     const Labelled region = region_merge(graph, input, region_bits(graph, volume, input));
-    return region_select(graph, input, region, region.bits, true);  // a flood reads no marks
+    return region_select(graph, input, region, region.bits, true);  // a flood fill reads no marks
 }
 
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)

@@ -1,6 +1,6 @@
 #pragma once
 // Brushes on a region of the volume: which voxels would they paint? The answer is one bit per voxel of the region, the
-// same for preview, painting and test. A fixed number of passes, whatever the shape of what is in the region.
+// same for preview, painting and tests. The number of passes is fixed, whatever the region contains.
 
 #include <span>
 
@@ -10,16 +10,16 @@
 namespace shvr {
 
 struct RegionInput {
-    gpu::RegionParams params;            ///< but for the bricks
-    const RegionBricks& bricks;          ///< those that the region lies in
+    gpu::RegionParams params;            ///< all but the bricks
+    const RegionBricks& bricks;          ///< the bricks that the region overlaps
     std::span<const gpu::RowSpan> rows;  ///< params.size.y * params.size.z, y fastest
 };
 
 /// Every voxel at or above the threshold.
 Resource select_fill(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
-/// Those connected to the seed.
+/// Those connected to the seed, among the voxels at or above the threshold.
 Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
-/// The components that hold no edge voxel of the region.
+/// The components without a voxel at the region's edge.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
 }  // namespace shvr

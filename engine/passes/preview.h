@@ -20,13 +20,14 @@ struct PreviewInput {
 };
 
 struct PreviewSeen {
-    std::optional<Resource> surfaces;  ///< for the ray caster, with the preview in it; none in slices
+    std::optional<Resource> surfaces;  ///< input for the ray caster, with the preview added; none in slices
     Resource seen;                     ///< for `preview_over`
 };
-/// Work of that one frame: nothing of it stays.
+/// All its resources last for this frame only.
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
 
-/// Over the picture in `target`, which the ray caster has made with those surfaces. Returns its new version.
+/// Draws the preview over the picture in `target`, which the ray caster made with those surfaces. Returns its new
+/// version.
 Resource preview_over(FrameGraph& graph, Resource seen, Resource target, const gpu::PreviewOverParams& params);
 
 }  // namespace shvr

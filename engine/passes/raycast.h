@@ -11,13 +11,13 @@
 
 namespace shvr {
 
-/// Ambient light that is kept off.
+/// Ambient light that is blocked.
 struct RaycastOcclusion {
     Resource values;  ///< OcclusionBinding::values
     gpu::OcclusionLook look;
 };
 
-/// log2 of the shininess where the kernels can square their way there, gpu::NOT_A_POWER_OF_TWO elsewhere.
+/// log2 of the shininess if the kernels can reach it by squaring, otherwise gpu::NOT_A_POWER_OF_TWO.
 uint32_t shininess_squarings(float shininess);
 
 struct RaycastInput {
@@ -32,13 +32,13 @@ struct RaycastInput {
     uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
     glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
-    bool preintegrated = false;        ///< `table` is of steps between two densities, TABLE_WIDTH a side
-    bool slice = false;                ///< params.slice_* are set: what lies half-way along the rays
+    bool preintegrated = false;        ///< `table` is for steps between two densities, TABLE_WIDTH a side
+    bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays
     bool pick = false;                 ///< positions instead of colours, see the kernel
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied,
-/// over the background. Returns its new version, and renews `volume.pages->reached`.
+/// over the background. Returns its new version, and updates `volume.pages->reached`.
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

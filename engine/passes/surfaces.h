@@ -25,7 +25,7 @@ struct SurfacesInput {
 };
 
 /// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface
-/// ends it, gpu::NO_SURFACE where none does. Work of that one frame.
+/// ends it, gpu::NO_SURFACE where none does. It lasts for this frame only.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// The handles of a volume on the device, as passes take them.
+// The handles of a volume on the device, as passes use them.
 
 #include <array>
 #include <optional>
@@ -8,12 +8,12 @@
 
 namespace shvr {
 
-/// Of paged bricks (shaders/pages.h).
+/// Handles of paged bricks (shaders/pages.h).
 struct PageBinding {
     Resource directory;
     Resource cell_leap;     ///< r8ui per cell of every slot
     Resource reached;       ///< bit per entry: where rays mark the bricks that they visit
-    bool feedback = false;  ///< they are to
+    bool feedback = false;  ///< whether rays mark them
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;
     uint32_t depth = 0;
@@ -22,11 +22,11 @@ struct PageBinding {
 struct VolumeBinding {
     Resource atlas;        ///< bricks with their aprons: see `filtered`
     Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
-    // Where every brick is there:
+    // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
-    std::array<Resource, 2> leap_scratch;  ///< what its stages hand on
-    // Where they are paged:
+    std::array<Resource, 2> leap_scratch;  ///< intermediate results of its stages
+    // Paged volumes:
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};
     glm::uvec3 cell_counts{1};
@@ -35,7 +35,7 @@ struct VolumeBinding {
     bool filtered = false;
 };
 
-/// The bricks of a region of level 0, and where they are.
+/// The bricks of a region of level 0, and their slots.
 struct RegionBricks {
     glm::uvec3 begin{0}, counts{1};
     std::vector<uint32_t> slots;  ///< x fastest

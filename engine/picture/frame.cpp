@@ -11,18 +11,18 @@ namespace shvr {
 
 namespace {
 
-/// Pixels of one dispatch: bounds what a single submission costs on a slow device.
+/// Pixels of one dispatch: bounds the time of a single submission on a slow device.
 constexpr glm::uvec2 TILE{128, 128};
-/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep rays that go the same way together; a
-/// CPU runs a row of pixels as one vector.
+/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep similar rays together; a CPU processes a
+/// row of pixels as one vector.
 constexpr uint32_t GROUP_WIDTH_OF_GPU = 8, GROUP_WIDTH_OF_CPU = 16;
-/// Of a preview that lies behind something else, and in slices of what is below.
+/// Opacity of a preview behind something else, and of one in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
-/// What the eyes of a shot share.
+/// Data shared by the eyes of a shot.
 struct Prepared {
     VolumeBinding volume;
-    RaycastInput input;  ///< but for surfaces
+    RaycastInput input;  ///< all but the surfaces
     std::optional<SurfaceList> listed;
 };
 
@@ -54,7 +54,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     return prepared;
 }
 
-/// Where the rays of a part end at surfaces, among them the probe's ball; nothing where there are none.
+/// Surfaces where the rays of a part end, including the probe's ball; null if there are none.
 std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Prepared& prepared,
                                       const RaycastInput& input, const Camera& camera, const PicturePart& part)
 {
@@ -71,8 +71,7 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// What one eye sees. What there is of a preview comes before the rays, so that they end at it, and over the picture
-/// that they make.
+/// The picture of one eye. A preview is drawn before the rays, so that they end at it, and then over the picture.
 Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                   const PicturePart& part, Resource target)
 {

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Adds up what the parts of a picture cost, pass by pass.
+/// Adds up the costs of a picture's parts, pass by pass.
 void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> passes)
 {
     for (gpu::PassReport& pass : passes) {
@@ -42,7 +42,7 @@ std::vector<PicturePart> parts_of(const glm::uvec2& pixels, const RenderOptions&
     return parts;
 }
 
-/// The one that is drawn first last.
+/// The four quarters of a part, the next one to draw last.
 std::vector<PicturePart> quarters_of(const PicturePart& part)
 {
     std::vector<PicturePart> quarters;
@@ -101,7 +101,7 @@ void PictureJob::end_pane()
     draw_strokes(picture_.image, strokes_of(pane(), overlay_, scene().info()), box);
 }
 
-/// All that the look wants and that can be made with the bricks that are there.
+/// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
 void PictureJob::renew_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
@@ -128,7 +128,7 @@ void PictureJob::step()
     if (parts_.empty()) end_pane();
 }
 
-/// With the bricks that are there. Pixels go to the picture, and which bricks rays visited to the volume.
+/// Draws a part with the bricks on the device; stores its pixels, and reports the visited bricks to the volume.
 std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
@@ -147,7 +147,7 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
     return std::move(result.passes);
 }
 
-/// With all bricks that its rays visit, or else in quarters.
+/// Draws a part with all bricks that its rays visit, or splits it into quarters.
 void PictureJob::draw_completely(const PicturePart& part)
 {
     using State = DeviceVolume::State;

@@ -1,6 +1,6 @@
 #pragma once
-// A picture that is made part by part, so that it may be larger than the device holds and leave room for other work
-// in between. The parts put together have the bits of a picture drawn whole. One thread, the renderer's.
+// A picture that is made part by part, so that it may be larger than the device can hold and leaves time for other work
+// in between. The parts together equal a picture drawn whole, bit for bit. One thread, the renderer's.
 
 #include "engine/look/overlay.h"
 #include "engine/picture/renderer.h"
@@ -9,14 +9,14 @@ namespace shvr {
 
 class PictureJob {
 public:
-    /// Fails where the host's budget does not hold the picture.
+    /// Fails where the host's budget cannot hold the picture.
     PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options);
 
     bool is_done() const { return parts_.empty() && pane_ + 1 >= panes_.size(); }
-    /// Draws the next part, and waits for it. It waits for paged bricks, too: a part is drawn again until its rays
-    /// visit nothing that is not there, and one that needs more at once than there is room for is quartered.
+    /// Draws the next part and waits for it, and for paged bricks: a part is drawn again until all bricks that its rays
+    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters.
     void step();
-    /// Of all pixels, the share that is drawn.
+    /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
     /// The picture, once it is done.
     Picture take();
@@ -37,7 +37,7 @@ private:
     OverlayScene overlay_;
     std::vector<Pane> panes_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< of the pane, the next one last
+    std::vector<PicturePart> parts_;  ///< parts of the pane still to be drawn, the next one last
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// How pictures show the probe: a ball, a shell around it, what its brush would change. Plain values; any thread.
+// How pictures show the probe: a ball, a shell around it, and what its brush would change. Plain values; any thread.
 
 #include <memory>
 #include <optional>
@@ -13,31 +13,31 @@ namespace shvr {
 struct ShellLook {
     double threshold = 0.0;  ///< intensity
     double opacity = 0.4;    ///< of one crossing
-    bool is_box = false;     ///< the region; otherwise a ball
+    bool is_box = false;     ///< the region's shape; otherwise a ball
     bool operator==(const ShellLook&) const = default;
 };
 
-/// The probe as it is seen: a ball that rays stop at, and a shell.
+/// What is drawn of the probe: a ball that ends rays, and a shell.
 struct ProbeLook {
     glm::dvec3 center{0.0};   ///< volume space
     double radius = 1.0;      ///< of its region, physical units
     glm::dvec3 color{1.0};    ///< linear light
-    double ball_share = 1.0;  ///< of the radius, of the ball; 0: none
+    double ball_share = 1.0;  ///< radius of the ball as a share of `radius`; 0: no ball
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
-        preview;  ///< what its brush would change, which slices show, too; null: not shown
+        preview;  ///< what its brush would change, also shown in slices; null: not shown
     bool operator==(const ProbeLook&) const = default;
-    /// Of a ball that holds all of it. `spacing`: of the volume.
+    /// The radius of a ball that encloses all of it. `spacing`: of the volume.
     double reach(const glm::dvec3& spacing) const;
 };
-/// The ball beside a shell, which it must not hide.
+/// Size of the ball beside a shell, small enough not to hide it.
 inline constexpr double BALL_IN_SHELL = 0.12;
-/// Its group's; grey where it erases.
+/// The colour of the probe's group; grey where it erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);
-/// What pictures of a session show of its probe.
+/// How pictures of a session show its probe.
 std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
                                      const VolumeStatistics& statistics);
-/// The voxels of a volume around a probe's shell, which is seen whatever the transfer function hides; null without one.
+/// The voxels around a probe's shell, which is drawn whatever the transfer function hides; null without a shell.
 std::optional<VoxelBox> voxels_of_shell(const std::optional<ProbeLook>& probe, const VolumeInfo& volume);
 
 }  // namespace shvr

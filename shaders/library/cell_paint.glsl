@@ -1,8 +1,8 @@
-// What is painted in a cell of the leap grid. Needs `mask` and `visible_groups`.
+// Paint in a cell of the leap grid. Needs `mask` and `visible_groups`.
 
 struct CellPaint {
-    bool is_there;  // a voxel is of a group
-    bool shows;     // of one that is not hidden
+    bool is_there;  // a voxel is in a group
+    bool shows;     // a voxel is in a visible group
 };
 
 CellPaint paint_in(uint mask_slot, uvec3 cell_of_brick)

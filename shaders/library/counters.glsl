@@ -1,4 +1,4 @@
-// Counting, 64 bits wide on devices without 64-bit atomics: a carry follows where the low half wraps.
+// Counters, 64 bits wide on devices without 64-bit atomics: a carry is added when the low half wraps.
 #include "../counters.h"
 
 layout(binding = 15, scalar) buffer Counters { uvec2 values[]; } counters;

@@ -1,6 +1,6 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
-// codes. Needs `atlas`, r32ui: two neighbouring codes along x in one texel, the lower one in the low half. One load in
-// place of two is what makes this the fastest way on devices whose images are ordinary memory (DECISIONS.md).
+// codes. Needs `atlas`, r32ui: two neighbouring codes along x per texel, the lower one in the low half. One load in
+// place of two makes this the fastest way on devices whose images are ordinary memory (DECISIONS.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
 // lie within the brick's apron, so no second lookup is ever needed.
@@ -68,7 +68,7 @@ float bilinear(float a, float b, float c, float d, float x, float y)
     return low + (high - low) * y;
 }
 
-/// A 16-bit code, with its fraction. Between equal codes it is that code exactly, so thresholds hold at voxels.
+/// A 16-bit code, with a fraction. Between equal codes it is exactly that code, so thresholds hold at voxels.
 float value_of(const Density d)
 {
     const float low = bilinear(d.v[0], d.v[1], d.v[2], d.v[3], d.fraction.x, d.fraction.y);
@@ -76,7 +76,7 @@ float value_of(const Density d)
     return low + (high - low) * d.fraction.z;
 }
 
-// The derivative of three values in a row, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their interpolant.
+// The derivative for three values in a row, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their interpolant.
 float central(float low, float high, float beyond, float f)
 {
     const float inner = high - low;

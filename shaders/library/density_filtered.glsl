@@ -1,6 +1,6 @@
 // Sampling of the density by the device's own trilinear filter, with the interface of density_exact.glsl. Needs
-// `atlas`, a sampler3D of R16_UNORM codes. Filters of real devices round their weights, commonly to 8 bits; results
-// differ from exact sampling by up to 1/512 of the local difference per axis.
+// `atlas`, a sampler3D of R16_UNORM codes. Real filters round their weights, commonly to 8 bits, so results differ from
+// exact sampling by up to 1/512 of the local difference per axis.
 
 struct Density {
     vec3 at;   // texture coordinates

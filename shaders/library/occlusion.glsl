@@ -1,16 +1,16 @@
-// The light that reaches a sample, interpolated between the values of voxels (occlusion.h). Needs `occlusion` (r8ui)
-// and `occlusion_look`. By hand: 8-bit filters are coarse on many devices, and not every device has one for this
-// format.
+// The light that reaches a sample, interpolated between voxel values (occlusion.h). Needs `occlusion` (r8ui) and
+// `occlusion_look`. Interpolated in code: 8-bit filters are coarse on many devices, and not every device can filter
+// this format.
 
 float occlusion_value(ivec3 texel)
 {
     return float(imageLoad(occlusion, texel).x);
 }
 
-// `lattice`: of voxels of the brick's level; `last`: the last voxel of that level.
+// `lattice`: position in voxels of the brick's level; `last`: the last voxel of that level.
 float ambient_share(vec3 lattice, ivec3 to_atlas, vec3 last)
 {
-    const vec3 held = clamp(lattice, vec3(0.0), last);   // no light is kept beyond the volume's edge
+    const vec3 held = clamp(lattice, vec3(0.0), last);   // no values exist beyond the volume's edge
     const vec3 corner = floor(held), f = held - corner;
     const ivec3 c = ivec3(corner) + to_atlas;
     vec4 v = mix(vec4(occlusion_value(c), occlusion_value(c + ivec3(0, 1, 0)), occlusion_value(c + ivec3(0, 0, 1)),

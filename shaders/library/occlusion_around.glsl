@@ -1,5 +1,5 @@
-// The bricks around one whose values are made, and which of its cells show anything. Needs `bricks_around`, and `leap`,
-// or PAGED `cell_leap`.
+// The bricks around one whose values are computed, and which of its cells may be visible. Needs `bricks_around`, and
+// `leap`, or if PAGED `cell_leap`.
 
 shared uint around[OCCLUSION_AROUND];
 
@@ -15,7 +15,7 @@ uint entry_at(uint reach, ivec3 brick_offset)
     return around[grid_index(uvec3(brick_offset + int(reach)), uvec3(2u * reach + 1u))];
 }
 
-// In cells of the brick; those of its neighbours lie beside.
+// `cell` in cells of the brick; positions outside it are in its neighbours.
 bool cell_is_occupied(uint reach, uvec3 cell_counts, const OcclusionJob job, ivec3 cell)
 {
 #ifdef PAGED

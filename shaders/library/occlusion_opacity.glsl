@@ -1,4 +1,4 @@
-// What stops light in a voxel (occlusion.h). Needs `opacities`; MASKED, `mask` from binding 6 on.
+// How opaque a voxel is to light (occlusion.h). Needs `opacities`; if MASKED, `mask` from binding 6 on.
 #ifdef MASKED
 layout(binding = 6, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 7
@@ -19,13 +19,13 @@ float opacity_of(const OcclusionCellsParams params, float code)
     return code >= params.table_lower && code <= params.table_upper ? opacity : 0.0;
 }
 
-// What paint and the cut make of a voxel, whatever its density; below 0: nothing. `centre` in voxels of level 0.
+// The opacity that paint and the cut give a voxel, whatever its density; below 0: none. `centre` in voxels of level 0.
 float opacity_held(const OcclusionCellsParams params, vec3 centre)
 {
     const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
     float held = -1.0;
 #ifdef MASKED
-    // Held inside: what is outside stops nothing, whatever is found here.
+    // Clamped inside; a voxel outside is transparent, whatever is found here.
     const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
     const uint slot = mask_slot_of(painted / BRICK_SIZE);
     if (slot != 0u) {

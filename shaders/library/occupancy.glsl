@@ -1,10 +1,10 @@
-// Does the transfer function show anything between two codes? Needs `params` and `visible_intervals`.
+// Whether the transfer function shows anything between two codes. Needs `params` and `visible_intervals`.
 
 bool transfer_function_shows(uint range)
 {
     const float lower = float(range & 0xffffu), upper = float(range >> 16);
-    // The ray caster's own rounding may carry a sample a few ulp past the cell's range: the guard takes it in, so that
-    // a picture with skipping equals one without, bit for bit.
+    // The ray caster's own rounding may move a sample a few ulp past the cell's range. The guard includes it, so that
+    // pictures with and without skipping are equal, bit for bit.
     const float guard = 0.02;   // codes
     if (params.table_entries < 2u || upper + guard < params.table_lower || lower - guard > params.table_upper)
         return false;

@@ -1,10 +1,10 @@
-// Finding bricks in the directory of pages.h. Needs `params`, and binds what it reads.
+// Finds bricks in the directory of pages.h. Needs `params`; declares its own bindings.
 
 layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } directory;
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 layout(binding = 9, scalar) buffer Reached { uint bits[]; } reached;
 
-// Where a position is: in nothing visible (distance > 0), or in a brick.
+// What a position is in: a region with nothing visible (distance > 0), or a brick.
 struct Place {
     uint distance;    // in cells
     uint cell_shift;  // log2 of a cell's side, in voxels
@@ -22,8 +22,8 @@ Place place_at(const RaycastParams params, vec3 position)
     place.cell_shift = params.page_shift;
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
     uint entry = directory.entries[place.entry];
-    // The finest view of the largest volume goes down ten times; most pictures never do. Lanes go down together: what
-    // one sets in a loop that others leave is not kept on every device.
+    // The finest view of the largest volume descends ten times; most pictures never descend. All lanes descend
+    // together, because some devices lose what one lane sets in a loop that others have left.
     for (uint depth = 0u; depth < params.page_depth; ++depth) {
         const bool down = entry >> PAGE_LEVEL_SHIFT == PAGE_NODE;
         place.cell_shift -= uint(down);
@@ -48,7 +48,7 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Lets the host know that a ray came here: what it meets decides what is loaded.
+// Reports to the host that a ray visited this place; visits decide which bricks are loaded.
 void note_reached(const Place place)
 {
     atomicOr(reached.bits[place.entry >> 5], 1u << (place.entry & 31u));

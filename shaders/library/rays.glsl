@@ -1,7 +1,7 @@
-// Which pixel a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH: a group's
-// 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels.
+// The pixel that a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH: a
+// group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels.
 
-// From the first pixel of the part that is drawn.
+// The pixel relative to the first pixel of the drawn part.
 uvec2 thread_in_part()
 {
     const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);

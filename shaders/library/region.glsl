@@ -1,4 +1,4 @@
-// Common to the region kernels: one thread per word. Needs `params` (RegionParams).
+// Shared by the region kernels: one thread per word. Needs `params` (RegionParams).
 
 uint word_index(uvec3 word)
 {

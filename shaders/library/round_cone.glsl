@@ -1,13 +1,13 @@
 // Where a line meets balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part of
-// each ball. Everything is computed from the line's point nearest to the surface, so that a far origin does not cancel
-// (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
+// each ball. Everything is computed from the line's point nearest to the surface, so that a far origin causes no
+// cancellation (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
 
 struct Line {
     vec3 origin;
     vec3 direction;  // unit
 };
 
-// What a line meets: x ... y; nothing where x > y.
+// The interval in which a line is inside: x ... y; empty where x > y.
 const vec2 NOTHING = vec2(1e30, -1e30);
 
 // `center` relative to the line's origin.
@@ -42,10 +42,10 @@ Rod rod_of(const Surface surface)
 }
 
 // The line's points at `from` + shift * direction + s * direction lie on the cone where, with w and u the parts of
-// offset and direction that stand perpendicular to the axis, x and v those along it,
+// offset and direction perpendicular to the axis, and x and v the parts along it,
 //   cosine^2 |w + s u|^2 = (radius - (x + s v) sine)^2.
-// The discriminant is written such that only differences of the size of the radii are left: |w x u| / |u| is the
-// distance from the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
+// The discriminant is written so that only differences as small as the radii remain: |w x u| / |u| is the distance from
+// the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
 vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direction)
 {
     const float x = dot(offset, rod.axis), v = dot(direction, rod.axis);
@@ -68,7 +68,7 @@ vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direc
                 max(first ? roots.x : NOTHING.y, second ? roots.y : NOTHING.y));
 }
 
-// Lengths along the line at which it enters and leaves a surface. `from` relative to the line's origin. The hull is
+// Lengths along the line where it enters and leaves a surface. `from` relative to the line's origin. The hull is
 // convex, so every point where the line meets a ball or the cone lies between the two.
 vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
 {
@@ -83,7 +83,7 @@ vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
     return range.x <= range.y ? range + shift : NOTHING;
 }
 
-// Outward, unit, at a point of the surface given relative to `from`.
+// The outward unit normal at a point of the surface, given relative to `from`.
 vec3 surface_normal(const Surface surface, const vec3 point)
 {
     if (surface.along == vec3(0.0)) return normalize(point);

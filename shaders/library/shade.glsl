@@ -1,7 +1,7 @@
 // Local illumination, and the opacity of a part of a step.
 
-// x^shininess. Powers of two, which most sessions use, are squarings: exp2 and log2 took a tenth of a shaded picture's
-// time on a CPU. The floor keeps intermediate values out of the denormal numbers, which are slower still.
+// x^shininess. Powers of two, which most sessions use, are computed by squaring: exp2 and log2 took a tenth of a shaded
+// picture's time on a CPU. The floor keeps intermediate values out of the denormal numbers, which are even slower.
 float power(float x, float shininess)
 {
     if (SHININESS_SQUARINGS < NOT_A_POWER_OF_TWO) {
@@ -13,7 +13,7 @@ float power(float x, float shininess)
     return shininess == 0.0 ? 1.0 : x <= 0.0 ? 0.0 : exp2(shininess * log2(x));
 }
 
-// The half vector, normalised; it has no length where the light is straight behind the sample.
+// The half vector, normalised; 0 where the light is straight behind the sample.
 vec3 half_way(vec3 light, vec3 to_eye)
 {
     const vec3 sum = light + to_eye;
@@ -21,8 +21,8 @@ vec3 half_way(vec3 light, vec3 to_eye)
     return sum_length > 1e-6 ? sum / sum_length : vec3(0.0);
 }
 
-// Blinn-Phong with one white light (Blinn 1977), for a normal that is a surface's to the degree of `surface`: where it
-// is none, the highlight goes and the diffuse term becomes its full, directionless value.
+// Blinn-Phong with one white light (Blinn 1977). `surface`: how far the normal is that of a surface; at 0 the highlight
+// vanishes and the diffuse term is its full, directionless value.
 vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, float surface, vec3 half_way)
 {
     const float facing = max(dot(normal, params.light), 0.0);
@@ -31,8 +31,7 @@ vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, flo
     return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
-// Where the gradient is far below `gradient_fade` there is no surface, so that flat regions neither sparkle nor go
-// dark.
+// Where the gradient is far below `gradient_fade` there is no surface; otherwise flat regions would sparkle or go dark.
 vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);
@@ -42,7 +41,7 @@ vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, ve
     return lit(params, ambient, color, normal, surface, half_way);
 }
 
-// Distance colour blending (Rheingans and Ebert 2001, Volume illustration): the farther, the more of another colour.
+// Distance colour blending (Rheingans and Ebert 2001, Volume illustration): mixes in a colour with growing distance.
 vec3 blended(const RaycastParams params, vec3 color, vec3 position)
 {
     const float depth = clamp(dot(params.depth_plane.xyz, position) + params.depth_plane.w, 0.0, 1.0);
@@ -51,8 +50,8 @@ vec3 blended(const RaycastParams params, vec3 color, vec3 position)
     return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
 }
 
-// 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series has
-// none and converges fast for small `a`.
+// 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series does
+// not, and converges fast for small `a`.
 float opacity_of_part(float a, float part)
 {
     const float series = part * a * (1.0 + 0.5 * (1.0 - part) * a * (1.0 + (2.0 - part) / 3.0 * a *

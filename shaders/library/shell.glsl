@@ -1,19 +1,19 @@
-// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, found in the
-// cell and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic;
-// it is split where its derivative is 0, and each stretch holds one crossing at most (Marmitt and others 2004, "Fast
-// and accurate ray-voxel intersection techniques for iso-surface ray tracing").
+// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, solved per cell
+// and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is
+// split where its derivative is 0, and each piece holds at most one crossing (Marmitt and others 2004, "Fast and
+// accurate ray-voxel intersection techniques for iso-surface ray tracing").
 //
-// Whether a ray is inside is carried from cell to cell: a crossing that rounding loses at a border is found at the
-// start of the next cell, so there are neither holes nor doubles. Every variable that outlives a turn of a loop is
-// carried from turn to turn, since lanes that leave early keep no other.
+// The inside state of a ray is carried from cell to cell: a crossing lost to rounding at a border is found at the start
+// of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
+// through the loop, since lanes that leave early keep no other.
 
 const float NO_SHELL = 1e30;
-// Reference lengths. A cell that a ray cuts by less counts to its neighbour, and a shell thinner than this is none.
+// Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored.
 const float SHELL_HAIR = 1e-3;
 
 struct Shell {
-    float next;       // length along the ray where the next crossing is
-    float from;       // where the search goes on
+    float next;       // length along the ray of the next crossing
+    float from;       // length where the search continues
     float end;
     bool is_inside;   // at `from`
 };
@@ -23,8 +23,8 @@ struct Cell {
     bool is_there;
     vec3 corner;      // lower, on the lattice of the brick's level
     ivec3 to_atlas;
-    float scale;      // voxels of level 0 a cell is wide
-    float exit;       // length along the ray
+    float scale;      // side of a cell, in voxels of level 0
+    float exit;       // length along the ray where it leaves the cell
 };
 
 Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
@@ -44,7 +44,7 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
     cell.corner = floor(position / cell.scale - 0.5);
     const uvec3 brick = uvec3(position) >> level + 5u;
     cell.to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
-    // A brick ends half-way through a cell, and beyond it there may be another level.
+    // A brick ends half-way through a cell, and the next brick may be of another level.
     const float brick_size = cell.scale * float(BRICK_SIZE);
     const vec3 of_cell = ((cell.corner + 0.5 + ray.ahead) * cell.scale - ray.origin) * ray.inverse;
     const vec3 of_brick = ((vec3(brick) + ray.ahead) * brick_size - ray.origin) * ray.inverse;
@@ -69,18 +69,18 @@ float cubic(vec4 c, float u)
     return c.x + u * (c.y + u * (c.z + u * c.w));
 }
 
-// Where the cubic's derivative is 0, ascending, as far as that is between 0 and 1; otherwise 0 or 1.
+// The cubic's derivative's zeros between 0 and 1, ascending; otherwise 0 or 1.
 vec2 turning_points(vec4 c)
 {
     const float discriminant = c.z * c.z - 3.0 * c.y * c.w;
     if (!(discriminant > 0.0)) return vec2(1.0);
-    // The form that does not cancel (Press and others, Numerical Recipes, 5.6).
+    // The form without cancellation (Press and others, Numerical Recipes, 5.6).
     const float q = -(c.z + (c.z < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
     const float a = c.w != 0.0 ? q / (3.0 * c.w) : 1.0, b = q != 0.0 ? c.y / q : 1.0;
     return clamp(vec2(min(a, b), max(a, b)), 0.0, 1.0);
 }
 
-// The crossing between two places of different sides.
+// The crossing between two points on different sides.
 float crossing(vec4 c, float low, float high, bool low_is_inside)
 {
     for (int i = 0; i < 10; ++i) {
@@ -93,7 +93,7 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
     return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
 }
 
-// Goes on to the next crossing. Returns with `next` = NO_SHELL where the region ends first.
+// Finds the next crossing. Sets `next` to NO_SHELL if the region ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
@@ -130,7 +130,7 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
     }
 }
 
-// The stretch of the ray in the region: the probe's ball or box.
+// The part of the ray inside the region: the probe's ball or box.
 vec2 shell_range(const RaycastParams params, const Ray ray)
 {
     if (SHELL == SHELL_BOX) {
@@ -165,7 +165,7 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     return shell;
 }
 
-// Seen from both sides.
+// Colour and opacity of a crossing, lit from both sides.
 vec4 shell_look(const RaycastParams params, const Ray ray, float s)
 {
     const vec3 position = position_at(params, ray, s);

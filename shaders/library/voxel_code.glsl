@@ -1,4 +1,4 @@
-// The 16-bit code of one texel of the density atlas, whichever form it has. Needs `atlas`, and FILTERED where it is for
+// The 16-bit code of one texel of the density atlas, in either of its formats. Needs `atlas`, and FILTERED if it is for
 // a sampler.
 
 float code_at(ivec3 texel)

@@ -1,5 +1,5 @@
-// Density offsets on the device: a picture after an update is the picture of a volume that has them from the start, bit
-// for bit, wholly on the device or in paged bricks; brushes see base plus offset.
+// Density offsets on the device: a picture after an update equals that of a volume loaded with the offsets, bit for
+// bit, resident or paged; brushes see base plus offset.
 
 #include <random>
 
@@ -180,11 +180,11 @@ TEST_CASE("brushes see base plus offset: what was raised above a threshold is fi
         fill.threshold = value + 10.0;
         CHECK(annotator.select(fill).count() == raised_voxels);
 
-        // Group 0 takes the offsets away, and the paint; one undo brings both back.
+        // Group 0 removes the offsets and the paint; one undo restores both.
         PaintOp both = raise;
         both.paints_group = true;
         both.group = 4;
-        CHECK(annotator.paint(both) == raised_voxels);  // offsets stay as they are
+        CHECK(annotator.paint(both) == raised_voxels);  // offsets stay unchanged
         PaintOp reset = both;
         reset.group = 0;
         CHECK(annotator.paint(reset) == 2 * raised_voxels);
@@ -234,7 +234,7 @@ TEST_CASE("offsets cost no byte on the device")
     Device device;
     device.load(source, Paging::never);
     static_cast<void>(device.renderer.render(session, camera));
-    const auto lasting = [&] {  // what a brush and an upload take for a moment is kept for the next time
+    const auto lasting = [&] {  // temporary memory of brushes and uploads is kept for reuse
         std::map<std::string, uint64_t> bytes = device.renderer.memory().bytes_by_name();
         std::erase_if(bytes, [](const auto& entry) {
             return entry.second == 0 || entry.first.starts_with("region ") || entry.first.starts_with("brick ") ||

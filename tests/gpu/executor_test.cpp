@@ -1,5 +1,5 @@
-// The executor and the memory book on a device: what goes in comes out, budgets hold, mistakes are named, and the
-// validation layer has nothing to say.
+// The executor and the memory accounting on a device: data survives a round trip, budgets hold, mistakes are reported,
+// and the validation layer is silent.
 
 #include <cstring>
 #include <functional>
@@ -54,7 +54,7 @@ TEST_CASE_FIXTURE(Fixture, "bytes go to a buffer, through an image and back unch
     std::iota(wanted.begin(), wanted.end(), 1000u);
     std::memcpy(upload.mapped().data(), wanted.data(), upload.mapped().size());
 
-    for (int frame = 0; frame < 3; ++frame) {  // the second and third frame meet what the ones before left in flight
+    for (int frame = 0; frame < 3; ++frame) {  // the second and third frame follow work still in flight
         FrameGraph graph;
         const Resource written =
             graph.copy_to_image(graph.import("upload", upload.import()), graph.import("image", image.import()),
@@ -98,7 +98,7 @@ TEST_CASE_FIXTURE(Fixture, "an allocation over the budget is refused by name bef
     CHECK(message.find("40 MiB of the budget of 64 MiB") != std::string::npos);
     CHECK(memory.device_bytes() == used);
     CHECK(memory.create("small", buffer_desc(uint64_t(20) << 20)).desc().bytes == uint64_t(20) << 20);
-    CHECK(memory.device_bytes() == used);  // the temporary has gone
+    CHECK(memory.device_bytes() == used);  // the temporary has been freed
     CHECK(memory.bytes_by_name().at("some") >= uint64_t(40) << 20);
 }
 

@@ -1,5 +1,5 @@
-// What features cost, and that they go together. A scene pays for what is in it: an unused feature has no pass, no byte
-// and no bit; any two of them draw without a word of the validation layer.
+// Cost and combination of features. A scene pays only for what it contains: an unused feature has no pass, no byte and
+// no bit. Any two features draw together without a validation message.
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +28,8 @@ struct Scenery {
 struct Feature {
     const char* name;
     std::function<void(Scenery&)> add;
-    std::set<std::string> passes;      ///< that it adds
-    std::set<std::string> storages{};  ///< that it adds on the device
+    std::set<std::string> passes;      ///< passes that it adds
+    std::set<std::string> storages{};  ///< storages that it adds on the device
 };
 
 ProbeLook probe_of(double ball_share, bool has_shell)
@@ -46,7 +46,7 @@ std::shared_ptr<const PaintPreview> previewed()
     return std::make_shared<PaintPreview>(preview_of({&change, 1}, Size3(48), PaintPreview::Kind::group));
 }
 
-/// Names of passes as they are with nothing else on; variants of the ray caster are told apart by their kernel's name.
+/// Names of passes with no other feature on; variants of the ray caster are distinguished by their kernel's name.
 const std::vector<Feature> FEATURES{
     {"shading", [](Scenery& s) { s.session.light.shaded = true; }, {}},
     {"paint",
@@ -190,7 +190,7 @@ std::set<std::string> names_of(const Picture& picture)
 
 TEST_CASE("a scene has the passes and the storages of what is in it, and no others")
 {
-    // A renderer each: what is needed for a moment is kept for the next time.
+    // One renderer each: temporary memory is kept for reuse.
     const auto drawn = [](const Scenery& scenery) {
         Everything everything;
         const std::set<std::string> names = names_of(everything.draw(scenery));
@@ -290,7 +290,7 @@ TEST_CASE_FIXTURE(Everything, "any two features go together")
             for (const float value : picture.image.rgba)
                 wrong += !std::isfinite(value) || value < 0.0f || value > 1.001f;
             CHECK(wrong == 0);
-            // Paged bricks are to change no bit of whatever else there is.
+            // Paged bricks must change no bit, whatever other features are on.
             if (scenery.paging != Paging::always || scenery.sampling != Sampling::exact) continue;
             scenery.paging = Paging::never;
             CHECK(different_bits(draw(scenery).image, picture.image) == 0);

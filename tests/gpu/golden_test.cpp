@@ -1,6 +1,6 @@
-// Pictures that may not change unseen: every tests/golden/NAME.json drawn and held against the NAME.png beside it. Then
-// the suite itself is put to the test: different goldens and deliberately wrong renderings must fail.
-// tests/golden/README.md says how to add a golden and how to bless one; run from the repository's root.
+// Pictures that must not change unnoticed: draws every tests/golden/NAME.json and compares it with NAME.png beside it.
+// Then tests the suite itself: different goldens and deliberately wrong renderings must fail. tests/golden/README.md
+// says how to add a golden and how to bless one; run from the repository's root.
 
 #include <fnmatch.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ namespace {
 
 const fs::path FOLDER = "tests/golden";
 constexpr int64_t MOST_FILE_BYTES = 1 << 20;
-constexpr std::string_view LAVAPIPE = "llvmpipe";  // what the driver lavapipe calls its device
+constexpr std::string_view LAVAPIPE = "llvmpipe";  // the device name that the driver lavapipe reports
 
 struct Golden {
     std::string name, why;
@@ -41,7 +41,7 @@ struct Golden {
     fs::path side_car() const { return FOLDER / (name + ".blessed.json"); }
 };
 
-/// Scripts are read from files, so the lines in a golden become one for a moment.
+/// Scripts are read from files, so the lines in a golden are written to a temporary file.
 std::vector<ScriptLine> script_of(const std::string& name, const Json& lines)
 {
     const fs::path path = fs::temp_directory_path() / sentence("shvr-golden-", ::getpid(), "-", name, ".jsonl");
@@ -82,8 +82,8 @@ std::vector<Golden> all_goldens()
     return goldens;
 }
 
-/// Draws one golden: a renderer of its own, so that no picture depends on those before it. A message of the validation
-/// layer fails the test it belongs to.
+/// Draws one golden, with its own renderer, so that no picture depends on earlier ones. A validation message fails the
+/// test that caused it.
 struct Studio {
     Renderer renderer{{.device = {.device = "", .validation = true}}};
     std::optional<Annotator> annotator;
@@ -132,7 +132,7 @@ struct Studio {
     }
 };
 
-/// FNV-1a, 64 bits, of a file. It guards against slips, not against malice.
+/// FNV-1a, 64 bits, of a file. Protects against mistakes, not against malice.
 std::string hash_of(std::span<const std::byte> bytes)
 {
     uint64_t hash = 0xcbf29ce484222325u;
@@ -142,7 +142,7 @@ std::string hash_of(std::span<const std::byte> bytes)
     return text;
 }
 
-/// What fails where the picture and its side-car do not belong together; nothing where they do.
+/// Why the picture and its side-car do not belong together; null if they do.
 std::optional<std::string> why_not_blessed(const Golden& golden)
 {
     if (!fs::exists(golden.picture())) return sentence(golden.picture().string(), " is missing");
@@ -169,7 +169,7 @@ fs::path output_folder()
     return folder;
 }
 
-/// For eyes: what was drawn, what was expected, and 16 times the difference. Returns where they lie.
+/// Writes the drawn picture, the expected one, and 16 times the difference. Returns their paths.
 std::string write_evidence(const Golden& golden, const Image8& actual, const Image8& expected)
 {
     const fs::path start = output_folder() / golden.name;
@@ -193,7 +193,7 @@ struct Mutation {
     std::function<void(Session&, Camera&)> apply;
 };
 
-/// The eye moves about the axis through the target that points up.
+/// Moves the eye about the upward axis through the target.
 void turn(Camera& camera, double degrees)
 {
     const glm::dvec3 axis = glm::normalize(camera.up), arm = camera.eye - camera.target;
@@ -202,7 +202,7 @@ void turn(Camera& camera, double degrees)
                  axis * glm::dot(axis, arm) * (1.0 - cosine);
 }
 
-/// The middle one by 2 % of the range; those it would pass are pushed along.
+/// Moves the middle one by 2 % of the range, and pushes along those it would pass.
 void move_a_point(Session& session)
 {
     const std::span<const ControlPoint> old = session.transfer_function.points();
@@ -268,7 +268,7 @@ std::string with_one_decimal(double value)
     return text;
 }
 
-/// What the picture was before, and how far the new one is from it: for the side-car.
+/// The hash of the previous picture, and how far the new one is from it: for the side-car.
 Json history_of(const std::string& old_hash, const Image8& before, const Image8& actual)
 {
     Json history = {{"fnv1a64", old_hash}};
@@ -281,7 +281,7 @@ Json history_of(const std::string& old_hash, const Image8& before, const Image8&
     return history;
 }
 
-/// Draws the golden and replaces its picture and side-car, unless they are as they should be.
+/// Draws the golden and replaces its picture and side-car, unless they are up to date.
 void bless(const Golden& golden, const std::string& reason)
 {
     Studio studio(golden);
@@ -334,7 +334,7 @@ TEST_CASE("every golden is drawn as it was blessed")
                      "\n  if it is meant: ", bless_command(golden.name));
         if (studio.is_lavapipe())
             FAIL_CHECK(report);
-        else  // rounding may differ more than tight allows
+        else  // rounding may differ by more than "tight" allows
             MESSAGE(studio.renderer.device().traits().name << ": " << report);
     }
 }
@@ -377,7 +377,7 @@ TEST_CASE("every wrong rendering fails a golden")
     for (const Golden& golden : all_goldens()) {
         const Image8 expected = read_png(golden.picture());
         Studio studio(golden);
-        if (why_different(studio.draw(golden), expected)) continue;  // fails as it is, so it cannot tell
+        if (why_different(studio.draw(golden), expected)) continue;  // it fails unchanged, so it proves nothing here
         for (const Mutation& mutation : MUTATIONS) {
             Session session = golden.opened.session;
             Camera camera = Studio::camera_of_golden(golden);
@@ -398,7 +398,7 @@ TEST_CASE("every wrong rendering fails a golden")
     }
 }
 
-// Skipped unless asked for by tools/bless_goldens, which sets the two variables.
+// Skipped unless tools/bless_goldens runs it, which sets the two variables.
 TEST_CASE("blessing goldens" * doctest::skip())
 {
     const char* reason = std::getenv("SHVR_BLESS_REASON");

@@ -1,5 +1,5 @@
-// The touch from end to end, without a window and without a clock: a hand follows a vessel in a noisy scan, relevance
-// comes from the device's compute pass, some milliseconds late, and the servo's force draws the hand to the vessel's
+// The sense of touch from end to end, without a window or a clock: a hand follows a vessel in a noisy scan, relevance
+// comes from the device's compute pass some milliseconds late, and the servo's force pulls the hand to the vessel's
 // middle.
 
 #include <array>
@@ -22,7 +22,7 @@ namespace {
 constexpr double VOXEL_MM = 0.25;
 constexpr double VESSEL_RADIUS = 4.0;  ///< voxels
 constexpr uint64_t TICK_NS = 1'000'000;
-constexpr int MIRROR_TICKS = 12;  ///< a window asks sixty times a second or more often
+constexpr int MIRROR_TICKS = 12;  ///< a window queries sixty times a second or more often
 
 /// The vessel's middle line, voxels.
 glm::dvec3 vessel_at(double x)
@@ -30,7 +30,7 @@ glm::dvec3 vessel_at(double x)
     return {x, 48.0 + 14.0 * std::sin(x / 22.0), 48.0 + 9.0 * std::cos(x / 17.0)};
 }
 
-/// From the middle line to a point, by Newton's method from the same x.
+/// Vector from the middle line to a point, by Newton's method from the same x.
 glm::dvec3 away_from_vessel(const glm::dvec3& p)
 {
     double x = p.x;
@@ -64,7 +64,7 @@ void publish(RelevancePatch& patch, const RelevanceBits& bits)
     std::ranges::copy(bits.words, patch.words.begin());
 }
 
-/// RMS distance of the probe from the middle line, mm. The hand goes along at 8 mm/s and wanders off as hands do.
+/// RMS distance of the probe from the middle line, mm. The hand moves along at 8 mm/s and drifts like a real hand.
 double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -92,7 +92,7 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
         const glm::dvec3 probe = settings.workspace.to_point(state.position_m);
         const uint64_t now_ns = uint64_t(tick + 1) * TICK_NS;
         if (tick % MIRROR_TICKS == 0) {
-            // What was asked for at the last turn has come meanwhile: relevance is 12 to 24 ticks old.
+            // The answer queried in the last turn has arrived: relevance is 12 to 24 ticks old.
             while (relevance.is_asking())
                 if (const auto bits = relevance.take()) publish(*patch, *bits);
             relevance.ask(probe / VOXEL_MM, 25000.0, now_ns);

@@ -1,5 +1,5 @@
-// The leap grid, read back from the device, against its definition: which cells a transfer function may show something
-// in, and how far away the nearest of them is, counted by brute force.
+// The leap grid, read back from the device, against its definition by brute force: which cells may be visible under a
+// transfer function, and how far away the nearest of them is.
 
 #include "engine/passes/leap_grid.h"
 
@@ -28,7 +28,7 @@ struct Grid {
     }
 };
 
-/// Draws, so that the renderer builds the grid, and fetches what it built.
+/// Draws, so that the renderer builds the grid, and reads it back.
 Grid grid_of(OnDevice& device, const Session& session)
 {
     device.draw(session, camera_looking("front", device.volume().info()));
@@ -76,7 +76,7 @@ void check_distances(const Grid& grid)
     CHECK(wrong == 0);
 }
 
-/// Smallest and largest code that a sample in the cell can meet; edge voxels go on outside the volume.
+/// Minimum and maximum code that a sample in the cell can read; edge voxels repeat outside the volume.
 glm::dvec2 range_of(const TestVolume& volume, const glm::ivec3& cell)
 {
     glm::dvec2 range(65535.0, 0.0);
@@ -88,8 +88,8 @@ glm::dvec2 range_of(const TestVolume& volume, const glm::ivec3& cell)
     return range;
 }
 
-/// A cell must be occupied where the function shows something well within its range, and empty where it shows nothing
-/// even a little around it.
+/// A cell must be occupied if the function shows something well within its range, and empty if it shows nothing even
+/// slightly outside it.
 void check_occupancy(const TestVolume& volume, const Session& session, const Grid& grid)
 {
     const TransferFunction& function = session.transfer_function;
@@ -111,7 +111,7 @@ void check_occupancy(const TestVolume& volume, const Session& session, const Gri
     CHECK(idle == 0);
 }
 
-/// A cell is painted where any of its voxels is of a group.
+/// A cell is painted if any of its voxels is in a group.
 void check_painted(const Grid& grid, const Mask& mask)
 {
     size_t wrong = 0;
@@ -262,7 +262,7 @@ TEST_CASE_FIXTURE(Refining, "painting patches what it can reach, and refining ma
                              .radius_voxels = 1.0 + below(8),
                              .path = {{below(150), below(130), below(140)}, {below(150), below(130), below(140)}}});
         const Grid patched = grid_of(*this, session);
-        if (trial % 2 == 0) refine(session);  // every other time two changes come before it
+        if (trial % 2 == 0) refine(session);  // every other time two changes precede it
         const Grid renewed = grid_of(*this, session);
         draw(other, camera_looking("front", volume().info()));
         const Grid fresh = grid_of(*this, session);
@@ -294,7 +294,7 @@ TEST_CASE_FIXTURE(OnDevice, "a patch covers what a change can reach and no more,
     uint64_t threads = 0;
     for (const PassData& pass : patch->passes())
         if (pass.kernel.starts_with("leap")) threads += uint64_t(pass.threads.x) * pass.threads.y * pass.threads.z;
-    // The ball's bricks, two a side, once by themselves and once with a reach around them.
+    // The ball's bricks, two a side: once alone and once with the bricks around them.
     const uint64_t changed = 2 * gpu::BRICK_CELLS, side = changed + 2 * gpu::LEAP_LIMIT;
     CHECK(threads == changed * changed * changed + side * side * side);
 }

@@ -1,5 +1,5 @@
-// Local ambient occlusion as the device makes it: its values against the definition in double, and what makes them
-// stale. What the definition is worth is for tests/unit/device/occlusion_test.cpp.
+// Local ambient occlusion as computed by the device: its values against the definition in double, and what invalidates
+// them. tests/unit/device/occlusion_test.cpp tests the definition itself.
 
 #include "engine/passes/occlusion.h"
 
@@ -21,7 +21,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// What a device's 8 bits keep, and a voxel whose code is rounded the other way.
+/// The precision of a device's 8 bits, and a voxel whose code rounds the other way.
 constexpr double STORED = 0.5 / 255.0;
 constexpr double ROUNDED_OTHERWISE = 1.6 / 255.0;
 
@@ -105,7 +105,7 @@ struct Expected {
         return is_inside(at) && glm::all(glm::greaterThanEqual(centre, session.cut.lower)) &&
                glm::all(glm::lessThan(centre, session.cut.upper));
     }
-    /// Of one half of a voxel along each axis: density and slope, a quarter of a voxel from the middle.
+    /// Density and slope of one octant of a voxel, a quarter of a voxel from its centre.
     double half_opacity(const glm::ivec3& at, const glm::ivec3& half) const
     {
         if (!is_kept(at)) return 0.0;
@@ -181,7 +181,7 @@ struct FieldCodes {
     }
 };
 
-/// Visible voxels of the volume, some of them, against the definition.
+/// Compares some of the volume's visible voxels with the definition.
 void check_values(OnDevice& device, const Session& session, size_t every)
 {
     device.draw(session, overview(device.volume()));
@@ -259,7 +259,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is off costs no pass and no byte, and what is 
     CHECK(std::ranges::find(with, "occlusion_bake") != with.end());
     CHECK(std::ranges::find(with, "raycast_occluded") != with.end());
     CHECK(renderer().memory().device_bytes() > bytes);
-    const std::vector<std::string> again = passes();  // nothing is made twice
+    const std::vector<std::string> again = passes();  // nothing is computed twice
     CHECK(std::ranges::find(again, "occlusion_bake") == again.end());
     session.light.occlusion.strength = 0.0;
     CHECK(passes() == before);
@@ -339,7 +339,7 @@ TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all lig
     CHECK(half < 0.95 * off);
     CHECK(half == doctest::Approx(0.5 * (off + full)).epsilon(1e-4));
     CHECK(dark < 0.9 * full);
-    load(constant_volume({40, 40, 40}, 1000.0));  // nothing keeps light off where there is hardly anything
+    load(constant_volume({40, 40, 40}, 1000.0));  // nearly empty space blocks no light
     Session clear = occluded(uniform_points(WHITE, 1e-5));
     const ImageF with = draw(clear, camera);
     clear.light.occlusion.strength = 0.0;
@@ -383,7 +383,7 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
         for (int i = 0; i < 10; ++i) view.advance();
         CHECK(view.submissions() == submissions);
     };
-    // Encoded here or there, a channel may be rounded otherwise.
+    // Encoded on the device or on the host, a channel may round differently.
     const auto is_picture = [&](const Image8& shown) {
         const Image8 expected = to_image8(draw(session, camera));
         return compare_pixels(shown, expected).max_abs <= 1.0;
@@ -459,7 +459,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     session.transfer_function = TransferFunction({{90.0, glm::dvec3(1.0), 0.0}, {200.0, glm::dvec3(1.0), 0.5}});
     gpu::DeviceOptions device;
     device.validation = true;
-    // The volume takes nearly all of it.
+    // The volume takes nearly all memory.
     Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{40} << 20}});
     renderer.load(source, measure(*source), session.render);
     REQUIRE(!renderer.volume().counts());
@@ -473,7 +473,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
     CHECK(without.image.rgba == plain.image.rgba);
     CHECK(renderer.render(session, camera).warnings.empty());
-    // Told in time, the volume leaves room: it is paged.
+    // Told in advance, the volume leaves room: it is paged.
     renderer.load(source, measure(*source), session.render, true);
     REQUIRE(renderer.volume().counts());
     const Picture with = renderer.render(session, camera);

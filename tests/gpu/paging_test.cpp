@@ -1,5 +1,5 @@
-// Paged bricks: pictures equal those of volumes that are wholly on the device, bit for bit, whatever the
-// budget; nothing is loaded twice; what cannot be read is named.
+// Paged bricks: pictures equal those of resident volumes, bit for bit, whatever the budget; nothing is loaded twice;
+// unreadable bricks are reported.
 
 #include <chrono>
 
@@ -38,7 +38,7 @@ Session session_of(double opacity, bool shaded)
     return session;
 }
 
-/// A renderer with a budget of its own.
+/// A renderer with its own budget.
 struct Budgeted {
     Renderer renderer;
     explicit Budgeted(uint64_t device_mib = 0, uint64_t host_mib = 0)
@@ -61,7 +61,7 @@ struct Budgeted {
     DeviceVolume::Counts counts() { return renderer.volume().counts().value(); }
 };
 
-/// Another source, some of whose bricks cannot be read.
+/// A source with some unreadable bricks.
 class Broken final : public VolumeSource {
 public:
     explicit Broken(Source source) : VolumeSource(source->info()), source_(std::move(source)) {}
@@ -112,7 +112,7 @@ TEST_CASE("paged pictures of the finest level equal resident ones bit for bit")
 
 TEST_CASE("pictures are the same at every budget, and the budget holds")
 {
-    // 1000 bricks of the finest level: 80 MB, of which the small budget holds a part.
+    // 1000 bricks of the finest level: 80 MB; the small budget holds only a part.
     const Source source = tubes({320, 320, 320});
     for (const double detail : {0.0, 1.0}) {
         Session session = session_of(0.05, true);
@@ -141,7 +141,7 @@ TEST_CASE("pictures are the same at every budget, and the budget holds")
 TEST_CASE("only bricks that rays visit are loaded, each once")
 {
     const Source source = tubes({256, 256, 256});
-    // Opaque from the first voxel on: only the near faces are seen.
+    // Opaque from the first voxel on: only the near faces are visible.
     Session session = session_of(1.0, false);
     session.transfer_function = TransferFunction({{0.0, WHITE, 1.0}, {255.0, WHITE, 1.0}});
     const Camera camera = camera_looking("front", source->info());
@@ -150,8 +150,8 @@ TEST_CASE("only bricks that rays visit are loaded, each once")
     CHECK(first.complete);
     const DeviceVolume::Counts counts = all.counts();
     CHECK(counts.leaves == 512);
-    CHECK(counts.reached <= 64 + 2 * 8);  // the face, and what its perspective shows of the sides
-    // Coarser levels of 64 bricks or fewer are always there: 64 + 8 + 1.
+    CHECK(counts.reached <= 64 + 2 * 8);  // the face, and the sides visible in perspective
+    // Coarser levels of 64 bricks or fewer are always on the device: 64 + 8 + 1.
     CHECK(counts.uploads <= counts.reached + 73);
     for (int i = 0; i < 3; ++i) CHECK(different_bits(all.renderer.render(session, camera).image, first.image) == 0);
     CHECK(all.counts().uploads == counts.uploads);
@@ -198,7 +198,7 @@ TEST_CASE("what lies around the probe is loaded before what is seen, where it ta
     const std::optional<RegionBricks> bricks = volume.region(around, false);
     REQUIRE(bricks.has_value());
     CHECK(bricks->slots.size() == 8);
-    // All of level 0 is too much to ask for in advance: what was asked before stays.
+    // All of level 0 is too much to prefer: the earlier request stays.
     volume.prefer({Size3(0), source->info().size});
     static_cast<void>(volume.advance(true));
     CHECK(volume.counts()->resident < 100);
@@ -247,11 +247,11 @@ TEST_CASE("bricks that cannot be read are named once, drawn from coarser ones, a
     REQUIRE(seen.warnings.size() == 1);
     CHECK(seen.warnings[0] == "chunk 0.0.0: is torn");
     CHECK(device.renderer.volume().missing() > 0);
-    // Work on such a brick is refused in the same words.
+    // Work on such a brick is refused with the same message.
     Annotator annotator(device.renderer);
     CHECK_THROWS_WITH(annotator.paint({.group = 1, .threshold = 0.0, .radius_voxels = 3.0, .path = {{10, 60, 60}}}),
                       doctest::Contains("torn"));
-    // A hand's stroke there ends with the same words, and does not wait for ever.
+    // A hand's stroke there ends with the same message, and does not wait forever.
     annotator.begin_stroke({.group = 1, .threshold = 0.0, .radius_voxels = 3.0});
     annotator.extend_stroke({10, 60, 60});
     annotator.end_stroke();
@@ -280,17 +280,17 @@ TEST_CASE("65536^3 voxels: a picture of the whole, and of voxels in its far corn
     const Picture whole = device.renderer.render(session, camera_looking("front", source->info()));
     CHECK(whole.complete);
 
-    // The same sphere in 512^3 voxels, of the same level: the picture is the same but for the step's length in voxels.
+    // The same sphere in 512^3 voxels, of the same level: the picture differs only in the step's length in voxels.
     const Source small = open_procedural({.kind = "sphere", .size = Size3(512)});
     const int level = device.renderer.volume().finest_level();
     Session same = session;
     same.render.step_voxels = std::ldexp(session.render.step_voxels, level - 7);
-    // Opacities are per reference length: 128 times as many of them lie along a ray.
+    // Opacities are per reference length, and a ray is 128 times as many of them long.
     CHECK(level >= 7);
     CHECK(device.renderer.memory().peak_device_bytes() <= uint64_t{64} << 20);
     CHECK(device.counts().resident <= device.counts().slots);
 
-    // Level 0 in the corner: a camera 40 voxels before the last voxel looks at what no 32-bit count of voxels reaches.
+    // Level 0 in the corner: a camera 40 voxels before the last voxel looks at voxels beyond any 32-bit count.
     Camera corner = camera_looking("right", source->info());
     corner.projection = Camera::Projection::orthographic;
     const glm::dvec3 end(65536.0);
@@ -322,7 +322,7 @@ TEST_CASE("work and bricks follow the picture, not the volume")
         session.render.detail = 1.0;
         session.render.size = {128, 128};
         session.render.paging = Paging::always;
-        // Opacities are per voxel of the finest level: as see-through at every size.
+        // Opacities are per voxel of the finest level: the same transparency at every size.
         const double opacity = 0.2 * 256.0 / double(side);
         session.transfer_function =
             TransferFunction({{100.0, RED, 0.0}, {130.0, RED, opacity}, {250.0, WHITE, opacity}});
@@ -337,8 +337,8 @@ TEST_CASE("work and bricks follow the picture, not the volume")
         MESSAGE(side, "^3: ", samples.back(), " samples, ", wanted.back(), " bricks of level ",
                 device.renderer.volume().finest_level(), " or coarser");
     }
-    // Sides are powers of two, so every picture is made of bricks of the same share of the volume. What differs is the
-    // coarse voxels' own values at the surface.
+    // Sides are powers of two, so every picture is made of bricks with the same share of the volume. Only the coarse
+    // voxels' values at the surface differ.
     for (size_t i = 1; i < samples.size(); ++i) {
         CHECK(double(samples[i]) <= 1.1 * double(samples[0]));
         CHECK(double(wanted[i]) <= 1.1 * double(wanted[0]));

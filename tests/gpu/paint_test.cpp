@@ -25,7 +25,7 @@ Renderer::Options with_validation()
     return {.device = {.device = "", .validation = true}};
 }
 
-/// A volume in memory as doubles, and what it is loaded as.
+/// A volume in memory as doubles, and the type it is loaded as.
 struct Voxels {
     Size3 size{1};
     VoxelType type = VoxelType::uint8;
@@ -51,7 +51,7 @@ Voxels pattern(const Size3& size, const Open& open)
     return voxels_of(size, VoxelType::uint8, [&](const Size3& v) { return open(v) ? 200.0 : 50.0; });
 }
 
-/// 0 ... 999, so that a threshold of 1000 (1 - density) opens that share of the voxels.
+/// 0 ... 999, so that a threshold of 1000 (1 - density) opens that fraction of the voxels.
 Voxels noise(const Size3& size, uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -119,7 +119,7 @@ VoxelSelection reference_selection(const Voxels& voxels, const PaintOp& op)
     return selection;
 }
 
-/// Voxels that only one of them holds.
+/// Number of voxels that only one of them contains.
 int64_t differences(const VoxelSelection& a, const VoxelSelection& b)
 {
     int64_t sum = 0;
@@ -136,7 +136,7 @@ int64_t differences(const VoxelSelection& a, const VoxelSelection& b)
     return sum;
 }
 
-/// The device's answer, compared with the reference; how many voxels it holds.
+/// Compares the device's answer with the reference; returns how many voxels it contains.
 int64_t check_against_reference(Annotator& annotator, const Voxels& voxels, const PaintOp& op)
 {
     const VoxelSelection selection = annotator.select(op);
@@ -189,7 +189,7 @@ double uniform(std::mt19937& random, double lower, double upper)
     return lower + (upper - lower) * (double(random()) / 4294967296.0);
 }
 
-/// One path, one voxel wide, through all of a cube of that side.
+/// One path, one voxel wide, through a whole cube of that side.
 bool is_serpentine(const Size3& v, int64_t side)
 {
     const int64_t last_row = (side - 1) / 2 * 2;
@@ -203,7 +203,7 @@ bool is_serpentine(const Size3& v, int64_t side)
     return true;
 }
 
-/// Two arms that never touch, wound around each other, along z.
+/// Two arms that never touch, wound around each other along z.
 int spiral_arm(const Size3& v, int64_t side)
 {
     constexpr double PITCH = 10.0;
@@ -214,7 +214,7 @@ int spiral_arm(const Size3& v, int64_t side)
     return share < 0.25 ? 1 : share >= 0.5 && share < 0.75 ? 2 : 0;
 }
 
-/// In a cube of that side: one bar to each of its faces, and beside each a bar that stops one voxel short of it.
+/// In a cube of that side: one bar to each face, and beside each a bar that stops one voxel short of it.
 bool is_bar_to_a_face(const Size3& v, int64_t side)
 {
     for (int axis = 0; axis < 3; ++axis)
@@ -369,14 +369,14 @@ TEST_CASE("flood and speckle fill find what shapes are known to hold")
     {
         load(renderer, pattern(Size3(SIDE), [](const Size3& v) { return is_serpentine(v, SIDE); }));
         Annotator annotator(renderer);
-        // 20 slices of 20 rows and 19 links between them; above each slice a link, of which the last leads nowhere.
+        // 20 slices of 20 rows and 19 links between them; above each slice a link, the last of which leads nowhere.
         CHECK(count(annotator, flood_at({0.5, 0.5, 0.5}, 64.0), Brush::flood, 6) == 20 * (20 * 40 + 19) + 20);
     }
     {
         load(renderer, pattern(Size3(SIDE), [](const Size3& v) { return is_bar_to_a_face(v, SIDE); }));
         Annotator annotator(renderer);
         CHECK(count(annotator, flood_at(glm::dvec3(20.0), 20.0), Brush::speckle, 26) == 6 * 7);
-        // A region one voxel smaller all around: the short bars now reach its edge, too.
+        // A region one voxel smaller all around: the short bars now reach its edge as well.
         CHECK(count(annotator, flood_at(glm::dvec3(20.0), 19.0), Brush::speckle, 26) == 0);
     }
     CHECK(messages_of(renderer) == "");
@@ -420,7 +420,7 @@ TEST_CASE("a seed outside the volume, outside the region or below the threshold 
         fill.brush = Brush::fill;
         CHECK((annotator.select(fill).count() > 0) == (outside.x < 100.0));
     }
-    CHECK(annotator.select(flood_at({10.9, 10.9, 10.9}, 0.3)).count() == 0);  // no voxel centre is that near
+    CHECK(annotator.select(flood_at({10.9, 10.9, 10.9}, 0.3)).count() == 0);  // no voxel centre is that close
     for (const glm::dvec3& border : {glm::dvec3(0.0), glm::dvec3(39.999, 29.999, 19.999), glm::dvec3(0.0, 29.5, 0.5)})
         CHECK(check_against_reference(annotator, voxels, flood_at(border, 8.0)) > 0);
     CHECK(messages_of(renderer) == "");
@@ -451,7 +451,7 @@ TEST_CASE("a voxel at exactly the threshold is open, whatever the voxel type")
         Voxels voxels{.size = size, .type = c.type};
         for (int64_t i = 0; i < size.x * size.y * size.z; ++i)
             voxels.values.push_back(c.lowest + c.step * std::min(double(i * 389 % 2268), most));
-        // Two, because one alone would be an outlier and lie outside the window.
+        // Two, because a single one would be an outlier outside the window.
         if (c.type == VoxelType::float32) voxels.values.back() = voxels.values[voxels.values.size() - 2] = 16383.75;
         for (const Sampling sampling : {Sampling::exact, Sampling::hardware}) {
             if (sampling == Sampling::hardware && !filters_in_hardware(renderer)) continue;

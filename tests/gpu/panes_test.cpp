@@ -41,7 +41,7 @@ TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the 
     session.probe.voxel = glm::dvec3(11.25, 20.5, 37.8);
     session.view.slices.black = 8000.0;
     session.view.slices.white = 60000.0;
-    session.cut.lower = {30.0, 30.0, 30.0};  // cuts the volume, not the slices
+    session.cut.lower = {30.0, 30.0, 30.0};  // cuts the volume, but not the slices
     const Camera camera = camera_along(volume(), {1, 1, 1}, 60.0);
     const ImageF image = draw(session, camera);
     double worst = 0.0;
@@ -147,7 +147,7 @@ TEST_CASE_FIXTURE(OnDevice, "off-axis and toed-in rays are those of the referenc
         check_below("left", error(session, left), 2e-5);
         check_below("right", error(session, right), 2e-5);
     }
-    // A point in space is drawn where `project` has it: the reference uses the same rays, so this ties both to the
+    // A point in space is drawn where `project` puts it: the reference uses the same rays, so this ties both to the
     // camera.
     load(volume_of({40, 33, 50}, [](const glm::dvec3& voxel) {
         return glm::distance(voxel, glm::dvec3(30.5, 8.5, 40.5)) < 1.0 ? 60000.0 : 0.0;

@@ -1,4 +1,4 @@
-// Pictures made part by part: the same bits as made whole, with everything that may be in them.
+// Pictures made part by part, with every feature: the same bits as pictures drawn whole.
 
 #include "engine/picture/picture_job.h"
 

@@ -13,7 +13,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// A peak of 1/256 of all codes, where nothing else is.
+/// A peak 1/256 of the code range wide; nothing elsewhere.
 std::vector<ControlPoint> peak_at(double middle)
 {
     const double half_width = 65535.0 / 512;
@@ -70,7 +70,7 @@ TEST_CASE_FIXTURE(Preintegrating, "steps of a voxel see a peak that is 1/256 of 
         const Pixels truth = expected(session, camera, reference::ExactOptions{});
         const Errors of = errors(session, camera, truth);
         check_below("pre-integrated", of.preintegrated, 2e-3);
-        CHECK(of.plain > 0.05);  // or there is nothing to show
+        CHECK(of.plain > 0.05);  // otherwise there is nothing to show
     }
 }
 
@@ -115,7 +115,7 @@ TEST_CASE_FIXTURE(Preintegrating, "pictures converge with order 2")
 TEST_CASE_FIXTURE(Preintegrating,
                   "densities that the function leaves out are a part of the step in which there is nothing")
 {
-    // The density crosses what is drawn, 30000 to 30100, within a small part of a step.
+    // The density crosses the visible range, 30000 to 30100, within a small part of a step.
     load(volume_of({32, 8, 8}, [](const glm::dvec3& p) { return 2000.0 * p.x; }));
     const Camera camera = camera_along(volume(), {1, 0, 0}, 5.0);
     for (const double opacity : {0.2, 0.999}) {

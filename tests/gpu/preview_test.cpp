@@ -1,5 +1,5 @@
-// The preview of a brush: the set is the one that is painted, whatever the brush, and looking at it changes nothing;
-// what pictures show of it is that set, held against boxes that are met in double on the CPU.
+// The preview of a brush: it equals the set that is painted, whatever the brush, and showing it changes nothing.
+// Pictures show exactly that set, compared with boxes intersected in double on the CPU.
 
 #include <random>
 #include <thread>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr Size3 SIZE(41, 33, 36);
 
-/// Bytes of noise, smoothed a little, so that there are pieces of all sizes.
+/// Noise in bytes, slightly smoothed, so that there are pieces of all sizes.
 std::shared_ptr<const VolumeSource> noise(uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -65,7 +65,7 @@ Snapshot snapshot(const Annotator& annotator)
     return taken;
 }
 
-/// Voxels that a painted document and a preview disagree on, and how many have changed.
+/// Voxels where a painted document and a preview disagree, and the number of changed voxels.
 struct Compared {
     int64_t wrong = 0, changed = 0;
 };
@@ -82,7 +82,7 @@ Compared compared(const PaintPreview& preview, const Snapshot& before, const Sna
     return sum;
 }
 
-/// Paint of several groups and offsets where brushes are going to be.
+/// Paints several groups, and offsets, where brushes will be.
 void prepare(Annotator& annotator)
 {
     PaintOp op{.brush = Brush::fill, .region = RegionShape::ball, .group = 2, .threshold = 60.0, .radius_voxels = 7.0};
@@ -186,12 +186,12 @@ TEST_CASE(
     const std::shared_ptr<const PaintPreview> before = previewer.shown();
     previewer.want(op);
     for (int turn = 0; turn < 5; ++turn) previewer.advance();
-    CHECK(previewer.shown() == before);  // nothing was asked again
+    CHECK(previewer.shown() == before);  // no query was submitted
 
     annotator.paint(op);
     CHECK_FALSE(previewer.is_current());
     settle();
-    CHECK(previewer.shown()->voxels == 0);  // all of them have the group now
+    CHECK(previewer.shown()->voxels == 0);  // all of them are in the group now
     annotator.undo();
     settle();
     CHECK(previewer.shown()->words == before->words);
@@ -209,7 +209,7 @@ TEST_CASE(
 
 namespace {
 
-/// Where a line meets a box first; nothing where it passes by.
+/// Where a line first meets a box; null if it misses.
 std::optional<double> met(const glm::dvec3& from, const glm::dvec3& way, const glm::dvec3& lower,
                           const glm::dvec3& upper)
 {
@@ -243,7 +243,7 @@ std::optional<Size3> first_voxel(const PaintPreview& preview, const RayPlanes& p
     return first;
 }
 
-/// Nothing of the volume, colours as they are.
+/// Hides the volume, and shows colours unlit.
 Session bare_session(const glm::uvec2& size)
 {
     Session session = plain_session({{254.0, WHITE, 0.0}, {255.0, WHITE, 0.0}}, size);
@@ -273,7 +273,7 @@ TEST_CASE("pictures show the voxels of the preview, each where its cube is")
     for (const char* side : {"front", "top", "right"}) {
         Camera camera = camera_looking(side, info);
         camera.eye += glm::dvec3(7.0, 11.0, 5.0);
-        // Erasing draws stripes, which tell voxels apart.
+        // Erasing draws stripes, which distinguish voxels.
         const PaintOp op{.brush = Brush::fill,
                          .region = RegionShape::ball,
                          .group = 0,
@@ -341,9 +341,9 @@ TEST_CASE("slices show the preview's voxels, and what lies before it hides all b
     }
     CHECK(inside > 200);
     CHECK(spilled <= inside / 100);
-    CHECK(missing <= inside / 8);  // the lines of the cross are over it
+    CHECK(missing <= inside / 8);  // the lines of the cross cover it
 
-    // A wall before it.
+    // A wall in front of it.
     session.view.arrangement = Arrangement::single;
     session.cut = {};
     session.transfer_function = TransferFunction({{0.0, glm::dvec3(0.0), 1.0}, {255.0, glm::dvec3(0.0), 1.0}});

@@ -1,4 +1,4 @@
-// Distance colour blending: what is farther takes on another colour.
+// Distance colour blending: a colour is mixed in with growing distance.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,7 @@ TEST_CASE_FIXTURE(OnDevice, "blended pictures are those of the reference")
             check_below("inside", error(session, perspective({15.0, 13.0, 16.0}, {0.0, 1.0, 3.0}, 90.0)), 5e-6);
             session.cut = {{3.0, 4.5, 2.0}, {20.25, 20.0, 30.0}};
             check_below("cut", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
-            session.blend.color.reset();  // the background's
+            session.blend.color.reset();  // default: the background's
             check_below("to the background", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
         }
 }
@@ -57,7 +57,7 @@ TEST_CASE_FIXTURE(OnDevice, "blending of size 0 changes no bit, and none leaves 
         background += expected[i] == expected[0];
         changed += blended[i] != expected[i];
         if (expected[i] == expected[0]) CHECK(blended[i] == expected[i]);
-        CHECK(blended[i].w == expected[i].w);  // opacity is not touched
+        CHECK(blended[i].w == expected[i].w);  // opacity is unchanged
     }
     CHECK(background > 20);
     CHECK(changed > 100);
@@ -81,7 +81,7 @@ TEST_CASE_FIXTURE(OnDevice, "an opaque surface takes the colour in the share tha
         // The same share everywhere, also at depth 0.
         session.blend.rate = 0.0;
         CHECK(pixels_of(draw(session, camera))[0].z == doctest::Approx(0.8).epsilon(1e-6));
-        session.blend.size = 2.0;  // never more than all of it
+        session.blend.size = 2.0;  // clamped at 1
         CHECK(pixels_of(draw(session, camera))[0].z == 1.0f);
     }
 }

@@ -15,7 +15,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// Blobs in a field of nothing, with noise between them: empty cells, full ones and borders everywhere.
+/// Blobs in empty space with noise between them: empty cells, full ones and borders everywhere.
 TestVolume blobs(const glm::ivec3& size, uint32_t seed)
 {
     const TestVolume noise = noise_volume(size, seed);
@@ -30,7 +30,7 @@ TestVolume blobs(const glm::ivec3& size, uint32_t seed)
     return volume;
 }
 
-/// Ramps, steps, spikes a few codes wide and gaps, anywhere in the codes.
+/// Ramps, steps, spikes a few codes wide and gaps, anywhere in the code range.
 TransferFunction random_function(std::mt19937& random)
 {
     std::uniform_real_distribution<double> code(0.0, 65535.0), unit(0.0, 1.0);
@@ -46,7 +46,7 @@ TransferFunction random_function(std::mt19937& random)
     return TransferFunction(points);
 }
 
-/// `inner` at `offset` in a volume of nothing.
+/// `inner` at `offset` in an empty volume.
 TestVolume placed(const TestVolume& inner, const glm::ivec3& size, const glm::ivec3& offset)
 {
     TestVolume volume = constant_volume(size, 0.0);
@@ -87,13 +87,13 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000
         session.render.skip_empty_space = true;
         with_leaps += work(session, camera)[gpu::COUNTER_SAMPLES];
     }
-    CHECK(with_leaps < without);  // or nothing was leapt over
+    CHECK(with_leaps < without);  // otherwise nothing was leapt over
 }
 
 TEST_CASE_FIXTURE(OnDevice, "where brick borders fall changes no bit")
 {
-    // The same voxels in three places, so that brick borders run through them elsewhere. Camera, planes and steps are
-    // such that every position is exact in float, so that nothing but the bricks is different.
+    // The same voxels in three places, with brick borders in different positions. Camera, planes and steps are chosen
+    // so that every position is exact in float, and only the bricks differ.
     const TestVolume inner = noise_volume({40, 40, 40}, 11);
     const glm::ivec3 whole(80);
     Session session = plain_session(busy_points(), {40, 40});

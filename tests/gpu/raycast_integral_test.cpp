@@ -1,6 +1,5 @@
 // The emission-absorption integral on the device against closed forms, against the same samples composited in double
-// ("discrete": what differs is rounding) and against the integral without a step size ("exact": what differs is the
-// method).
+// ("discrete": only rounding differs) and against the integral without a step size ("exact": only the method differs).
 
 #include <cmath>
 #include <numeric>
@@ -16,7 +15,7 @@ namespace {
 
 /// Compositing in float, a few hundred samples.
 constexpr double ROUNDING = 2e-6;
-/// Closed forms whose materials change at most on the border of a step, where steps in the middle are exact.
+/// Closed forms whose materials change only at borders of steps, where samples in the middle are exact.
 constexpr double CLOSED_FORM = 1e-5;
 /// Sums of 1e5 samples as A += (1 - A) a: measured 5.6e-6 in float.
 constexpr double MANY_SAMPLES = 1e-5;
@@ -30,7 +29,7 @@ Pixels filled(size_t pixels, const glm::dvec3& light, double opacity)
     return Pixels(pixels, glm::dvec4(light, opacity));
 }
 
-/// What a homogeneous stretch looks like over opaque black.
+/// The colour of a homogeneous layer over opaque black.
 Pixels slab(const Session& session, const glm::dvec3& color, double depth)
 {
     return filled(size_t(session.render.size.x) * session.render.size.y, color * opacity_of_depth(depth), 1.0);
@@ -94,7 +93,7 @@ TEST_CASE_FIXTURE(OnDevice, "a linear ramp of opacity has its closed depth")
 
 TEST_CASE_FIXTURE(OnDevice, "two materials composite front over back")
 {
-    // The density passes 30000 at x = 5 and there the material changes; steps of 0.5 have a border at 5.
+    // The density passes 30000 at x = 5, where the material changes; steps of 0.5 have a border at 5.
     load(volume_of({10, 4, 4}, [](const glm::dvec3& p) { return p.x < 5.0 ? 20000.0 : 40000.0; }));
     const double front = 0.7, back = 1.3;
     const double a = opacity_of_depth(front / 5.0), b = opacity_of_depth(back / 5.0);
@@ -115,7 +114,7 @@ TEST_CASE_FIXTURE(OnDevice, "tens of thousands of samples on a ray add up")
 {
     load(constant_volume({32, 8, 8}, 30000.0));
     const Camera camera = camera_along(volume(), {1, 0, 0}, 6.0);
-    // llvmpipe ends every loop of a kernel once all of them have made 65535 rounds, two for a sample.
+    // llvmpipe ends every loop of a kernel once all of them together have made 65535 iterations, two per sample.
     const double samples = renderer().device().traits().is_cpu ? 3e4 : 1e5;
     for (const double depth : DEPTHS) {
         CAPTURE(depth);
@@ -147,7 +146,7 @@ TEST_CASE_FIXTURE(OnDevice, "the last step of a ray is as long as what is left o
 {
     load(constant_volume({10, 4, 4}, 30000.0));
     const Camera camera = camera_along(volume(), {1, 0, 0}, 3.0);
-    // Longer than the step, as long, shorter, and far shorter; opacities on both sides of the series' end.
+    // Longer than the step, equal, shorter, and far shorter; opacities on both sides of the series' limit.
     for (const double opacity : {0.001, 0.1, 0.15, 0.9, 1.0}) {
         for (const double length : {7.0, 1.3, 1.0, 0.7, 0.05, 1e-3}) {
             CAPTURE(opacity);
@@ -216,7 +215,7 @@ TEST_CASE_FIXTURE(OnDevice, "nothing behind opacity 1 changes a bit")
     session.render.background = {0.0, 0.0, 0.0, 0.0};
     const auto pictures = [&](uint32_t seed) {
         load(behind(seed));
-        // Orthographic rays meet the plateau alone; the cut keeps slanted ones from passing beside it.
+        // Orthographic rays meet only the plateau; the cut keeps slanted ones from missing it.
         ImageF straight = draw(session, camera_along(volume(), {1, 0, 0}, 12.0));
         ImageF slanted = draw(session, perspective({-30.0, 12.0, 9.0}, {0.0, 8.0, 8.0}, 10.0));
         return std::pair(straight, slanted);
@@ -261,7 +260,7 @@ TEST_CASE_FIXTURE(OnDevice, "a ray that ends early loses at most what its limit 
         CHECK(loss > 0.0);
         const reference::DiscreteOptions stepped{
             .step = session.render.step_voxels, .stop_opacity = limit, .table_entries = TABLE_ENTRIES};
-        // Rounding may move the end of a ray that reaches the limit within an ulp by one sample: none does here.
+        // Rounding may move the end of a ray that is within an ulp of the limit by one sample: not here.
         check_below("discrete", worst_difference(pixels_of(draw(session, camera)), expected(session, camera, stepped)),
                     2e-5);
     }

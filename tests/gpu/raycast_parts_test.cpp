@@ -1,4 +1,4 @@
-// What the window asks of the ray caster beside whole pictures: parts of one, the probe's ball, and what is at a pixel.
+// What the window needs of the ray caster besides whole pictures: parts, the probe's ball, and the position at a pixel.
 
 #include <cmath>
 #include <cstring>
@@ -19,7 +19,7 @@ TEST_CASE_FIXTURE(OnDevice, "a picture drawn in parts has the bits of one drawn 
     const ProbeLook probe{.center = {20, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
     const glm::uvec2 size = session.render.size, cut(23, 17);
     const ImageF whole = renderer().render(session, camera, {.probe = probe}).image;
-    CHECK(different_bits(whole, draw(session, camera)) > 100);  // the probe is seen
+    CHECK(different_bits(whole, draw(session, camera)) > 100);  // the probe is visible
 
     const std::pair<glm::uvec2, glm::uvec2> parts[] = {
         {{0, 0}, cut}, {{cut.x, 0}, {size.x, cut.y}}, {{0, cut.y}, {cut.x, size.y}}, {cut, size}};
@@ -47,8 +47,8 @@ TEST_CASE_FIXTURE(OnDevice, "the probe hides what is behind it, and nothing else
     Session session = plain_session({{20000.0, RED, 0.1}, {65535.0, RED, 0.2}}, {65, 65});
     session.light = {.shaded = false, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
     const ProbeLook probe{.center = {20, 20, 20}, .radius = 10.0, .color = {0.2, 0.4, 0.6}};
-    // A pixel is one voxel wide: the ball covers those whose centre is within its radius, half in front of the volume
-    // too.
+    // A pixel is one voxel wide: the ball covers those whose centre is within its radius, also the half in front of the
+    // volume.
     for (const glm::dvec3& direction : cube_directions()) {
         const Camera camera = camera_along(volume(), direction, 65.0);
         const ImageF image = renderer().render(session, camera, {.probe = probe}).image;

@@ -1,5 +1,5 @@
-// Where rays begin, run and end: every pixel of pictures of noise, the roughest volume there is, against the same
-// samples composited in double along rays that the camera made in double.
+// Where rays begin, run and end: every pixel of pictures of noise, the roughest possible volume, against the same
+// samples composited in double along rays computed in double.
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,13 @@ using namespace shvr::test;
 
 namespace {
 
-/// Positions in float are up to 8e-6 voxel off at 100 voxels; noise changes by up to 1 a voxel, opacity by 0.3 a unit.
+/// Positions in float are up to 8e-6 voxel off at 100 voxels; noise changes by up to 1 per voxel, opacity by 0.3 per
+/// unit.
 constexpr double POSITIONS = 2e-5;
-/// Lengths of up to 1000 along a ray, where spacings differ by 20, are 3e-5 off.
+/// Lengths of up to 1000 along a ray, with spacings that differ by 20, are 3e-5 off.
 constexpr double LONG_RAYS = 5e-5;
-/// A ray that leaves a face at the angle phi enters 4e-6 / phi beside where it should, and all its samples with it: the
-/// few rays that graze the face in which the eye lies.
+/// A ray that leaves a face at the angle phi enters 4e-6 / phi off its true position, as do all its samples: the few
+/// rays that graze the face that contains the eye.
 constexpr double GRAZING_RAYS = 2e-3;
 
 Session noise_session(const glm::uvec2& pixels = {24, 24})
@@ -36,7 +37,7 @@ glm::dvec3 centre_of(const TestVolume& volume)
     return 0.5 * glm::dvec3(volume.size) * volume.spacing;
 }
 
-/// Of every pixel's worst channel.
+/// The largest channel error of each pixel.
 std::vector<double> differences(const Pixels& a, const Pixels& b)
 {
     std::vector<double> differences;
@@ -45,7 +46,7 @@ std::vector<double> differences(const Pixels& a, const Pixels& b)
     return differences;
 }
 
-/// Perspective, so far that its picture is `camera`'s.
+/// Perspective, from so far that its picture equals `camera`'s.
 Camera from_afar(const Camera& camera, double distance)
 {
     Camera far = camera;
@@ -72,7 +73,7 @@ TEST_CASE_FIXTURE(OnDevice, "rays run in all 26 directions of a cube")
 
 TEST_CASE_FIXTURE(OnDevice, "rays that run exactly in faces and edges of the volume and of its voxels are drawn")
 {
-    // An odd number of pixels, one voxel apart: they run in x, y = 0, 1 ... 8, the volume's faces among them.
+    // An odd number of pixels, one voxel apart: rays run at x, y = 0, 1 ... 8, including the volume's faces.
     load(noise_volume({8, 8, 8}, 12));
     const Session session = noise_session({11, 11});
     for (const glm::dvec3& direction : cube_directions()) {
@@ -116,7 +117,7 @@ TEST_CASE_FIXTURE(OnDevice, "components of either zero and below the normal numb
         CAPTURE(component);
         Camera tilted = camera;
         tilted.up = {component, component, 1.0};
-        // The centre is not at 0, where such numbers survive an addition: move the eye in a frame where they do.
+        // The centre is not at 0, where such numbers survive an addition: move the eye in a frame where it is.
         tilted.eye.y += component;
         CHECK(different_bits(draw(session, tilted), expected) == 0);
     }
@@ -157,7 +158,7 @@ TEST_CASE_FIXTURE(OnDevice, "an eye inside the volume, and at its borders, sees 
             const Pixels pixels = pixels_of(draw(noise_session(), camera));
             const Pixels truth = discrete(noise_session(), camera);
             check_below("worst", worst_difference(pixels, truth), GRAZING_RAYS);
-            // Sorted: all but one in twenty pixels hold the bound of ordinary rays.
+            // Sorted: all but one in twenty pixels are within the bound of ordinary rays.
             check_below("all but a few", differences(pixels, truth)[pixels.size() * 19 / 20], POSITIONS);
         }
     }
@@ -172,7 +173,7 @@ TEST_CASE_FIXTURE(OnDevice, "distance changes the perspective and nothing else")
         CAPTURE(sizes);
         const Camera far = from_afar(camera, sizes * extent_of(volume()));
         check_below("discrete", error(noise_session(), far), POSITIONS);
-        // Rays fan out by the volume's size over the distance: 57 voxels / 1e7 sizes.
+        // Rays diverge by the volume's size over the distance: 57 voxels / 1e7 sizes.
         if (sizes >= 1e7)
             check_below("orthographic", worst_difference(pixels_of(draw(noise_session(), far)), flat), 3e-5);
     }

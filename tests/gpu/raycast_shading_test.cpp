@@ -1,6 +1,6 @@
-// Values, gradients and light. Whole pictures are held against the reference's shading; single values and normals are
-// read off pictures made for it: an opaque medium shows only its first sample, which a cut puts anywhere, and its
-// colour is then the value, or the cosine between normal and light.
+// Values, gradients and light. Whole pictures are compared with the reference's shading. Single values and normals are
+// read from special pictures: an opaque medium shows only its first sample, whose position a cut determines; its colour
+// is then the value, or the cosine between normal and light.
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ Session opaque_session(const glm::dvec3& lower, const glm::dvec3& upper, const g
     return plain_session({{0.0, lower, 1.0}, {65535.0, upper, 1.0}}, pixels);
 }
 
-/// Deterministic, and as smooth as a few waves a volume are.
+/// Deterministic, and smooth: a few waves per volume.
 TestVolume waves(const glm::ivec3& size)
 {
     return volume_of(size, [](const glm::dvec3& p) {
@@ -74,7 +74,7 @@ TestVolume marschner_lobb_volume(int side)
     });
 }
 
-/// A picture whose pixel (x, y) samples the volume at `at(x, y)`: down the z axis onto a cut.
+/// A picture whose pixel (x, y) samples the volume at `at(x, y)`: looking down the z axis onto a cut.
 struct Slice {
     double z;
     glm::uvec2 pixels;
@@ -89,7 +89,7 @@ struct Slice {
         session.render.step_voxels = STEP;
         return session;
     }
-    /// As the reference sees the rays.
+    /// The rays as the reference computes them.
     std::vector<glm::dvec3> positions(const TestVolume& volume, const Session& session) const
     {
         std::vector<glm::dvec3> positions;
@@ -100,7 +100,7 @@ struct Slice {
     static constexpr double STEP = 1.0 / 1024;
 };
 
-/// Unit normals of the first samples: from six pictures, each lit along one axis alone.
+/// Unit normals of the first samples: from six pictures, each lit along a single axis.
 std::vector<glm::dvec3> normals_on(OnDevice& device, const Slice& slice)
 {
     Session session = slice.cut(opaque_session(WHITE, WHITE, slice.pixels));
@@ -119,7 +119,7 @@ std::vector<glm::dvec3> normals_on(OnDevice& device, const Slice& slice)
     return normals;
 }
 
-/// Not by acos, which loses small angles.
+/// Without acos, which loses small angles.
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b)
 {
     return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
@@ -189,14 +189,14 @@ TEST_CASE_FIXTURE(OnDevice, "gradients are per physical length, whatever the vox
         for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(0, -1, 0.2)})
             check_shaded(*this, session, camera_along(volume, direction, 0.8 * extent));
 
-        // A plane whose physical normal is known: f rises by 900 a unit along (1, 2, 2) / 3.
+        // A plane whose physical normal is known: f rises by 900 per unit along (1, 2, 2) / 3.
         TestVolume plane = volume_of(
             {24, 24, 24}, [&](const glm::dvec3& p) { return 300.0 * glm::dot(p * spacing, glm::dvec3(1, 2, 2)); });
         plane.spacing = spacing;
         load(plane);
         const Slice slice(plane, 11.3, {8, 8}, 10.0 * spacing.y);
         for (const glm::dvec3& normal : normals_on(*this, slice))
-            // Codes are whole numbers: half a code in 300.
+            // Codes are integers: an error of half a code in 300.
             check_below("degrees", degrees_between(normal, glm::dvec3(-1, -2, -2)), 0.3);
     }
 }
@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(OnDevice, "Marschner-Lobb is reconstructed as well as trilinea
         double worst_value = 0.0, worst_normal = 0.0;
         std::mt19937 random(42);  // seed 42
         for (int i = 0; i < 8; ++i) {
-            // Slices at random depths, away from the borders; pixels meet every fraction of a voxel.
+            // Slices at random depths, away from the borders; pixels cover all fractions of a voxel.
             const double depth = side * (0.04 + 0.92 * double(random()) / 4294967296.0);
             const Slice slice(volume(), depth, {53, 53}, 0.92 * side);
             const Session session = slice.cut(opaque_session(glm::dvec3(0.0), WHITE, slice.pixels));
@@ -227,7 +227,7 @@ TEST_CASE_FIXTURE(OnDevice, "Marschner-Lobb is reconstructed as well as trilinea
                 reference_value_errors.push_back(value - marschner_lobb(p));
                 angles.push_back(degrees_between(normals[k], -marschner_lobb_gradient(p)));
                 reference_angles.push_back(degrees_between(gradient, marschner_lobb_gradient(p)));
-                // Positions in float are 4e-6 voxel off, which turns normals where the gradient is small.
+                // Positions in float are 4e-6 voxel off, which rotates normals where the gradient is small.
                 if (glm::length(gradient) > 0.02)
                     worst_normal = std::max(worst_normal, glm::distance(normals[k], -glm::normalize(gradient)));
             }
@@ -236,7 +236,7 @@ TEST_CASE_FIXTURE(OnDevice, "Marschner-Lobb is reconstructed as well as trilinea
         check_below("normal against the reference", worst_normal, NORMALS);
         check_percent("values", root_mean_square(value_errors), root_mean_square(reference_value_errors), 0.1);
         check_percent("angles", root_mean_square(angles), root_mean_square(reference_angles), 0.1);
-        // Measured elsewhere on "interior points"; where those end moves the numbers by some per cent.
+        // Published numbers are for "interior points"; the choice of where those end changes them by some per cent.
         check_percent("values as measured", root_mean_square(value_errors), measured_value, 10.0);
         check_percent("angles as measured", root_mean_square(angles), measured_degrees, 10.0);
     }
@@ -313,7 +313,7 @@ TEST_CASE_FIXTURE(OnDevice, "noise of the lowest bit does not sparkle")
 TEST_CASE_FIXTURE(OnDevice, "over the outermost voxel a ramp's gradient falls to nothing at the face")
 {
     load(volume_of({16, 16, 16}, [](const glm::dvec3& p) { return 1000.0 * p.x + 1000.0 * p.z; }));
-    // Edge voxels are repeated outside. z runs on as in the middle, so the normal turns away from x.
+    // Edge voxels are repeated outside. z continues as in the middle, so the normal turns away from x.
     const Slice slice(volume(), 8.0, {33, 3}, 1.5);
     const std::vector<glm::dvec3> normals = normals_on(*this, slice);
     const std::vector<glm::dvec3> positions =

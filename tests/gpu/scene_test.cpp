@@ -1,4 +1,4 @@
-// A loaded volume and what goes with it on the device: it learns of every kind of change, and is replaced whole.
+// A loaded volume and its data on the device: it reports every kind of change, and is replaced as a whole.
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ Camera from_the_front(const TestVolume& volume)
     return camera_along(volume, {0, 0, 1}, 60.0);
 }
 
-/// What has changed, for one reason, in one box; empty where nothing has.
+/// The box of voxels changed for one reason; empty if none.
 VoxelBox changed_by(Scene& scene, Scene::Cause cause)
 {
     std::optional<VoxelBox> box;
@@ -31,7 +31,7 @@ VoxelBox changed_by(Scene& scene, Scene::Cause cause)
     return box.value_or(VoxelBox{});
 }
 
-/// Fails where voxels are read.
+/// A source that fails when voxels are read.
 class Torn final : public VolumeSource {
 public:
     explicit Torn(const TestVolume& volume) : VolumeSource(volume.info()) {}

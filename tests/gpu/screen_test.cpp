@@ -1,5 +1,5 @@
-// The panes that a person looks at come to rest on the picture that `shvr render` makes, share the device, and do no
-// more than that takes.
+// The panes of a screen: they come to rest on the picture that `shvr render` makes, share the device, and do no more
+// work than necessary.
 
 #include "engine/live/screen.h"
 
@@ -35,7 +35,7 @@ public:
         session.probe.voxel = probe.center;
         session.light.shaded = true;
     }
-    /// Levels of 255 by which what is shown differs from what is rendered.
+    /// The difference between the shown and the rendered picture, in levels of 255.
     double off(Screen& screen)
     {
         settle(screen);

@@ -1,4 +1,4 @@
-// One struct, two languages: the offsets that the kernels use are those of the C++ compiler.
+// One struct, two languages: the kernels' offsets equal those of the C++ compiler.
 
 #include <cstddef>
 

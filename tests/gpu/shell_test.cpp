@@ -1,5 +1,5 @@
-// The thin-shell iso-surface around the probe against roots found in double precision. What a pixel tells of where its
-// ray was stopped is its share of distance blending, which is linear in the depth.
+// The thin-shell iso-surface around the probe against roots found in double precision. A pixel encodes the place where
+// its ray stopped by its share of distance blending, which is linear in the depth.
 
 #include <cmath>
 #include <random>
@@ -53,7 +53,7 @@ public:
                 .ball_share = 0.0,
                 .shell = ShellLook{.threshold = threshold, .opacity = opacity, .is_box = is_box}};
     }
-    /// The ray of a pixel in voxel space, of unit length in a volume of cubes, from the box on.
+    /// The ray of a pixel in voxel space, of unit length in a volume of cubic voxels, from the box on.
     struct Line {
         glm::dvec3 origin, direction;
     };
@@ -109,7 +109,7 @@ TEST_CASE_FIXTURE(Shells, "the first crossing is where the reference finds it, t
                     const glm::dvec3 at = line.origin + expected[0] * line.direction;
                     const double error =
                         std::abs((1.0 - double(pixel[0])) - (glm::dot(glm::dvec3(depth), at) + depth.w)) * extent;
-                    // A pair of crossings closer than the reference's step is one that either may miss.
+                    // Either may miss a pair of crossings closer than the reference's step.
                     if (is_noise && error > 0.05) {
                         ++wrong;
                         continue;
@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(Shells, "every crossing counts once")
     const Session session = session_of({8, 8});
     const ImageF twice = picture(session, camera, shell(30000.0, 0.3, 40.0));
     for (size_t i = 3; i < twice.rgba.size(); i += 4) CHECK(twice.rgba[i] == doctest::Approx(1.0 - 0.7 * 0.7));
-    // The region ends within it: only the way in is there. Its border is no surface.
+    // The region ends inside: only the entry is drawn. Its border is no surface.
     ProbeLook half = shell(30000.0, 0.3, 6.0, false);
     half.center = glm::dvec3(12.2, 10.1, 11.4) - 9.3 * glm::normalize(camera.target - camera.eye);
     const ImageF once = picture(session, camera, half);

@@ -1,5 +1,4 @@
-// Opaque balls and the probe in a volume: what lies before them, and what the ray caster makes of them in all its
-// variants.
+// Opaque balls and the probe in a volume: what is drawn in front of them, in all variants of the ray caster.
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +48,7 @@ TEST_CASE_FIXTURE(OnDevice, "a session without surfaces is drawn as if there nev
     load(noise_volume({40, 33, 50}, 97));
     const Session session = plain_session(busy_points(), {61, 47});
     const Camera camera = camera_along(volume(), {3, 2, 1}, 60.0);
-    const auto bytes = [&] {  // of what outlives a frame
+    const auto bytes = [&] {  // of everything that outlives a frame
         const std::map<std::string, uint64_t> names = renderer().memory().bytes_by_name();
         return (names.contains("surface nodes") ? names.at("surface nodes") : 0) +
                (names.contains("surface list") ? names.at("surface list") : 0);
@@ -123,7 +122,7 @@ TEST_CASE_FIXTURE(OnDevice, "every variant of the ray caster stops at surfaces")
                     Annotator annotator(renderer());
                     if (painted) CHECK(annotator.paint({.radius_voxels = 5.0, .path = {{20, 20, 20}}}) > 0);
                     const Pixels bare = pixels_of(renderer().render(session, camera).image);
-                    // Before the volume, half in it, behind it; and the probe.
+                    // In front of the volume, half inside it, behind it; and the probe.
                     renderer().scene().set_surfaces(
                         {ball({10, 10, -8}, 6.0, GREEN), ball({30, 10, 0}, 6.0, BLUE), ball({30, 30, 50}, 6.0, RED)});
                     const Picture picture = renderer().render(session, camera, {.probe = probe});
@@ -138,7 +137,7 @@ TEST_CASE_FIXTURE(OnDevice, "every variant of the ray caster stops at surfaces")
                             return glm::distance(glm::dvec3(pixel), color) < 1e-6;
                         });
                     };
-                    // Circles of 113 pixels, of which some centres lie near the edge.
+                    // Circles of 113 pixels, some with centres near the edge.
                     CHECK(std::abs(seen(GREEN) - 113) < 8);
                     CHECK(std::abs(seen(BLUE) - 113) < 8);
                     CHECK(std::abs(seen(probe.color) - 113) < 8);

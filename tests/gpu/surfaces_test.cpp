@@ -1,4 +1,4 @@
-// Opaque balls and rods: where rays meet them, held against distances in double.
+// Opaque balls and rods: where rays meet them, compared with distances in double.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ using namespace shvr::test;
 
 namespace {
 
-/// The signed distance of a point from a surface, and its gradient. A rod is all balls between its two: of those, the
-/// ball that is nearest is found with the slope of the tangent cone.
+/// The signed distance of a point from a surface, and its gradient. A rod is the union of all balls between its two
+/// ends; the nearest of these is found with the slope of the tangent cone.
 struct Distance {
     double value = 1e300;
     glm::dvec3 normal{0.0};
@@ -42,8 +42,8 @@ struct Ray {
     glm::dvec3 at(double s) const { return origin + s * direction; }
 };
 
-/// Where a ray enters a surface whose radii are `grown` larger; infinity where it does not. Distance from a convex body
-/// is a convex function along a line.
+/// Where a ray enters a surface with radii larger by `grown`; infinity if it does not. Distance from a convex body is a
+/// convex function along a line.
 double entry(const SurfaceLook& surface, const Ray& ray, double grown)
 {
     const auto distance = [&](double s) { return distance_from(surface, ray.at(s)).value - grown; };
@@ -81,7 +81,7 @@ public:
 
     Surfaces() { info.size = Size3(100); }
 
-    /// The pass alone: white light from `light`, diffuse only.
+    /// Runs the pass alone: white light from `light`, diffuse only.
     Sight look(const std::vector<SurfaceLook>& surfaces, const Camera& camera)
     {
         const RayPlanes planes = ray_planes(camera, pixels, info);
@@ -114,11 +114,11 @@ public:
 
     struct Errors {
         size_t hits = 0;
-        size_t wrong = 0;            ///< pixels that see what they should not, or do not see what they should
+        size_t wrong = 0;            ///< pixels that show a wrong surface, or wrongly none
         double shade = 0.0;          ///< largest error of the diffuse light
-        double least_length = 1e30;  ///< that a ray went
+        double least_length = 1e30;  ///< shortest length along a ray
     };
-    /// A length must lie between those at which the ray enters surfaces `off` larger and `off` smaller.
+    /// A length must lie between those at which the ray enters surfaces larger and smaller by `off`.
     Errors check(const std::vector<SurfaceLook>& surfaces, const Camera& camera, double off, double length_off = 0.0)
     {
         const Sight sight = look(surfaces, camera);
@@ -277,7 +277,7 @@ TEST_CASE_FIXTURE(Surfaces, "clip planes cut surfaces, and show them filled")
     Camera camera = orthographic(MIDDLE, {0, 0, 1}, 80.0);  // the eye is at z = -150
     light = {0.0f, 0.0f, -1.0f};
     const Errors whole = check(shapes, camera, 1e-4);
-    CHECK(whole.wrong == 0);  // what lies behind the eye is not seen
+    CHECK(whole.wrong == 0);  // objects behind the eye are not visible
     camera.near_distance = 195.0;
     const Sight cut = look(shapes, camera);
     CHECK(double(cut.seen[12 + 24 * 12].a) == doctest::Approx(cut.rays[0].begin).epsilon(1e-6));
@@ -288,7 +288,7 @@ TEST_CASE_FIXTURE(Surfaces, "clip planes cut surfaces, and show them filled")
     const Errors shortened = check(shapes, camera, 1e-4);
     CHECK(shortened.wrong == 0);
     CHECK((shortened.hits > 0 && shortened.hits < whole.hits));
-    // The clip range may leave all of the volume out: from z = 180 on, before it and behind it.
+    // The clip range may exclude the whole volume: from z = 180 on, in front of it and behind it.
     const std::vector<SurfaceLook> outside{ball({50, 50, 400}, 20.0)};
     camera.near_distance = 400.0;
     camera.far_distance = 0.0;
@@ -318,7 +318,7 @@ TEST_CASE_FIXTURE(Surfaces, "a far eye loses nothing")
 
 TEST_CASE_FIXTURE(Surfaces, "65536 voxels from the origin a surface is a thousandth of a voxel off at most")
 {
-    // Lengths along a ray are floats, of which 2^-7 is the last digit out there; what is across the ray is not.
+    // Lengths along a ray are floats, with a last digit of 2^-7 at that distance; positions across the ray are exact.
     info.size = Size3(65536);
     const glm::dvec3 corner(65480.3, 65391.7, 65102.9);
     std::vector<SurfaceLook> rods = random_rods(30, 93, 20.0, 4.0);  // seed 93
@@ -338,7 +338,7 @@ TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds
     std::vector<SurfaceLook> rods = random_rods(1500, 94, 15.0, 3.0);  // seed 94
     Dice dice{std::mt19937(95)};
     for (SurfaceLook& rod : rods) rod.color = dice.point(0.1, 1.0);
-    for (size_t i = 0; i < 300; ++i) {  // the same place twice, in another colour: the first one is seen
+    for (size_t i = 0; i < 300; ++i) {  // the same place twice, in another colour: the first one is visible
         rods.push_back(rods[i]);
         rods.back().color = dice.point(0.1, 1.0);
     }

@@ -1,4 +1,4 @@
-// The surfaces of a trace while it changes.
+// The surfaces of a changing trace.
 
 #include <random>
 
@@ -37,14 +37,14 @@ TEST_CASE_FIXTURE(OnDevice, "a trace that changed is drawn as one that always wa
     const std::vector<SurfaceLook> of_session{{{30, 30, 30}, {30, 30, 30}, 3.0, 3.0, glm::dvec3(0.0, 0.0, 1.0)}};
     renderer().scene().show_surfaces(of_session, trace, session.groups);
     draw(session, camera);
-    REQUIRE(renderer().scene().replace_surfaces({}, {}));  // they are enough to be patched
+    REQUIRE(renderer().scene().replace_surfaces({}, {}));  // enough of them to be patched
 
     const auto copied = [](const Picture& picture) {
         for (const gpu::PassReport& pass : picture.passes)
             if (pass.name == "upload surface list") return true;
         return false;
     };
-    std::vector<std::pair<TraceGraph, Pixels>> patched;  // of several patches in a row
+    std::vector<std::pair<TraceGraph, Pixels>> patched;  // after several patches in a row
     std::vector<Change> done;
     for (int turn = 0; turn < 12; ++turn) {
         CAPTURE(turn);

@@ -1,5 +1,5 @@
-// The view that a person looks at: it must come to rest on the picture that `shvr render` makes, and do no more than
-// that takes.
+// The interactive view: it must come to rest on the picture that `shvr render` makes, and do no more work than
+// necessary.
 
 #include <cstring>
 #include <random>
@@ -182,7 +182,7 @@ TEST_CASE_FIXTURE(Seen, "a camera that never rests is followed, and the last pic
         for (int steps = 0; steps < 10'000'000 && view.revision() == revision; ++steps) view.advance();
         seen += view.revision() != revision;
     }
-    CHECK(seen == 60);  // each picture is begun before the last is sharp
+    CHECK(seen == 60);  // each picture begins before the previous one is sharp
     settle(view);
     CHECK(shown(view) == direct(camera({1, 2, 3.0 + 5.9})));
 }

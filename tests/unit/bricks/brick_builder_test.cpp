@@ -41,7 +41,7 @@ uint16_t expected_code(double voxel, const IntensityWindow& window)
     return static_cast<uint16_t>(std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, 65535.0));
 }
 
-/// Builds with `threads` and compares every brick with one made voxel by voxel.
+/// Builds with `threads` and compares every brick with one built voxel by voxel.
 template <class T>
 void check_against_brute_force(const Size3& size, VoxelType type, int threads)
 {
@@ -190,7 +190,7 @@ TEST_CASE("codes are the rounded map of the window, clamped to it")
             CodeRows(type, window).convert(std::as_bytes(std::span(voxels)), codes);
             size_t wrong = 0;
             for (size_t i = 0; i < codes.size(); ++i) {
-                // The exact path clamps to the last intensity that has a code of its own.
+                // The exact path clamps to the last intensity with its own code.
                 const double whole_upper = window.lower + std::floor(65535.0 / window.codes_per_unit);
                 const uint16_t clamped = expected_code(voxels[i], window);
                 wrong +=
@@ -224,7 +224,7 @@ TEST_CASE("every slice is read once, a few at a time and not far ahead")
     for (const int threads : {1, 3}) {
         const CountingSource source({40, 33, 400});
         build_bricks(source, {0.0, 257.0}, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
-            // At most the slab after the ones whose rows may wait to be taken: threads + 2 rows of two a slab.
+            // At most the slab after those with rows waiting to be taken: threads + 2 rows, two per slab.
             CHECK(source.farthest() <= (brick.z + (threads + 2) / 2 + 2) * 32 + 32);
             CHECK(texels.codes[static_cast<size_t>(TEXELS * TEXELS)] == 257 * (brick.z * 32 % 256));
         });

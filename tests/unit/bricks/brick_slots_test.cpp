@@ -1,4 +1,4 @@
-// Bricks in slots, and which give way: against a model that looks at all of them each time. No device.
+// Bricks in slots, and evictions: against a model that examines all slots each time. No device.
 
 #include "engine/bricks/brick_slots.h"
 
@@ -18,7 +18,7 @@ BrickKey brick(int number)
     return {number % 3, {number, 2 * number, 0}};
 }
 
-/// What BrickSlots promises, said in the simplest way; a place is found by looking through all slots.
+/// The contract of BrickSlots in its simplest form; finds a slot by a search through all of them.
 struct Model {
     struct Slot {
         std::optional<int> brick;
@@ -52,7 +52,7 @@ struct Model {
     {
         return std::any_of(slots.begin() + 1, slots.end(), [](auto& slot) { return !slot.brick; });
     }
-    /// The slot that is to be given up for a brick that is needed so; 0: none.
+    /// The slot to evict for a brick with that need; 0: none.
     size_t victim(BrickNeed need) const
     {
         for (const BrickNeed below : {BrickNeed::picture, BrickNeed::region}) {
@@ -69,7 +69,7 @@ struct Model {
     }
 };
 
-/// One history of uses, needs, arrivals and removals; returns how many bricks had to give way.
+/// One history of uses, needs, arrivals and removals; returns the number of evictions.
 uint64_t play(uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -142,7 +142,7 @@ TEST_CASE("slots: 1000 random histories are those of the simple model")
         CAPTURE(seed);
         evictions += play(seed);
     }
-    CHECK(evictions > 20000);  // they are about something
+    CHECK(evictions > 20000);  // otherwise the tests prove little
 }
 
 TEST_CASE("slots: the brick used longest ago goes, needed ones stay, and a region goes before the picture")

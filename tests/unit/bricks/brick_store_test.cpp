@@ -18,7 +18,7 @@ namespace {
 
 constexpr int64_t SIDE = int64_t{gpu::BRICK_SIZE};
 
-/// A row of bricks whose voxels are their brick's number; notes which brick is read when, and can be told to wait.
+/// A row of bricks whose voxels are their brick's number; records when each brick is read, and can be made to wait.
 class Row : public VolumeSource {
 public:
     explicit Row(int64_t bricks) : VolumeSource(info_of(bricks)) {}
@@ -78,7 +78,7 @@ uint16_t middle_of(const BrickTexels& texels)
     return texels.codes[half + side * (half + side * half)];
 }
 
-/// Takes all that is wanted; returns the bricks in the order in which they came.
+/// Takes all wanted bricks; returns them in order of arrival.
 std::vector<int> take_all(BrickStore& store)
 {
     std::vector<int> taken;
@@ -117,7 +117,7 @@ TEST_CASE("what is no longer wanted is not begun")
     row.waits = true;
     BrickStore store(row, WINDOW, 8 * BRICK_BYTES, 1);
     store.want(keys_of({1, 2, 3, 4}));
-    row.gate.release();  // brick 1 is read; 2 may have been begun
+    row.gate.release();  // brick 1 is read; 2 may have been started
     row.wait_for_reads(1);
     store.want(keys_of({6}));
     row.waits = false;
@@ -142,7 +142,7 @@ TEST_CASE("bricks of a source that has changed are read again, kept ones and tho
     CHECK((take_all(store) == std::vector{1, 2}));
     CHECK((row.order() == std::vector{1, 2, 2}));
 
-    // A brick that is being read, and that read what was there before.
+    // A brick that is being read, from the old data.
     row.waits = true;
     store.want(keys_of({4}));
     while (store.bytes() < 3 * BRICK_BYTES) std::this_thread::yield();
@@ -152,7 +152,7 @@ TEST_CASE("bricks of a source that has changed are read again, kept ones and tho
     CHECK((row.order() == std::vector{1, 2, 2, 4, 4}));
     row.waits = false;
 
-    // A brick that is ready and was not taken comes once, as it is now.
+    // A brick that is ready but not taken is handed out once, with the new data.
     store.want(keys_of({6}));
     REQUIRE(store.wait());
     store.renew(keys_of({6}));
@@ -170,7 +170,7 @@ TEST_CASE("bricks on the host keep within the budget; those used longest ago go 
     CHECK(store.bytes() <= 4 * BRICK_BYTES);
     CHECK(store.peak_bytes() <= 4 * BRICK_BYTES);
     CHECK(store.get(key_of(9)) != nullptr);
-    CHECK(store.counts().loads == 10);  // it was still there
+    CHECK(store.counts().loads == 10);  // it was still kept
     CHECK(store.get(key_of(0)) != nullptr);
     CHECK(store.counts().loads == 11);
     CHECK(store.peak_bytes() <= 4 * BRICK_BYTES);
@@ -217,6 +217,6 @@ TEST_CASE("many loaders, and an owner who keeps changing their mind: what comes 
         CHECK(taken == bricks);
         CHECK(store.bytes() <= 6 * BRICK_BYTES);
     }
-    // The owner's own brick may come on top of what the loaders hold.
+    // The owner's own brick may be added to those that the loaders hold.
     CHECK(store.peak_bytes() <= 7 * BRICK_BYTES);
 }

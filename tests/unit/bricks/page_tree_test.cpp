@@ -28,7 +28,7 @@ PageView front(const VolumeInfo& info, uint32_t pixels, double detail)
     return {.camera = camera_looking("front", info), .pixels = glm::uvec2(pixels), .detail = detail};
 }
 
-/// The leaf that stands for a voxel, as a ray finds it; none where the directory says that nothing is there.
+/// The leaf that covers a voxel, as a ray finds it; null where the directory says that it is empty.
 std::optional<uint32_t> leaf_at(const PageTree& tree, const glm::uvec3& voxel)
 {
     int shift = tree.cell_shift;
@@ -99,9 +99,9 @@ TEST_CASE("what is cut away or shows nothing is no leaf, and rays may leap there
     view.cut.upper = {256.0, 256.0, 96.0};
     const auto left_half = [](const BrickKey& key) { return (key.brick.x << key.level) < 4; };
     const PageTree tree = make_page_tree(info, 4, view, left_half);
-    CHECK(tree.leaves.size() == 4 * 8 * 4);  // the brick at the cut's edge belongs to what is drawn
+    CHECK(tree.leaves.size() == 4 * 8 * 4);  // the brick at the cut's edge is drawn
     for (const PageTree::Leaf& leaf : tree.leaves) CHECK(leaf.key.brick.x < 4);
-    // Four bricks to the nearest leaf: the last column of them is empty as far as three.
+    // Four bricks to the nearest leaf: the last column of them is empty up to three.
     const uint32_t far = tree.entries[gpu::grid_index({7, 3, 1}, tree.counts)];
     CHECK((far >> gpu::PAGE_DISTANCE_SHIFT) == 4);
     const uint32_t near = tree.entries[gpu::grid_index({4, 3, 1}, tree.counts)];

@@ -1,5 +1,5 @@
-// What ambient occlusion means, without a device: closed forms, for the sum over steps and for the few looks that stand
-// for it. Whether the device makes these values is for tests/gpu/occlusion_test.cpp.
+// The definition of ambient occlusion, without a device: closed forms, for the sum over steps and for the few taps that
+// approximate it. tests/gpu/occlusion_test.cpp tests whether the device computes these values.
 
 #include "engine/passes/occlusion.h"
 
@@ -38,7 +38,7 @@ double by_steps(const FieldOpacity& opacity, uint32_t count, const OcclusionSide
     return occlusion_by_steps(opacity, directions(count), 1.0, 2000, 0.0, 0.0, glm::dvec3(0.0), side);
 }
 
-/// At height `h` over an opaque plane, in radii, light from all sides.
+/// The light at height `h` over an opaque plane, in radii, with light from all sides.
 double over_plane(double h)
 {
     return 0.5 + 0.5 * h * (1.0 + std::log(1.0 / h));
@@ -89,7 +89,7 @@ TEST_CASE("an even medium has the closed form: over steps exactly, with six look
         const double extinction = -std::log1p(-a), free = rays_of(16.0, 1).first;
         const double expected = (free - std::expm1(-extinction * (16.0 - free)) / extinction) / 16.0;
         const double found = occlusion_by_taps([&](const glm::ivec3&) { return a; }, rays_of(16.0, 8), {0, 0, 0}, {});
-        // Each stretch is a trapezium, which lets a little more through.
+        // Each stretch is a trapezium, which transmits slightly more.
         CHECK(std::abs(found - expected) < (a < 0.1 ? 0.01 : 0.03));
     }
 }
@@ -116,7 +116,7 @@ TEST_CASE("six looks see planes, gaps and walls within a few hundredths of the c
     compare(
         "floor and wall", [](const glm::ivec3& v) { return v.z <= 3 || v.x > 5 ? 1.0 : 0.0; }, up,
         over_plane(4.5 / radius));
-    // Rays of one length all end in the same stretch, of four units: half of it is the error at worst.
+    // Rays of equal length all end in the same stretch, of four units: half of it is the maximum error.
     compare(
         "shell", [](const glm::ivec3& v) { return glm::length(glm::dvec3(v) - glm::dvec3(1, 2, 3)) > 6.0 ? 1.0 : 0.0; },
         {}, 6.5 / radius, 2.0 / radius);

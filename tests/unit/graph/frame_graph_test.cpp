@@ -21,7 +21,7 @@ Resource import_idle(FrameGraph& graph, const std::string& name, uint32_t id)
     return graph.import(name, {.id = id, .desc = buffer_desc(64), .state = IDLE});
 }
 
-/// A compute pass of one thread that reads and writes by the resources' own names.
+/// A compute pass of one thread that reads and writes resources under their own names.
 Resource pass(FrameGraph& graph, const std::string& name, const std::vector<Resource>& reads,
               std::optional<Resource> writes = {})
 {
@@ -332,7 +332,7 @@ TEST_CASE("a handle of another graph is refused where it can be told")
     Pass reader = graph.compute("reader");
     CHECK(holds(refusal([&] { reader.read("in", later); }), "'in' to a handle that this graph did not make"));
     CHECK(holds(refusal([&] { reader.read("in", Resource{}); }), "a handle that this graph did not make"));
-    // The same index, but a version this graph has not reached.
+    // The same index, but a version that this graph has not reached.
     graph.create("x", buffer_desc(4));
     CHECK(holds(refusal([&] { reader.read("in", later); }), "version 3 of 'x', a handle that this graph did not make"));
     CHECK(holds(refusal([&] { graph.keep(later); }), "a handle that this graph did not make"));
@@ -395,8 +395,8 @@ TEST_CASE("bytes of an image are counted in 64 bits")
 
 // ---- Any graph: no hazard is left -----------------------------------------------------------------------------------
 //
-// Frames are made at random and laid end to end. An independent checker then follows every access through the barriers
-// behind it, as the Vulkan specification defines dependency chains, and looks at every later access to the same object.
+// Random frames are laid end to end. An independent checker follows every access through the barriers after it, as the
+// Vulkan specification defines dependency chains, and examines every later access to the same object.
 
 namespace {
 
@@ -404,7 +404,7 @@ struct Access {
     uint64_t object = 0;
     Stages stage = 0;  // one bit
     bool writes = false;
-    bool earlier = false;  // stands for whatever was in flight before; such accesses do not conflict with each other
+    bool earlier = false;  // stands for any earlier work in flight; such accesses do not conflict with each other
 };
 
 /// What the device does, in order: either a barrier or the accesses of one pass.
@@ -413,7 +413,7 @@ struct Event {
     std::vector<Access> accesses;
 };
 
-/// What is known to come after one access.
+/// What is known to be ordered after one access.
 struct Chain {
     Access access;
     Stages ordered = 0;          // stages that wait for it
@@ -424,7 +424,7 @@ struct Chain {
     {
         const bool direct = barrier.from & access.stage;
         if (direct || (barrier.from & ordered)) ordered |= barrier.to;
-        // Only the writer's own stage can make a write available; what is available can become visible to more.
+        // Only the writer's own stage can make a write available; available data can become visible to more stages.
         const bool available = barrier.memory && direct;
         if (barrier.memory && (direct || (barrier.from & after_available))) visible |= barrier.to;
         if (available || (barrier.from & after_available)) after_available |= barrier.to;
@@ -474,7 +474,7 @@ struct Generator {
     }
     uint32_t below(uint32_t bound) { return uint32_t(random() % bound); }
 
-    /// One frame over the same imports as the frames before it.
+    /// One frame over the same imports as the earlier frames.
     FrameGraph frame()
     {
         FrameGraph graph;
@@ -523,7 +523,7 @@ struct Generator {
     }
 };
 
-/// Independent of compile(): which passes are needed, as the least set closed under the rules of README.md.
+/// Independent of compile(): the passes needed, as the smallest set closed under the rules of README.md.
 std::vector<bool> needed_passes(const FrameGraph& graph)
 {
     const auto& passes = graph.passes();
@@ -547,7 +547,7 @@ std::vector<bool> needed_passes(const FrameGraph& graph)
     return needed;
 }
 
-/// Compiles `frames` frames that follow each other and lists what the device does.
+/// Compiles `frames` consecutive frames and lists the device's work.
 std::vector<Event> run_frames(Generator& generator, uint32_t frames)
 {
     std::vector<Event> events;
@@ -555,7 +555,7 @@ std::vector<Event> run_frames(Generator& generator, uint32_t frames)
     for (uint32_t frame = 0; frame < frames; ++frame) {
         const FrameGraph graph = generator.frame();
         const CompiledGraph compiled = graph.compile();
-        // A transient's memory was somebody else's a moment ago.
+        // A transient's memory was just used by something else.
         const uint64_t first_transient = (frame + 1) * 1000;
         for (uint32_t i = 0; i < Generator::TRANSIENTS; ++i)
             events.push_back(anything_in_flight(first_transient + Generator::IMPORTS + i));

@@ -1,4 +1,4 @@
-// Names of compiled kernels: in the kernel's own order, whatever order they are chosen in, and nothing left out.
+// Names of compiled kernels: in the kernel's own order, whatever the order of the choices, and complete.
 
 #include "engine/graph/kernel_variants.h"
 

@@ -98,7 +98,7 @@ TEST_CASE("turning right moves the eye to the viewer's right, turning up raises 
     CHECK(orbited(camera, glm::dvec3(0.0), 10.0, 0.0).eye.x > 1.0);
     CHECK(orbited(camera, glm::dvec3(0.0), 0.0, 10.0).eye.y > 1.0);
     CHECK(is_near(moved(camera, {1, 2, 3}).eye, {1, 2, 7}));
-    // Rolled clockwise for the viewer, what was up leans to the right: the camera's own up leans to the left.
+    // After rolling clockwise for the viewer, the old up leans to the right: the camera's own up leans to the left.
     CHECK(axes_of(rolled(camera, 10.0)).up.x < -0.1);
 }
 

@@ -44,7 +44,7 @@ double distance_to(const Ray& ray, const glm::dvec3& point)
 
 using Vector = glm::vec<3, long double>;
 
-/// Where the ray of picture position (x, y) is closest to `point` (voxel space), in long double and straight from the
+/// Where the ray of picture position (x, y) is closest to `point` (voxel space), in long double and directly from the
 /// eye; `miss` is their distance.
 long double miss_of_exact_ray(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume, double x,
                               double y, const glm::dvec3& point)
@@ -174,7 +174,7 @@ TEST_CASE("rays are accurate to 1e-9 voxels from 1e-3 to 1e7 volume sizes away")
         Camera camera;
         camera.target = centre + glm::dvec3(1.25, -2.5, 0.125);
         camera.eye = camera.target + back * (sizes * 64.0);
-        // Held inside the picture, as someone who looks from there through a telescope would.
+        // Keeps the volume filling the picture, as a telescope would.
         camera.fov_y_degrees = std::min(60.0, 2.2 * radius / (sizes * 64.0) * 57.3);
         const RayPlanes planes = ray_planes(camera, pixels, volume);
         REQUIRE_FALSE(planes.empty);

@@ -1,4 +1,4 @@
-// Steps between two densities, against the integral taken in thousands of parts.
+// Steps between two densities, against the integral in thousands of parts.
 
 #include "engine/look/preintegration.h"
 
@@ -20,7 +20,7 @@ glm::dvec4 entry(const std::vector<glm::vec4>& table, uint32_t front, uint32_t b
     return glm::dvec4(table[size_t(back) * side + front]);
 }
 
-/// Light and opacity of a step in parts in which nothing changes.
+/// Light and opacity of a step, in parts with constant values.
 glm::dvec4 summed(const TransferFunction& function, double step, double front, double back, int parts)
 {
     glm::dvec3 light(0.0);
@@ -79,7 +79,7 @@ TEST_CASE("entries are the integral between their densities")
             const glm::dvec4 expected =
                 summed(function, step, density_of(function, front), density_of(function, back), 20000);
             const glm::dvec4 seen = entry(table, front, back);
-            CHECK(std::abs(seen.a - expected.a) < 2e-4);  // what 20000 parts are off by at a step of the function
+            CHECK(std::abs(seen.a - expected.a) < 2e-4);  // the error of 20000 parts at a step of the function
             for (int channel = 0; channel < 3; ++channel) CHECK(std::abs(seen[channel] - expected[channel]) < 5e-3);
             CHECK(entry(table, back, front).a == doctest::Approx(seen.a).epsilon(1e-6));
         }

@@ -1,4 +1,4 @@
-// Surfaces of which a few change at a time.
+// A set of surfaces with a few changes at a time.
 
 #include "engine/look/surface_forest.h"
 
@@ -61,7 +61,7 @@ bool same_bytes(const Value& a, const Value& b)
     return std::memcmp(&a, &b, sizeof(Value)) == 0;
 }
 
-/// What a search that opens every box comes by, in any order; every surface in all of the boxes that were opened for
+/// What a search that opens every box visits, in any order; every surface must be inside all boxes opened for it.
 /// it.
 std::vector<gpu::Surface> found_in(const std::vector<gpu::SurfaceNode>& nodes, const std::vector<gpu::Surface>& list)
 {
@@ -82,7 +82,7 @@ bool is_before(const gpu::Surface& a, const gpu::Surface& b)
     return a.number < b.number;
 }
 
-/// The forest and what a device has of it hold exactly `truth`.
+/// The forest and the device's copy of it contain exactly `truth`.
 struct Watched {
     SurfaceForest forest;
     std::map<uint64_t, SurfaceLook> truth;
@@ -149,12 +149,12 @@ TEST_CASE("after any changes a search finds the surfaces there are, on the devic
             keys.push_back(at->first);
             if (random.below(3) > 0) now[at->first] = random.rod();  // changed, not removed
         }
-        if (random.below(4) == 0) keys.push_back(surface_key(SurfaceKind::session, 7));  // is not there
+        if (random.below(4) == 0) keys.push_back(surface_key(SurfaceKind::session, 7));  // does not exist
         for (uint32_t i = random.below(4); i > 0; --i) now[surface_key(SurfaceKind::node, next++)] = random.rod();
         std::vector<KeyedSurface> surfaces;
         for (const auto& [key, look] : now) surfaces.push_back({key, look});
         REQUIRE(watched.replace(keys, surfaces));
-        if (turn % 3 == 0) watched.check();  // otherwise several changes are sent at once
+        if (turn % 3 == 0) watched.check();  // otherwise several changes are uploaded at once
     }
     watched.check();
 }
@@ -192,7 +192,7 @@ TEST_CASE("what would cost as much as a new forest is left to one, and what is r
     many.pop_back();
     CHECK(watched.replace({}, many));
     CHECK(!watched.replace({}, {last}));
-    CHECK(watched.replace({many[0].key}, {last}));  // one goes, one comes
+    CHECK(watched.replace({many[0].key}, {last}));  // one is removed, one is added
     watched.check();
 
     KeyedSurface broken{surface_key(SurfaceKind::node, 12), {}};

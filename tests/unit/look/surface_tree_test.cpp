@@ -42,7 +42,7 @@ SurfaceTree tree_of(const std::vector<SurfaceLook>& surfaces)
     return surface_tree(keyed(surfaces), volume());
 }
 
-/// Every surface in one leaf, inside the boxes above it; children within their parent, one after the other.
+/// Checks that every surface is in one leaf and inside the boxes above it, and children inside their parent, in order.
 void check_tree(const SurfaceTree& tree, size_t most_in_leaf)
 {
     REQUIRE(!tree.nodes.empty());
@@ -101,7 +101,7 @@ TEST_CASE("every surface is in one leaf, inside every box around it")
         for (const gpu::Surface& surface : tree.list) seen[surface.number] = true;
         CHECK(std::ranges::count(seen, true) == ptrdiff_t(count));
     }
-    // Nothing to tell them apart by, and one that outweighs all others.
+    // Identical ones, and one that outweighs all others.
     check_tree(tree_of(std::vector<SurfaceLook>(5000)), SURFACES_IN_LEAF);
     std::vector<SurfaceLook> uneven = rods(2000, 1e-3, 22);
     uneven.push_back({.from = glm::dvec3(5e5), .to = glm::dvec3(5e5), .radius_from = 3.0, .radius_to = 3.0});
@@ -114,7 +114,7 @@ TEST_CASE("a hundred thousand rods are sorted in far less than a second")
     const std::vector<SurfaceLook> many = rods(100'000, 500.0, 23);
     const std::clock_t begun = std::clock();
     const SurfaceTree tree = tree_of(many);
-    const double seconds = double(std::clock() - begun) / CLOCKS_PER_SEC;  // of the processor, however busy it is
+    const double seconds = double(std::clock() - begun) / CLOCKS_PER_SEC;  // CPU time, however busy the processor is
     MESSAGE("100000 rods: " << seconds * 1e3 << " ms, " << tree.nodes.size() << " nodes");
     CHECK(seconds < 1.0);
     CHECK(tree.nodes.size() < 2 * tree.list.size());
