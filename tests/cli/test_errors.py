@@ -33,7 +33,7 @@ class Usage(CliTest):
         self.check_refused("reander", "a", status=2, says=['"reander"', "render", "view"])
 
     def test_wrong_usage_names_the_help_of_its_command(self):
-        self.check_refused("render", "a", "--sise", "1", status=2, says=["--sise", "see shvr render --help"])
+        self.check_refused("render", "a", "-o", "a.png", "--sise", "1", status=2, says=["--sise", "see shvr render --help"])
 
     def test_the_version_is_told(self):
         self.assertRegex(self.check("--version").stdout, r"^shvr \d+\.\d+\.\d+\n$")
