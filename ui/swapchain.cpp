@@ -297,7 +297,7 @@ void Swapchain::draw_layers(VkCommandBuffer commands, VkImage target, const std:
                                .extent = {size.x, size.y, 1}});
         }
         if (!regions.empty()) {
-            if (first > 0)  // blended over the image
+            if (first > 0)  // overwrites earlier copies
                 memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
             // A copy, not a blit: on a software device a blit of the whole view takes longer than the whole interface.
