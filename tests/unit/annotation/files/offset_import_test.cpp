@@ -21,8 +21,8 @@ VolumeInfo volume_of(const Size3& size, VoxelType type)
     return {.name = "scan", .format = "test", .size = size, .type = type, .spacing = {0.5, 0.25, 1.5}, .unit = "um"};
 }
 
-/// Some bricks without offsets; the largest and the smallest offset; the volume's first voxel has one, its last has
-/// none.
+/// Random offsets. One brick in three has none; the others begin with the largest, the most negative and the smallest
+/// positive offset.
 DensityField random_field(const Size3& size, VoxelType type, uint32_t seed)
 {
     std::mt19937 random(seed);
