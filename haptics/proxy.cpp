@@ -36,7 +36,7 @@ Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, 
             moments.length += b - a;
             moments.first += 0.5 * (b * b - a * a);
             moments.second += (b * b * b - a * a * a) / 3.0;
-            // Adding the lowest bit carries through the run and clears it; what the carry sets is masked out.
+            // Adding the lowest bit carries through the run and clears it; the bit set by the carry is masked out.
             bits &= bits + (bits & (0u - bits));
         }
         voxel = word_last + 1;

@@ -40,7 +40,7 @@ struct TimeHistogram {
     double quantile_us(double share) const noexcept;
 };
 
-/// What the application sees of the servo.
+/// The servo's state, as published to the application.
 struct ServoState {
     uint64_t time_ns = 0;
     uint64_t ticks = 0;

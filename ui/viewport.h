@@ -4,7 +4,7 @@
 //
 //   no button          the probe follows in its plane          wheel          zoom
 //   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
-//   middle drag        move (also Shift + left drag)           double click   put the probe onto what is seen there
+//   middle drag        move (also Shift + left drag)           double click   put the probe onto the surface there
 //   right held, or F   paint, or add a node            M held         the selected node goes with the probe
 //
 // In a map, left and middle drag move the camera and the wheel takes it forward; in a slice the wheel moves the slice.

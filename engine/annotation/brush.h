@@ -1,5 +1,5 @@
 #pragma once
-// Brushes, and what one stroke of a brush is: the same description for scripts, the window and a stylus.
+// Brushes, and the description of one stroke, shared by scripts, the window and a stylus.
 
 #include <array>
 #include <optional>
@@ -63,7 +63,7 @@ struct BrushSettings {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;                  ///< 0 erases
-    std::optional<double> threshold{};  ///< intensity; the middle of what the transfer function shows
+    std::optional<double> threshold{};  ///< intensity; default: the middle of the visible range
     double radius_voxels = 6.0;         ///< along x; of the probe, too
     int connectivity = 6;               ///< 6 or 26
     /// Density painting: the brush raises intensities, beside painting its group or instead of it.

@@ -1,5 +1,5 @@
 #pragma once
-// What a stroke does to density offsets: the rule of density.h, for the voxels that a brush selects at each position.
+// Applies a stroke to density offsets: the rule of density.h, for the voxels that a brush selects at each position.
 //
 //     p(v) = P                                  flat
 //     p(v) = P max(0, 1 - d / r)                distance: d from the voxel's centre to the position, in physical units;

@@ -36,7 +36,7 @@ struct BrickRun {
     bool operator==(const BrickRun&) const = default;
 };
 
-/// What changed in one brick. Runs ascend and do not overlap.
+/// The changes in one brick. Runs ascend and do not overlap.
 template <class Value>
 struct BrickChange {
     int64_t brick = 0;  ///< linear index in the grid of bricks, x fastest
@@ -103,7 +103,7 @@ protected:
     /// The value of a voxel of the volume (SHVR_CHECK).
     Value value_at(const Size3& voxel) const;
 
-    /// What error messages call a value: "group 3".
+    /// Name of a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
     /// Whether voxels may come to hold a value; empty: any.
     using Allowed = std::function<bool(Value)>;

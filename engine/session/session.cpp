@@ -31,7 +31,7 @@ bool is_session_file(const fs::path& path)
 /// The session file that `path` refers to; empty if it is a volume file.
 fs::path session_file_of(const fs::path& path)
 {
-    std::error_code ignored;  // what cannot be looked at is treated as absent
+    std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
         if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");

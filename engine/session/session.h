@@ -49,7 +49,7 @@ struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;  ///< for bare voxels
-    OpenOptions open_options;             ///< what to take from files that hold more than one volume
+    OpenOptions open_options;             ///< selects from files that hold more than one volume
     /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and
     /// in a session that was only read. Not written.
     std::string volume_hash;

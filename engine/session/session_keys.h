@@ -151,7 +151,7 @@ std::vector<SessionKey> session_keys();
 inline const NumberRange SHARE{0.0, 1.0};
 /// Far beyond any volume in any unit, and far below where squares overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};
-/// What voxels hold.
+/// The range of voxels.
 inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 
 // session_read.cpp

@@ -54,8 +54,8 @@ TraceMeasures measure(const TraceGraph& trace);
 Topology topology_of(const TraceGraph& trace);
 
 /// Of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners (26), unpainted
-/// ones over faces (6); what lies outside the volume is unpainted. b1 comes from the Euler characteristic of the union
-/// of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
+/// ones over faces (6); voxels outside the volume are unpainted. b1 comes from the Euler characteristic of the union of
+/// the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
 /// and memory in proportion to the box of bricks that the voxels lie in; fails where that has more than 2^36 voxels.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 

@@ -53,7 +53,7 @@ struct TraceComparison {
     /// Segments of the trace (cut at those nodes) that leave the truth or go over to a segment that does not begin
     /// there.
     int64_t wrong = 0;
-    /// Segments that go along a part of the truth which another one goes along, too.
+    /// Segments that follow a part of the truth that another segment follows, too.
     int64_t doubled = 0;
     /// Ends of the trace near a branch of the truth that is traced, but not joined to it.
     int64_t gaps = 0;

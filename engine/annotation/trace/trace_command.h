@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// For what an operation does not state.
+/// Defaults for values that an operation does not state.
 struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< of the volume
     double radius_voxels = 6.0;  ///< the probe's

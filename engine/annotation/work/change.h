@@ -18,7 +18,7 @@
 
 namespace shvr {
 
-/// Nothing but `apply` changes what is annotated.
+/// Only `apply` changes the annotation.
 struct Document {
     Mask mask;
     TraceGraph trace;
@@ -42,7 +42,7 @@ std::vector<Change> as_changes(std::vector<Record> records)
 }
 
 struct Command {
-    std::string label;  ///< what the status bar says: "flood fill, group 3"
+    std::string label;  ///< text for the status bar: "flood fill, group 3"
     std::vector<Change> changes;
 };
 

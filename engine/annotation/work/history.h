@@ -17,7 +17,7 @@ using RecordNumber = uint64_t;
 
 class History {
 public:
-    /// What the journal holds of a record; fails where it cannot be read.
+    /// The journal's content of a record; fails if it cannot be read.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
     /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the

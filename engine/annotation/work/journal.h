@@ -32,7 +32,7 @@ public:
     /// Continues after the prefix that `before` found; what follows it is kept as JOURNAL.rest1, .rest2 and so on.
     /// Fails where the file cannot be created or written, with JournalTaken where another process has it.
     Journal(const std::filesystem::path& path, JournalScan before);
-    /// Tries to write what is still queued.
+    /// Tries to write the queue.
     ~Journal();
     Journal(const Journal&) = delete;
 
@@ -46,7 +46,7 @@ public:
     RecordNumber durable() const;
     /// Why nothing can be written at present; empty where it can.
     std::string failure() const;
-    /// Size of the file, including what is queued (uncompressed).
+    /// Size of the file, including the queue (uncompressed).
     uint64_t bytes() const;
 
     /// The content of a durable record.

@@ -45,11 +45,11 @@ struct JournalRecord {
     uint64_t checksum = 0;
 };
 
-/// What could be read of a journal: nothing where there is no file.
+/// The readable part of a journal: empty if there is no file.
 struct JournalScan {
     std::vector<JournalRecord> records;
     uint64_t end = 0;         ///< of the valid prefix
-    uint64_t file_bytes = 0;  ///< including what follows
+    uint64_t file_bytes = 0;  ///< including unreadable data at the end
     uint64_t inode = 0;       ///< 0: there is no file
 
     /// Of the last record; 0 where there is none.

@@ -25,7 +25,7 @@ struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
-    VolumeInfo volume{};                               ///< what is annotated
+    VolumeInfo volume{};                               ///< the annotated volume
 };
 
 class Work {
@@ -36,7 +36,7 @@ public:
     Work(const Work&) = delete;  // its history holds a pointer to it
 
     enum class Start {
-        as_left,  ///< with what the journal, or the saved files, hold
+        as_left,  ///< with the contents of the journal or of the saved files
         fresh,    ///< empty; an existing journal is set aside at the first command
     };
     /// For a Work without commands. Returns messages for the user: unsaved work, a damaged end of the journal, files

@@ -251,7 +251,7 @@ TEST_CASE("deleting a segment leaves its branches")
     desk.perform(delete_selected(desk.trace()));
     CHECK(desk.trace().nodes().size() == 4);
     CHECK(desk.trace().nodes().contains(2));
-    CHECK(segments_of(desk.trace()).size() == 1);  // what was a branch is one no more
+    CHECK(segments_of(desk.trace()).size() == 1);  // the former branch is none any more
     desk.history.undo(desk.document);
     CHECK(segments_of(desk.trace()).size() == 3);
 }
