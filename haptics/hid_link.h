@@ -37,7 +37,7 @@ using HidOpener = std::function<std::unique_ptr<HidPort>()>;
 
 struct HidLinkOptions {
     bool allow_force = false;  ///< takes effect only if the profile is verified
-    bool realtime = false;     ///< SCHED_FIFO for both threads, where the system lets us
+    bool realtime = false;     ///< SCHED_FIFO for both threads, if the system allows it
 };
 
 /// `port` is open and its profile has an input report. `reopen` is called on the reader's thread. Force reports have

@@ -57,7 +57,7 @@ public:
     /// The device has finished all frames up to this one.
     void done(uint64_t number, double time_s);
     double last_begun_s() const { return last_begun_s_; }
-    /// Median of the last frames; 0 where there is none.
+    /// Median of the last frames; 0 if there is none.
     double recent_frame_ms() const;
 
     /// The report, without the entries that only the application knows.

@@ -39,7 +39,7 @@ public:
         int64_t found = 0, kept = 0;
         int64_t foreground_voxels = 0;  ///< of all components
         int64_t kept_voxels = 0;
-        int64_t largest_voxels = 0;      ///< 0 where there is none
+        int64_t largest_voxels = 0;      ///< 0 if there is none
         std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MOST_LARGEST
         int64_t provisional = 0;         ///< labels
         int64_t peak_bytes = 0;          ///< of memory while labelling

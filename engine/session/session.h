@@ -118,7 +118,8 @@ TissueRange tissue_range(const VolumeStatistics& statistics);
 /// half of all voxels), so that the air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
-/// The mean intensity that a transfer function shows, weighted by its opacity: the brush's default threshold.
+/// Halfway between a transfer function's lowest point and its mean intensity, weighted by opacity, within the volume's
+/// range: the brush's default threshold.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".

@@ -163,7 +163,7 @@ bool is_camera_object(const std::string& name_or_json);
 glm::dvec3 read_color(const JsonNode& node);
 
 // session_settings.cpp
-/// Applies "key=value" settings; nothing where the document is no object, which `read_session` refuses.
+/// Applies "key=value" settings; does nothing if the document is not an object, which `read_session` refuses.
 void apply_settings(JsonDocument& document, const std::vector<std::string>& settings);
 
 }  // namespace shvr

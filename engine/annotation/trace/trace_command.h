@@ -23,7 +23,7 @@ struct TraceEffect {
     std::optional<TraceSelection> selection;  ///< the new selection
 };
 
-/// Fails where the operation cannot be carried out, or its target is farther away than it allows.
+/// Fails if the operation cannot be carried out, or its target is farther away than it allows.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
 }  // namespace shvr

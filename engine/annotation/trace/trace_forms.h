@@ -62,7 +62,7 @@ struct TraceTrees {
     std::vector<Place> places;         ///< depth first, roots (smallest numbers first) without an internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
-/// Fails where there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
+/// Fails if there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
 
 }  // namespace shvr

@@ -94,7 +94,7 @@ public:
     /// Never uses numbers below these, which a file states because of nodes that were deleted.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
-    /// The node nearest to a position, the smallest number of several; nothing where there are no nodes.
+    /// The node nearest to a position, the smallest number of several; nothing if there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
     /// Numbers, lengths and segments; kept up to date, so it costs little at any size.

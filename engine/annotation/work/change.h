@@ -48,7 +48,7 @@ struct Command {
 
 /// A record that does not fit is our mistake (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// All of them in order, or in reverse order backwards. For records from files: fails with the reason where one does
+/// All of them in order, or in reverse order backwards. For records from files: fails with the reason if one does
 /// not fit, and then the document is as it was.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
 /// About how much memory they take.

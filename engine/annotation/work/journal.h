@@ -30,21 +30,21 @@ public:
 class Journal {
 public:
     /// Continues after the prefix that `before` found; what follows it is kept as JOURNAL.rest1, .rest2 and so on.
-    /// Fails where the file cannot be created or written, with JournalTaken where another process has it.
+    /// Fails if the file cannot be created or written, with JournalTaken if another process holds it.
     Journal(const std::filesystem::path& path, JournalScan before);
     /// Tries to write the queue.
     ~Journal();
     Journal(const Journal&) = delete;
 
-    /// Fails where the content is larger than MOST_RECORD_BYTES.
+    /// Fails if the content is larger than MOST_RECORD_BYTES.
     RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
     /// The number of the last record appended.
     RecordNumber last() const;
-    /// Waits until everything appended is on disk; fails with the reason where that is not possible.
+    /// Waits until everything appended is on disk; fails with the reason if that is not possible.
     void flush();
     /// All records up to this one are on disk.
     RecordNumber durable() const;
-    /// Why nothing can be written at present; empty where it can.
+    /// Why nothing can be written at present; empty if it can.
     std::string failure() const;
     /// Size of the file, including the queue (uncompressed).
     uint64_t bytes() const;
@@ -61,7 +61,7 @@ private:
     void write();
     /// Frames the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
-    /// Returns why it failed; empty where it did not.
+    /// Returns why it failed; empty if it did not.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
 

@@ -21,7 +21,7 @@ namespace shvr {
 struct JournalSubject {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    std::string image{};  ///< the volume's content hash; empty where it was never computed
+    std::string image{};  ///< the volume's content hash; empty if it was never computed
     bool operator==(const JournalSubject&) const = default;
 };
 
