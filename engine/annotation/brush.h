@@ -58,7 +58,7 @@ constexpr std::span<const Spelling<RegionShape>> spellings_of(RegionShape)
     return REGION_SHAPES;
 }
 
-/// How a person has set the brush.
+/// The user's settings of the brush.
 struct BrushSettings {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
@@ -83,7 +83,7 @@ struct PaintOp {
     std::vector<glm::dvec3> path;  ///< voxel coordinates
     /// Offsets for the selected voxels; group 0 removes theirs.
     std::optional<DensityBrush> density{};
-    bool paints_group = true;  ///< false: offsets alone
+    bool paints_group = true;  ///< false: offsets only
     bool operator==(const PaintOp&) const = default;
 
     /// Removes voxels from their group; also their offsets, if it paints offsets.

@@ -67,7 +67,7 @@ struct Scene {
     std::vector<uint8_t> labels{};  ///< empty, or one per voxel; 0 = transfer function, else index of a group
     std::array<Group, 256> groups{};
     std::optional<Shading> shading{};
-    std::optional<DistanceBlend> blend{};  ///< in integrate_discrete alone
+    std::optional<DistanceBlend> blend{};  ///< in integrate_discrete only
     glm::dvec3 cut_min{0.0};               ///< voxel space; nothing outside the cut box or the volume is drawn
     glm::dvec3 cut_max{std::numeric_limits<double>::infinity()};
     glm::dvec3 background{0.0};  ///< linear light

@@ -31,7 +31,7 @@ std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t g
 
 /// The argument of `TraceGraph::select`.
 TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// The nearest of the selected node's internodes, since among many close ones a person means one of this node.
+/// The nearest of the selected node's internodes, since among many close ones the user means one of this node.
 TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
 /// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);

@@ -50,7 +50,7 @@ private:
 
     std::map<uint8_t, Group> groups_;  ///< those that have internodes
     size_t inner_nodes_ = 0;           ///< with exactly two internodes: a segment goes through them
-    size_t closed_segments_ = 0;       ///< loops of such nodes alone
+    size_t closed_segments_ = 0;       ///< loops of such nodes only
 };
 
 }  // namespace shvr

@@ -81,7 +81,7 @@ public:
     const std::map<uint8_t, double>& internode_radii() const { return internode_radii_; }
     const TraceNode& node(uint32_t number) const;
     const TraceInternode& internode(uint32_t number) const;
-    /// Ascending; empty for a node that stands alone.
+    /// Ascending; empty for an isolated node.
     std::span<const uint32_t> internodes_of(uint32_t node) const;
     std::optional<uint32_t> internode_between(uint32_t a, uint32_t b) const;
     double length_of(const TraceInternode& internode) const;

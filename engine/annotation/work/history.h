@@ -1,5 +1,5 @@
 #pragma once
-// One history for everything a person does. Undo and redo are one loop over the records of a command and know nothing
+// One history for everything the user does. Undo and redo are one loop over the records of a command and know nothing
 // of tools: a new tool makes new command contents, never new undo code.
 //
 // Commands that the journal holds can be dropped from memory, the oldest first; undoing one fetches it again.

@@ -1,12 +1,12 @@
 #pragma once
-// The journal: every command of a person, appended to a file as it happens. The journal's thread writes at once (a
+// The journal: every command of the user, appended to a file as it happens. The journal's thread writes at once (a
 // killed program loses the last milliseconds) and syncs at most every 100 ms (a power cut loses no more than that and
 // the time the disk takes).
 //
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
-// While the disk refuses, nothing is lost and nobody waits: records stay in memory, `failure` says why, and writing is
-// retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
+// While the disk refuses, nothing is lost and no caller waits: records stay in memory, `failure` says why, and writing
+// is retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
 //
 // One thread appends; any thread may query.
 

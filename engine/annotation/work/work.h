@@ -1,5 +1,5 @@
 #pragma once
-// A person's work: the document, its history, the journal that keeps both, and the files it is saved to.
+// The user's work: the document, its history, the journal that keeps both, and the files it is saved to.
 //
 // The journal is the truth between sessions. Opening replays it from its last complete state, so the history continues
 // where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs; they are
