@@ -1,9 +1,9 @@
 #pragma once
-// What every haptic device is to the servo: a place that is read and a force that is written, in SI units and in the
-// device's own frame (+x right, +y up, +z towards the user). Units of reports and of models are converted behind it.
+// A haptic device as the servo sees it: it reads a position and writes a force, in SI units and in the device's own
+// frame (+x right, +y up, +z towards the user). Implementations convert the units of their reports or models.
 //
-// The servo's thread calls read() and write(), and nothing else does. Both return at once (a device that blocks has
-// threads of its own), neither throws, allocates, locks or logs.
+// Only the servo's thread calls read() and write(). Both return at once (a device that blocks has its own threads);
+// neither throws, allocates, locks or logs.
 
 #include <cstdint>
 
@@ -18,13 +18,13 @@ inline constexpr uint32_t PAINT_BUTTON = 1u << 0;
 inline constexpr uint32_t MOVE_BUTTON = 1u << 1;  ///< moves the volume
 
 struct DeviceState {
-    uint64_t time_ns = 0;         ///< when the device was there, by its own steady clock: only differences count
+    uint64_t time_ns = 0;         ///< time of the position, by the device's own steady clock: only differences count
     uint32_t sequence = 0;        ///< of this state, counting up; a gap means lost states
-    uint32_t force_sequence = 0;  ///< of the force in effect then
+    uint32_t force_sequence = 0;  ///< of the force in effect at that time
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
-    uint32_t jump = 0;     ///< when it changes the device was put there at once (simulated ones): no glitch
+    uint32_t jump = 0;     ///< changes when a simulated device was moved there at once: no glitch
     bool calibrated = true;
 };
 
@@ -41,9 +41,9 @@ struct DeviceCaps {
 
 enum class ReadResult : uint8_t {
     fresh,      ///< a new state
-    stale,      ///< nothing new since the last read; the state is left alone
+    stale,      ///< nothing new since the last read; the state is unchanged
     lost,       ///< the device is gone
-    malformed,  ///< it sent what its profile does not describe; the state is left alone
+    malformed,  ///< it sent a report that its profile does not describe; the state is unchanged
 };
 
 class HapticDevice {
@@ -51,7 +51,7 @@ public:
     virtual ~HapticDevice() = default;
     virtual DeviceCaps caps() const noexcept = 0;
     virtual ReadResult read(DeviceState& state) noexcept = 0;
-    /// The force on the hand from now on. False where the device is gone.
+    /// Sets the force on the hand from now on. False if the device is gone.
     virtual bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept = 0;
 };
 

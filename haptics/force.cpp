@@ -8,14 +8,14 @@ namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
-/// A servo that was held up for longer fades on as if it had been only that long.
+/// Fades treat a longer pause of the servo as one of this length.
 constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
 
 bool is_place(const DeviceState& state)
 {
     const glm::dquat& q = state.rotation;
     const bool is_near = std::abs(state.position_m.x) <= MOST_REACH_M && std::abs(state.position_m.y) <= MOST_REACH_M &&
-                         std::abs(state.position_m.z) <= MOST_REACH_M;  // false for what is not a number
+                         std::abs(state.position_m.z) <= MOST_REACH_M;  // false for NaN
     return is_near && std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
 }
 
@@ -30,7 +30,7 @@ void disengage(ForceMemory& memory)
     memory.engagement = 0.0;
 }
 
-/// No force from this tick on, past every limit of its change.
+/// No force from this tick on, ignoring the limit on its change.
 ForceStep stop(const ForceSettings& settings, ForceMemory& memory, uint32_t flags)
 {
     memory.flags = (memory.flags & FORCE_FAULT) | flags;
@@ -54,10 +54,10 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
     disengage(memory);
 }
 
-/// Exact for a velocity that is constant over the interval, so that damping does not depend on the rate.
+/// Exact for a constant velocity over the interval, so that damping does not depend on the rate.
 void accept_next(const DeviceState& state, ForceMemory& memory)
 {
-    // The device's clock may stand still or go back; only then is nothing learned about the velocity.
+    // If the device's clock stands still or goes back, the velocity is left as it was.
     const auto nanoseconds = int64_t(state.time_ns - memory.last.time_ns);
     if (nanoseconds > 0) {
         const double dt = double(nanoseconds) * 1e-9;
@@ -78,7 +78,7 @@ void believe_or_not(const DeviceState& state, ForceMemory& memory)
     if (memory.glitches >= GLITCHES_TO_ACCEPT) accept_elsewhere(state, memory);
 }
 
-/// `value` after `dt_ns`, on its way to 0 or 1, which takes `whole_ns`.
+/// `value` after `dt_ns` of a fade towards 0 or 1 that takes `whole_ns` in full.
 double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
 {
     const double change = double(dt_ns) / double(whole_ns);
@@ -91,8 +91,8 @@ glm::dvec3 shortened(const glm::dvec3& v, double most)
     return length > most ? v * (most / length) : v;
 }
 
-/// The proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so that its transpose, divided by
-/// the scale's square, is its inverse.
+/// The proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so its inverse is its transpose
+/// divided by the scale squared.
 glm::dvec3 spring(const ForceSettings& settings, const DeviceCaps& caps, const glm::dvec3& offset)
 {
     const double scale = settings.workspace.scale();
@@ -111,7 +111,7 @@ struct Moment {
     uint64_t now_ns = 0, dt_ns = 0;
 };
 
-/// Spring and damping, faded, but without limits.
+/// Spring and damping, faded, before the limits.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
                ForceMemory& memory)
 {
@@ -120,7 +120,7 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     const Proxy proxy = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, settings.law);
     const glm::dvec3 pull = spring(settings, caps, proxy.offset);
 
-    // What is not known cannot be called small.
+    // An unknown force cannot count as small.
     const bool may_begin = !caps.outputs_force || (usable && glm::length(pull) < ENGAGE_BELOW_N);
     memory.has_begun = memory.has_begun || may_begin;
     const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
@@ -148,7 +148,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult
                                : std::min(now_ns - memory.last_tick_ns, LONGEST_TICK_NS);
     memory.last_tick_ns = now_ns;
 
-    // ---- Where the hand is ----
+    // ---- The hand's position ----
     if (result == ReadResult::lost) return stop(settings, memory, FORCE_NO_DEVICE);
     if (result == ReadResult::fresh) {
         if (!is_place(state)) memory.flags |= FORCE_FAULT;
@@ -158,7 +158,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult
     if (memory.flags & FORCE_FAULT) return stop(settings, memory, 0);
     if (!memory.has_last) return stop(settings, memory, FORCE_NO_DEVICE);
 
-    // ---- What it should feel ----
+    // ---- The force it should feel ----
     memory.flags = 0;
     const bool is_there = memory.last.calibrated && now_ns - memory.last_fresh_ns <= SILENCE_NS;
     ForceStep now;
@@ -171,13 +171,13 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult
     }
     if (!is_there) memory.flags |= FORCE_NO_DEVICE;
 
-    // ---- Within limits: a ball around 0 and one around the last force, whose centre lies in the first ----
+    // ---- The limits: a ball around 0, and a ball around the last force, whose centre lies in the first ----
     const glm::dvec3 wanted = now.force_n;
     const glm::dvec3 target = shortened(wanted, caps.peak_force_n);
     if (glm::length(wanted) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
     memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), caps.peak_force_n);
     if (!is_finite(memory.force_n) || !is_finite(now.proxy)) {
-        memory.flags |= FORCE_FAULT;  // settings that are no numbers
+        memory.flags |= FORCE_FAULT;  // non-finite settings
         return stop(settings, memory, 0);
     }
     now.force_n = memory.force_n;

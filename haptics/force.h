@@ -1,12 +1,12 @@
 #pragma once
-// From what the servo knows to the force on the hand, one tick at a time: proxy, spring, damping, limits. Pure but for
-// `ForceMemory`, which is handed in: the same trace gives the same forces, bit for bit.
+// Computes the force on the hand, one tick at a time: proxy, spring, damping, limits. Its only state is the caller's
+// `ForceMemory`: the same inputs give the same forces, bit for bit.
 //
-//   F = k * offset - b * v, |F| <= peak, |dF| <= slew per tick, times what fades it in and out
+//   F = k * offset - b * v, |F| <= peak, |dF| <= slew per tick, all scaled by the fades
 //
 // Stability (delay of two ticks, haptic literature: Colgate and Schenkel; Abbott and Okamura): k <= 300 N/m and
 // b = 1.0 N s/m; velocities come from time stamps and are smoothed at about 100 Hz, so damping does not depend on the
-// rate. Both are at the hand: the scale from device to volume is taken out.
+// rate. Both apply at the hand, without the scale from device to volume.
 
 #include <cstdint>
 
@@ -32,13 +32,13 @@ struct ForceSettings {
     double stiffness = 300.0;   ///< N/m; never above the device's limit
     double damping = 1.0;       ///< N s/m, at most 1.2
     Workspace workspace;
-    uint32_t reset = 0;  ///< when it changes the servo forgets a latched fault
+    uint32_t reset = 0;  ///< a change clears a latched fault
 };
 
 enum ForceFlag : uint32_t {
     FORCE_NO_DEVICE = 1,  ///< lost, silent or not calibrated
-    FORCE_NO_REGION = 2,  ///< no relevance around the probe, or too old: fades out
-    FORCE_FAULT = 4,      ///< a non-finite position or force; until the memory is replaced
+    FORCE_NO_REGION = 2,  ///< the relevance around the probe is missing or too old: the force fades out
+    FORCE_FAULT = 4,      ///< a non-finite position or force; latched until the memory is replaced
     FORCE_CLAMPED = 8,    ///< at the device's peak
     FORCE_ENGAGING = 16,  ///< fading in
 };
@@ -46,17 +46,17 @@ enum ForceFlag : uint32_t {
 struct ForceMemory {
     bool has_last = false;
     DeviceState last;             ///< the last good state
-    DeviceState candidate;        ///< the last state that was not believed
-    int glitches = 0;             ///< states in a row that were not believed, all near `candidate`
+    DeviceState candidate;        ///< the last rejected state
+    int glitches = 0;             ///< rejected states in a row, all near `candidate`
     glm::dvec3 velocity{0.0};     ///< m/s, smoothed
     glm::dvec3 force_n{0.0};      ///< the last force
-    bool has_begun = false;       ///< the engagement rises
-    double engagement = 0.0;      ///< 0 ... 1: the fade after the device appeared or was put elsewhere
-    double relevance_fade = 0.0;  ///< 0 ... 1: falls while the relevance is not usable
+    bool has_begun = false;       ///< the engagement is rising
+    double engagement = 0.0;      ///< 0 ... 1: fades in after the device appeared or jumped
+    double relevance_fade = 0.0;  ///< 0 ... 1: falls while the relevance is unusable
     double contact_fade = 0.0;    ///< 0 ... 1: of the damping
     uint64_t last_tick_ns = 0;
-    uint64_t last_fresh_ns = 0;  ///< when the device last said something
-    uint32_t flags = 0;          ///< FORCE_FAULT stays
+    uint64_t last_fresh_ns = 0;  ///< when the last fresh state arrived
+    uint32_t flags = 0;          ///< FORCE_FAULT is latched
 };
 
 struct ForceStep {
@@ -68,20 +68,20 @@ struct ForceStep {
     uint32_t flags = 0;
 };
 
-inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;    ///< older than that the force fades
-inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< over that long
-inline constexpr uint64_t CONTACT_FADE_NS = 20'000'000;       ///< so that damping does not set in at once
+inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;    ///< with older relevance the force fades
+inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of that fade
+inline constexpr uint64_t CONTACT_FADE_NS = 20'000'000;       ///< keeps damping from setting in abruptly
 inline constexpr uint64_t ENGAGE_NS = 1'000'000'000;          ///< for devices with motors
 inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
-inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< chai3d's rule: nothing begins with a pull
-inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device that says nothing for so long is not there
-inline constexpr double GLITCH_M = 0.005;                     ///< a jump in one tick that no hand makes
-inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new place: someone moved it
-inline constexpr double MOST_REACH_M = 10.0;                  ///< farther out is no place a device can be
+inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d: a device never starts with a pull
+inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
+inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
+inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device was moved
+inline constexpr double MOST_REACH_M = 10.0;                  ///< no device reaches farther
 inline constexpr double MOST_DAMPING = 1.2;                   ///< N s/m; more is unstable with jitter and no friction
 inline constexpr double SLEW_N = 0.1;                         ///< per tick
 
-/// One tick. `now_ns` is the servo's clock; `state` the device's latest state and `result` how it was read.
+/// One tick. `now_ns` is the servo's clock; `state` is the device's latest state and `result` what read() returned.
 ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult result, const DeviceState& state,
                const RelevancePatch& patch, uint64_t now_ns, ForceMemory& memory) noexcept;
 

@@ -13,14 +13,14 @@
 namespace shvr {
 namespace {
 
-/// hidapi's global functions share state (their last error, what udev set up); those of one open device do not.
+/// hidapi's global functions share state (the last error, udev's context); functions on one open device do not.
 std::mutex& hidapi_mutex()
 {
     static std::mutex mutex;
     return mutex;
 }
 
-/// ASCII of a name that a device may have filled with anything.
+/// The name as printable ASCII; devices may report any characters.
 std::string printable(const wchar_t* text)
 {
     std::string result;
@@ -146,7 +146,7 @@ std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& pro
         };
         return make_hid_link(profile, std::move(opened.port), reopen, {.allow_force = allow_force, .realtime = true});
     }
-    // What is only recognised comes last: another profile may know the same device's layout.
+    // Profiles that only recognise a device come last: another profile may know its layout.
     for (const HidProfile& profile : profiles) {
         if (const auto device = device_of(profile); device != devices.end())
             fail(described(*device), ": is recognised as ", profile.name, ", whose reports are not described; ",

@@ -1,6 +1,6 @@
 #pragma once
-// Haptic devices on HID, through hidapi (hidraw on Linux). What a device's reports hold is its profile's business.
-// The application's thread.
+// Haptic devices on HID, through hidapi (hidraw on Linux). A profile describes the layout of a device's reports. The
+// application's thread.
 
 #include <cstdint>
 #include <memory>
@@ -13,17 +13,17 @@
 
 namespace shvr {
 
-/// Null where no device that a profile matches is plugged in. Fails where one is, but must not be opened (the udev rule
-/// is missing) or is only recognised (its profile has no input report). It is found again after it was unplugged.
-/// Forces reach it only where its profile is verified and `allow_force` says so.
+/// Null if no device is plugged in that a profile matches. Fails if one is plugged in but cannot be opened (the udev
+/// rule is missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
+/// returns. Forces reach it only if its profile is verified and `allow_force` is set.
 std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force);
 
 struct HidListing {
     uint16_t vendor = 0, product = 0, usage_page = 0, usage = 0;
     std::string path, manufacturer, name, serial;
-    std::string profile;  ///< name of the first that matches; empty: none
+    std::string profile;  ///< name of the first matching profile; empty: none
 };
-/// Every HID interface that is plugged in, haptic or not.
+/// Every HID interface plugged in, haptic or not.
 std::vector<HidListing> list_hid_devices(std::span<const HidProfile> profiles);
 
 }  // namespace shvr

@@ -21,18 +21,18 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int READ_TIMEOUT_MS = 10;  ///< so that the end of the program never has to break a read
+constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{50};
-constexpr int MOST_REPORTS_A_DRAIN = 256;  ///< a device that babbles must not keep the newest from the servo
+constexpr int MOST_REPORTS_A_DRAIN = 256;  ///< a device that floods us must not delay the newest report
 constexpr int LINK_PRIORITY = 81;          ///< above the servo's: both are short and then wait
 
-/// What the reader hands to the servo.
+/// Passed from the reader to the servo.
 struct Reading {
-    uint64_t connection = 0;  ///< in which it was read, from 1 on
+    uint64_t connection = 0;  ///< connection it was read on, counted from 1
     DeviceState state;
 };
 
-/// What the servo hands to the writer.
+/// Passed from the servo to the writer.
 struct Command {
     glm::dvec3 force_n{0.0};
     uint32_t sequence = 0;
@@ -44,7 +44,7 @@ uint32_t bits_of(const HidReport& report, HidQuantity quantity)
     return field ? field->bits : 32;
 }
 
-/// Continues the counters of one connection.
+/// Extends the counters of one connection past their overflows.
 class Decoder {
 public:
     explicit Decoder(const HidProfile& profile)
@@ -60,7 +60,7 @@ public:
         ++reports_;
         const HidReport& layout = *profile_.input;
         DeviceState state;
-        // A device without a clock or a counter is dated and counted on arrival.
+        // Reports without a time or a sequence number get one on arrival.
         const HidField* clock = layout.find(HidQuantity::time);
         state.time_ns = clock ? uint64_t(double(time_.next(input->time)) * clock->scale * 1e9 + 0.5)
                               : uint64_t(SteadyClock::now().time_since_epoch() / std::chrono::nanoseconds(1));
@@ -97,7 +97,7 @@ public:
     {
         is_running_ = false;
         wake_writer();
-        writer_.join();  // first: its last report switches the force off, and needs the port
+        writer_.join();  // first, since its last report switches the force off and needs the port
         reader_.join();
     }
 
@@ -131,7 +131,7 @@ private:
         parameters.sched_priority = LINK_PRIORITY;
         if (realtime) ::pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters);
     }
-    /// A futex call, which does not wait.
+    /// One futex call; never waits.
     void wake_writer() noexcept
     {
         wake_.fetch_add(1);
@@ -144,7 +144,7 @@ private:
         std::array<uint8_t, 1 + MOST_REPORT_BYTES> report{};
         const int size = port.read_feature(profile_.feature->id, report);
         if (size <= 0) return profile_.limits;
-        // hidapi answers with the id first even where reports have none.
+        // hidapi puts the id first even if reports are unnumbered.
         const std::span<const uint8_t> bytes(report.data(), size_t(size));
         return decode_feature(profile_, profile_.feature->id == 0 ? bytes.subspan(1) : bytes);
     }
@@ -156,14 +156,14 @@ private:
         const std::lock_guard lock(port_mutex_);
         return port_;
     }
-    /// A writer that is within a write keeps the old port until it is done.
+    /// A write in progress keeps the old port alive until it is done.
     void set_port(std::shared_ptr<HidPort> port)
     {
         const std::lock_guard lock(port_mutex_);
         port_ = std::move(port);
         write_failed_ = false;
     }
-    /// Unless the reader has dropped it meanwhile.
+    /// Does nothing if the reader has dropped that port meanwhile.
     void report_failed_write(const std::shared_ptr<HidPort>& port)
     {
         const std::lock_guard lock(port_mutex_);
@@ -195,7 +195,7 @@ private:
     void read_while_there(HidPort& port, uint64_t connection)
     {
         Decoder decoder(profile_);
-        std::array<uint8_t, 2 + MOST_REPORT_BYTES> report{};  // a byte more than the longest, to tell longer ones
+        std::array<uint8_t, 2 + MOST_REPORT_BYTES> report{};  // one byte more than needed, to detect longer reports
         while (is_running_ && !write_failed_) {
             std::optional<DeviceState> newest;
             int timeout_ms = READ_TIMEOUT_MS;
@@ -229,7 +229,7 @@ private:
 
     void send(const Command& command, bool enabled)
     {
-        // What is not verified gets no bytes at all: nobody knows what they would switch.
+        // An unverified device gets no bytes at all: nobody knows what they would do.
         if (!profile_.verified || !profile_.output || write_failed_) return;
         const std::shared_ptr<HidPort> open = port();
         if (open && !open->write(encode(profile_, command.force_n, command.sequence, enabled).span()))
@@ -241,12 +241,12 @@ private:
     DeviceCaps caps_;
     bool may_force_ = false;
 
-    std::mutex port_mutex_;  ///< between reader and writer; the servo never meets it
+    std::mutex port_mutex_;  ///< shared by reader and writer; the servo never takes it
     std::shared_ptr<HidPort> port_;
     std::atomic<uint64_t> connection_;  ///< 0: none
     std::atomic<bool> is_running_{true}, write_failed_{false};
     std::atomic<uint32_t> malformed_{0}, wake_{0};
-    uint32_t malformed_seen_ = 0;  ///< the servo's
+    uint32_t malformed_seen_ = 0;  ///< used by the servo only
 
     Latest<Reading> readings_;
     Latest<Command> commands_;

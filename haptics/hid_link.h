@@ -1,12 +1,12 @@
 #pragma once
-// A haptic device behind a pair of pipes. hid_write may block for a millisecond and hid_read for longer, so each has a
+// Connects the servo to a HID device. hid_write may block for a millisecond and hid_read for longer, so each has a
 // thread; the servo exchanges latest values with them and never waits:
 //
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
-// The reader drains what waits (kernels keep the OLDEST reports after a stall) and keeps the newest. When the port is
-// gone read() says so, and the reader tries to open it again every 50 ms. The writer's last report switches the force
-// off.
+// The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
+// port is gone, read() returns `lost` and the reader tries to reopen it every 50 ms. The writer's last report switches
+// the force off.
 
 #include <cstdint>
 #include <functional>
@@ -18,28 +18,30 @@
 
 namespace shvr {
 
-/// The seam to hidapi, and to the fakes of the tests. One thread reads while another writes; closing is destruction.
+/// The interface to hidapi, which tests replace. One thread may read while another writes; the destructor closes the
+/// port.
 class HidPort {
 public:
     virtual ~HidPort() = default;
-    /// Bytes of one report, 0 where none came within the time, -1 where the device is gone.
+    /// Reads one report and returns its length in bytes: 0 if none arrived in time, -1 if the device is gone.
     virtual int read(std::span<uint8_t> report, int timeout_ms) = 0;
-    /// False where the device is gone.
+    /// False if the device is gone.
     virtual bool write(std::span<const uint8_t> report) = 0;
-    /// Bytes of the feature report with that id, which is the first; 0 where there is none.
+    /// Reads the feature report with that id, which is its first byte, and returns its length in bytes; 0 if there is
+    /// none.
     virtual int read_feature(uint8_t id, std::span<uint8_t> report) = 0;
 };
 
-/// Null where nothing is there (yet).
+/// Null if the device is not there (yet).
 using HidOpener = std::function<std::unique_ptr<HidPort>()>;
 
 struct HidLinkOptions {
-    bool allow_force = false;  ///< and only if the profile is verified
-    bool realtime = false;     ///< SCHED_FIFO for both threads, where the system lets us
+    bool allow_force = false;  ///< takes effect only if the profile is verified
+    bool realtime = false;     ///< SCHED_FIFO for both threads, if the system allows it
 };
 
-/// `port` is open and its profile has an input report. `reopen` is called on the reader's thread.
-/// Force reports are written with the enable flag off unless force is allowed; a layout that is not verified gets none.
+/// `port` is open and its profile has an input report. `reopen` is called on the reader's thread. Force reports have
+/// the enable flag off unless force is allowed; a device with an unverified layout gets no output reports.
 std::unique_ptr<HapticDevice> make_hid_link(const HidProfile& profile, std::unique_ptr<HidPort> port, HidOpener reopen,
                                             const HidLinkOptions& options);
 

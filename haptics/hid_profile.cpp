@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t MAX_PROFILE_BYTES = 16 << 10;  ///< four times what a layout takes
+constexpr size_t MAX_PROFILE_BYTES = 16 << 10;  ///< four times the size of a typical layout
 constexpr unsigned IN = 1, OUT = 2, FEATURE = 4;
 
 struct QuantityName {
     std::string_view name;
     HidQuantity quantity;
-    unsigned reports;  ///< where it may stand
+    unsigned reports;  ///< reports that may contain it
 };
 constexpr std::array QUANTITY_NAMES{
     QuantityName{"buttons", HidQuantity::buttons, IN},
@@ -60,7 +60,7 @@ std::string_view name_of(HidQuantity quantity)
     return "?";
 }
 
-/// "0x1209": ids are written so everywhere else.
+/// "0x1209": the usual notation of USB ids.
 uint16_t read_hexadecimal(const JsonNode& node)
 {
     const auto parse = [](const std::string& text) -> std::optional<uint16_t> {
@@ -145,7 +145,7 @@ std::vector<HidMatch> read_matches(const JsonNode& node)
     return matches;
 }
 
-/// Rows of a signed permutation: more would bend lengths, and forces would no longer oppose motions.
+/// Rows of a signed permutation: anything else could change lengths, and forces would no longer oppose motion.
 glm::dmat3 read_axes(const JsonNode& node)
 {
     const std::vector<JsonNode> rows = node.elements(3, 3);

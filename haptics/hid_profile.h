@@ -1,9 +1,9 @@
 #pragma once
-// What a HID device's reports hold, as a file tells (assets/devices/*.json): a device that nobody here has seen needs a
-// file, not a recompilation. assets/devices/README.md describes the format.
+// The layout of a HID device's reports, read from a file (assets/devices/*.json): supporting a new device takes a file,
+// not a recompilation. assets/devices/README.md describes the format.
 //
-// Loading is strict: unknown keys, fields that do not fit into their report and layouts without a source are refused
-// with one sentence. Any thread.
+// Loading is strict: unknown keys, fields that exceed their report and layouts without a source are refused with a
+// one-sentence message. Any thread.
 
 #include <cstdint>
 #include <filesystem>
@@ -52,7 +52,7 @@ enum class HidQuantity : uint8_t {
 
 struct HidField {
     HidQuantity quantity = HidQuantity::buttons;
-    uint32_t bit = 0;   ///< of its lowest bit, from the first byte after the id; little endian
+    uint32_t bit = 0;   ///< position of its lowest bit, from the first byte after the id; little endian
     uint32_t bits = 8;  ///< 1 ... 32
     bool is_signed = false;
     double scale = 1.0, offset = 0.0;
@@ -78,10 +78,10 @@ struct HidProfile {
     glm::dmat3 axes{
         1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; each one turned or flipped
     DeviceCaps limits;
-    uint32_t watchdog_ms = 0;  ///< after which the device drops its force; 0: it has none
-    std::string provenance;    ///< where the layout is from
-    bool verified = false;     ///< somebody has tried it; without that it gets no force
-    std::string note;          ///< for the person who has such a device
+    uint32_t watchdog_ms = 0;  ///< the device drops its force after that long without a report; 0: no watchdog
+    std::string provenance;    ///< source of the layout
+    bool verified = false;     ///< tried on the real device; otherwise it gets no force
+    std::string note;          ///< for owners of such a device
 };
 
 inline constexpr uint32_t MOST_REPORT_BYTES = 64;

@@ -39,7 +39,7 @@ void put_value(const HidField& field, double value, std::span<uint8_t> payload)
     put_raw(field, uint32_t(int64_t(raw)), payload);
 }
 
-/// The bytes after the id; empty where the report is another one.
+/// The bytes after the id; empty if it is a different report.
 std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const uint8_t> report)
 {
     const size_t id_bytes = expected.id == 0 ? 0 : 1;
@@ -48,7 +48,7 @@ std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const u
     return report.subspan(id_bytes);
 }
 
-/// Reads fields by what they mean; those that the profile lacks have a value of their own.
+/// Reads fields by quantity; fields that the profile lacks get a default.
 struct Reader {
     const HidReport& report;
     std::span<const uint8_t> payload;
@@ -69,9 +69,9 @@ glm::dquat rotation_of(const Reader& reader, const glm::dmat3& axes)
     using enum HidQuantity;
     const glm::dquat q(reader.value(rotation_w, 1.0), reader.value(rotation_x, 0.0), reader.value(rotation_y, 0.0),
                        reader.value(rotation_z, 0.0));
-    // A device that has not found its angles yet sends zeros.
+    // A device that has not calibrated its angles yet sends zeros.
     if (glm::dot(q, q) < 0.25) return {1.0, 0.0, 0.0, 0.0};
-    // An axis of rotation changes its sign under a reflection, and points the same way as its motion otherwise.
+    // A rotation axis is a pseudovector: a reflection also flips its sign.
     const glm::dvec3 axis = glm::determinant(axes) * (axes * glm::dvec3(q.x, q.y, q.z));
     return glm::normalize(glm::dquat(q.w, axis.x, axis.y, axis.z));
 }
@@ -133,7 +133,7 @@ DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> re
     caps.peak_force_n = std::clamp(reader.value(peak_force, caps.peak_force_n), 0.0, caps.peak_force_n);
     caps.continuous_force_n = std::min(caps.continuous_force_n, caps.peak_force_n);
     caps.latency_s = std::max(caps.latency_s, reader.value(latency, caps.latency_s));
-    // Whole sides along the device's axes, around the middle; a side of 0 says nothing.
+    // Full side lengths along the device's axes, centred; 0 means not stated.
     const glm::dvec3 side = glm::abs(profile.axes * glm::dvec3(reader.value(usable_x, 0.0), reader.value(usable_y, 0.0),
                                                                reader.value(usable_z, 0.0)));
     for (int i = 0; i < 3; ++i) {

@@ -1,8 +1,8 @@
 #pragma once
-// Reports as bytes, both ways, by a profile. Pure, without allocation; any thread.
+// Decodes and encodes reports as a profile describes them. Pure, without allocation; any thread.
 //
-// Bytes are as hidapi has them: a numbered report begins with its id; one without a number (id 0) is read without and
-// written with a leading 0.
+// Bytes are laid out as in hidapi: a numbered report begins with its id; an unnumbered one (id 0) is read without an id
+// byte and written with a leading 0.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace shvr {
 
-/// What an input report says. Counters are raw: `Unwrapped` continues them.
+/// The contents of an input report. Counters are raw: `Unwrapped` extends them.
 struct HidInput {
     glm::dvec3 position_m{0.0};  ///< in our axes
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
@@ -22,7 +22,7 @@ struct HidInput {
     bool calibrated = true;
     uint32_t sequence = 0, force_sequence = 0, time = 0;
 };
-/// Nothing where the report is not the profile's input report: another id, or another length.
+/// Nothing if the report is not the profile's input report: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
 
 struct HidBytes {
@@ -30,15 +30,16 @@ struct HidBytes {
     size_t size = 0;
     std::span<const uint8_t> span() const { return {bytes.data(), size}; }
 };
-/// The output report of a force in our axes; longer ones are shortened to the profile's peak. Not enabled, or not a
-/// number: zero force with the enable flag off. Empty where the profile has no output report.
+/// The output report for a force in our axes, clamped to the profile's peak. If not enabled or not finite: zero force
+/// with the enable flag off. Empty if the profile has no output report.
 HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t sequence, bool enabled);
 
-/// The profile's limits, where the device's feature report names a weaker force, a smaller space or a longer latency
-/// those. The profile's own where the report is not the profile's feature report.
+/// The profile's limits, replaced by those of the device's feature report where it states a weaker force, a smaller
+/// workspace or a longer latency. The profile's own if `report` is not its feature report.
 DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> report);
 
-/// A counter of 1 to 32 bits, continued over its overflows. Half of its range back is back, as after a restart.
+/// Extends a counter of 1 to 32 bits past its overflows. A step of more than half its range counts as backwards, as
+/// after a restart.
 class Unwrapped {
 public:
     explicit Unwrapped(uint32_t bits) : mask_(bits >= 32 ? ~uint32_t{0} : (uint32_t{1} << bits) - 1) {}

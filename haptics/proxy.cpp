@@ -36,7 +36,7 @@ Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, 
             moments.length += b - a;
             moments.first += 0.5 * (b * b - a * a);
             moments.second += (b * b * b - a * a * a) / 3.0;
-            // Adding the lowest bit carries through the run and clears it; what the carry sets is masked out.
+            // Adding the lowest bit carries through the run and clears it; the bit set by the carry is masked out.
             bits &= bits + (bits & (0u - bits));
         }
         voxel = word_last + 1;
@@ -52,7 +52,7 @@ bool is_well_formed(const RelevancePatch& patch)
            size_t(patch.words_per_row) * size_t(patch.size.y) * size_t(patch.size.z) <= RelevancePatch::MOST_WORDS;
 }
 
-/// Rows along one axis of which a part can lie in the ball: half-open.
+/// Half-open range of the rows along one axis that may intersect the ball.
 struct RowRange {
     int32_t begin = 0, end = 0;
 };
@@ -63,8 +63,8 @@ RowRange rows_within(double centre, double reach, int32_t count)
     return {int32_t(begin), int32_t(end)};
 }
 
-/// Lines per row of voxels along y, and the same along z. Fixed in the voxels, never in the ball: only so are the sums
-/// of the potential law gradients of one another.
+/// Lines per row of voxels along y, and the same along z. Their places are fixed in the voxels, not in the ball: only
+/// then are the sums of the potential law exact gradients.
 struct RowRule {
     std::array<double, 3> places{};   ///< voxels from the row's lower side
     std::array<double, 3> weights{};  ///< with a sum of 1
@@ -73,8 +73,9 @@ struct RowRule {
 constexpr RowRule MIDDLE{{0.5}, {1.0}, 1};
 constexpr RowRule GAUSS_2{{0.21132486540518713, 0.78867513459481287}, {0.5, 0.5}, 2};
 constexpr RowRule GAUSS_3{{0.11270166537925831, 0.5, 0.88729833462074169}, {5.0 / 18, 8.0 / 18, 5.0 / 18}, 3};
-/// Small balls need more lines a row, and have fewer rows. Measured on rods with the mean law, error of the proxy and
-/// RMS second difference along a slow path, % of the radius (goals: 0.4 and 0.06 at 6 voxels, 0.2 and 0.02 from 12 on):
+/// Small balls need more lines per row, but have fewer rows. Measured on rods with the mean law: error of the proxy and
+/// RMS second difference along a slow path, in % of the radius (goals: 0.4 and 0.06 at 6 voxels, 0.2 and 0.02 from 12
+/// voxels up):
 ///     radius   middle            Gauss 2           Gauss 3
 ///     6        0.47    0.072     0.14    0.035     0.06    0.024
 ///     12       0.10    0.018     0.04    0.009     0.02    0.006
@@ -113,7 +114,7 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
 
     const RowRange slices = rows_within(c.z, radius / spacing.z, patch.size.z);
     for (int32_t z = slices.begin; z < slices.end; ++z) {
-        // The slice's widest disc is where it is nearest to the centre.
+        // The slice's largest disc lies where the slice is nearest to the centre.
         const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
         const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
         const RowRange rows = rows_within(c.y, disc / spacing.y, patch.size.y);
@@ -137,8 +138,8 @@ Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double r
     const BallIntegrals ball = integrate(patch, centre, radius);
     if (!(ball.volume > 0.0)) return {};
     const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-    // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends do not enter the derivative of its sum, which
-    // is 2 / r^2 times `first`: exactly, for these rows and not only in the limit.
+    // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends contribute nothing to the derivative of its
+    // sum: it is 2 / r^2 times `first`, exactly, even for a finite number of rows.
     const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
     const double denominator = law == ProxyLaw::mean ? ball.volume : weighted + POTENTIAL_FLOOR * whole;
     return {true, ball.first / denominator, ball.volume / whole};

@@ -1,11 +1,11 @@
 #pragma once
-// The proxy by exact integration: instead of sampling points in the probe's ball, every row of relevant voxels is cut
-// to the chord that lies in the ball and integrated along x in closed form. The result is continuous in the probe's
-// place, since a chord's length goes to 0 at the ball's rim. Across y and z a row is a line through its voxels'
-// middles, or, for small balls, four or nine lines.
+// The proxy by exact integration: instead of sampling points in the probe's ball, each row of relevant voxels is
+// clipped to its chord in the ball and integrated along x in closed form. The result is a continuous function of the
+// probe's position, since chords shrink to 0 at the ball's rim. Across y and z, a row is a line through its voxels'
+// centres or, for small balls, four or nine lines.
 //
 // Two laws:
-//   mean      proxy = mean of the relevant points in the ball: the thesis's (eq. 3.3 to 3.5) without sampling noise
+//   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3 - 3.5), without sampling noise
 //   potential offset = sum(a - p) / (sum(1 - |a - p|^2 / r^2) + eps N): the gradient of log(S + eps N), so no loop of
 //             the hand gains energy, and the force grows from 0 when the first voxel enters. N is the ball's volume.
 //
@@ -28,7 +28,7 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
 enum class ProxyLaw : uint8_t { potential, mean };
 
 struct Proxy {
-    bool in_contact = false;      ///< something relevant is in the ball
+    bool in_contact = false;      ///< the ball contains relevant voxels
     glm::dvec3 offset{0.0};       ///< proxy - probe, physical units; 0 without contact
     double relevant_share = 0.0;  ///< of the ball's volume
 };

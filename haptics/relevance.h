@@ -1,7 +1,7 @@
 #pragma once
 // Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a small grid
-// of bits by value, with its place and age. Made by a compute pass, mirrored to the host, published through `Latest`.
-// Plain data; nothing in it allocates.
+// of bits, held by value, with its position and age. A compute pass makes it; the host publishes it through `Latest`.
+// Plain data that never allocates.
 
 #include <array>
 #include <cstddef>
@@ -16,9 +16,9 @@ struct RelevancePatch {
     static constexpr size_t MOST_WORDS = size_t(MOST_VOXELS) * MOST_VOXELS * MOST_VOXELS / 32;
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
-    uint64_t time_ns = 0;   ///< when it was asked for, CLOCK_MONOTONIC: its content is at least as old as that
+    uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC: later changes are not in it
     glm::ivec3 origin{0};   ///< voxel of its lower corner
-    glm::ivec3 size{0};  ///< voxels, each at most MOST_VOXELS; cut at the volume's border, outside nothing is relevant
+    glm::ivec3 size{0};  ///< voxels, each at most MOST_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
     glm::dvec3 spacing{1.0};    ///< physical units per voxel
     glm::ivec3 volume_size{0};  ///< voxels
@@ -28,8 +28,8 @@ struct RelevancePatch {
     {
         return words[size_t(word) + size_t(words_per_row) * (size_t(y) + size_t(size.y) * size_t(z))];
     }
-    /// Whether the ball lies in it, apart from what lies outside the volume. Physical units; the corner of voxel
-    /// (0, 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False where nothing is known yet.
+    /// Whether the patch covers the part of the ball that lies in the volume. Physical units; the corner of voxel (0,
+    /// 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
     bool covers(const glm::dvec3& centre, double radius) const;
 };
 

@@ -30,7 +30,7 @@ public:
         timespec deadline{};
         deadline.tv_sec = time_t(deadline_ns / SECOND_NS);
         deadline.tv_nsec = long(deadline_ns % SECOND_NS);
-        // Signals interrupt it, any other answer would be our mistake: both mean to look at the clock again.
+        // A signal interrupts the sleep; any other error would be a bug here. In both cases check the clock again.
         while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) != 0 && now_ns() < deadline_ns) {
         }
     }
@@ -69,7 +69,7 @@ double TimeHistogram::quantile_us(double share) const noexcept
     for (size_t bin = 0; bin < BINS; ++bin) {
         sum += counts[bin];
         if (sum == 0 || double(sum) < wanted) continue;
-        // The last bin has no upper end but the worst.
+        // The last bin's upper end is the worst value.
         return bin + 1 < BINS ? double(uint64_t{1} << bin) : double(worst_ns) * 1e-3;
     }
     return 0.0;
@@ -97,7 +97,7 @@ Servo::~Servo()
 
 void Servo::run() noexcept
 {
-    ::prctl(PR_SET_TIMERSLACK, 1UL);  // wakes up to 50 us earlier than by default; without effect under SCHED_FIFO
+    ::prctl(PR_SET_TIMERSLACK, 1UL);  // up to 50 us less delay than by default; no effect under SCHED_FIFO
     const uint64_t period_ns = SECOND_NS / options_.rate_hz;
     ForceMemory memory;
     DeviceState device;
@@ -113,12 +113,12 @@ void Servo::run() noexcept
         const uint64_t late_ns = since(deadline_ns, now_ns);
         lateness.add(late_ns);
         if (late_ns > period_ns) ++late_ticks;
-        deadline_ns += period_ns * (1 + late_ns / period_ns);  // what was missed is not made up for
+        deadline_ns += period_ns * (1 + late_ns / period_ns);  // missed ticks are skipped
 
         settings_.take();
         relevance_.take();
         const ForceSettings& settings = settings_.value();
-        const RelevancePatch& relevance = relevance_.value();  // 32 KiB, used where it lies
+        const RelevancePatch& relevance = relevance_.value();  // 32 KiB, used in place
         if (settings.reset != reset) {
             reset = settings.reset;
             if (memory.flags & FORCE_FAULT) memory = {};

@@ -1,10 +1,10 @@
 #pragma once
-// The servo: reads the device, finds the proxy, writes the force, a thousand times a second, on a thread of its own.
-// It shares nothing with the rest of the program but three latest values, and never locks, allocates, logs or throws.
+// The servo reads the device, finds the proxy and writes the force, a thousand times a second, on its own thread. It
+// shares only three latest values with the rest of the program, and never locks, allocates, logs or throws.
 //
 //   application --Latest<ForceSettings>, Latest<RelevancePatch>--> servo --Latest<ServoState>--> application
 //
-// The application's thread calls everything here; the device belongs to the servo until it is destroyed.
+// The application's thread calls everything here; the servo owns the device.
 
 #include <array>
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace shvr {
 
-/// Time and waiting, so that tests can run a servo without either.
+/// The clock and the sleep, which tests replace.
 class Pacing {
 public:
     virtual ~Pacing() = default;
@@ -36,20 +36,20 @@ struct TimeHistogram {
     uint64_t worst_ns = 0;
     void add(uint64_t nanoseconds) noexcept;
     uint64_t total() const noexcept;
-    /// Upper end of the bin that holds the given share of all, microseconds; 0 of nothing.
+    /// Upper end of the bin where the cumulative count reaches `share`, microseconds; 0 if empty.
     double quantile_us(double share) const noexcept;
 };
 
-/// What the application sees of the servo.
+/// The servo's state, as published to the application.
 struct ServoState {
     uint64_t time_ns = 0;
     uint64_t ticks = 0;
-    uint64_t late_ticks = 0;  ///< begun more than one period after their time
+    uint64_t late_ticks = 0;  ///< started more than one period late
     DeviceState device;
     ForceStep step;
     DeviceCaps caps;
-    TimeHistogram lateness;       ///< how long after its time a tick began
-    TimeHistogram duration;       ///< of a tick's own work
+    TimeHistogram lateness;       ///< how late ticks started
+    TimeHistogram duration;       ///< of each tick's own work
     TimeHistogram relevance_age;  ///< of the patch used, on ticks with assistance
 };
 
@@ -57,7 +57,7 @@ class Servo {
 public:
     struct Options {
         uint32_t rate_hz = 1000;
-        bool realtime = true;  ///< SCHED_FIFO where the system lets us; said in `is_realtime`
+        bool realtime = true;  ///< SCHED_FIFO if the system allows it; see is_realtime()
     };
     Servo(std::unique_ptr<HapticDevice> device, std::unique_ptr<Pacing> pacing, const Options& options);
     /// Writes a zero force and joins.
@@ -68,7 +68,7 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
-    /// Whether the system gave SCHED_FIFO; otherwise only the timer slack is small.
+    /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
 
 private:

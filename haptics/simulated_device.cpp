@@ -7,7 +7,7 @@
 namespace shvr {
 namespace {
 
-/// exp(a) by scaling, Taylor series and squaring. Norms below 1/16 make the series' rest 1e-16.
+/// exp(a) by scaling, Taylor series and squaring. With norms below 1/16 the remainder of the series is 1e-16.
 glm::dmat2 exponential(glm::dmat2 a)
 {
     int halvings = 0;
@@ -22,7 +22,7 @@ glm::dmat2 exponential(glm::dmat2 a)
     return sum;
 }
 
-/// The exact motion over one tick, in which wish and force stand still: stable for every hand and every tick.
+/// The exact motion over one tick with constant wish and force: stable for every hand and tick length.
 glm::dmat2 propagator_of(const HandModel& hand)
 {
     if (hand.mass_kg > 0.0) {
@@ -56,9 +56,9 @@ ReadResult SimulatedDevice::read(DeviceState& state) noexcept
         jump_ = wish.jump;
         position_m_ = wish.position_m;
         velocity_ = glm::dvec3(0.0);
-        in_flight_.fill({});  // forces of the old place would push at the new one
+        in_flight_.fill({});  // forces from the old position must not act at the new one
     }
-    // write() puts the force of this tick into the slot of `ticks_`; without one, the last force stays.
+    // write() stores this tick's force in the slot of `ticks_`; without a write the last force stays.
     const size_t slots = in_flight_.size();
     const Written& applied = in_flight_[(ticks_ + slots - size_t(model_.delay_ticks)) % slots];
     const glm::dvec3 rest = wish.position_m + applied.force_n / model_.stiffness;

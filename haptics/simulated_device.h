@@ -1,13 +1,15 @@
 #pragma once
-// A device without hardware: a hand that wants to be somewhere, and gives way to forces. The mouse is one (the wish is
-// where the mouse points, the hand has no mass), and so is the modelled hand of the tests (100 g, 150 N/m, 3 N s/m).
+// A device without hardware: a hand that is drawn towards a wish and yields to forces. The mouse is one (the wish is
+// where the mouse points, and the hand has no mass), and so is the modelled hand of the tests (100 g, 150 N/m, 3 N
+// s/m).
 //
 //   m x'' = k_hand (wish - x) - b_hand x' + F
 //
-// With mass 0 the hand settles at wish + F / k_hand within b_hand / k_hand seconds: assistance eases the probe towards
-// the proxy and never throws it. Forces arrive `delay_ticks` reads after they were written, as on a real link.
+// With mass 0 the hand settles at wish + F / k_hand with the time constant b_hand / k_hand: assistance eases the probe
+// towards the proxy and never throws it. Forces take effect `delay_ticks` reads after they were written, as on a real
+// link.
 //
-// read() and write(): the servo's thread. `wish()` is the other side's: one thread writes it.
+// read() and write(): the servo's thread. One other thread may write `wish()`.
 
 #include <array>
 #include <cstdint>
@@ -22,7 +24,7 @@ namespace shvr {
 struct HandWish {
     glm::dvec3 position_m{0.0};
     uint32_t buttons = 0;
-    uint32_t jump = 0;  ///< when it changes the hand is put there at once: the probe was placed, not moved
+    uint32_t jump = 0;  ///< a change moves the hand there at once: the probe was placed, not moved
 };
 
 struct HandModel {
@@ -40,7 +42,7 @@ public:
     explicit SimulatedDevice(const HandModel& model = MOUSE_HAND);
     Latest<HandWish>& wish() { return wish_; }
 
-    /// A hand with a mass stands for a device with motors; the mouse has none, though forces move it.
+    /// A hand with a mass stands for a device with motors; the mouse has no motors, though forces move its hand.
     DeviceCaps caps() const noexcept override;
     /// Moves the hand on by one tick. Always fresh; `time_ns` counts ticks.
     ReadResult read(DeviceState& state) noexcept override;
@@ -56,7 +58,7 @@ private:
         glm::dvec3 force_n{0.0};
         uint32_t sequence = 0;
     };
-    /// Where a hand and its velocity, both from its place of rest, are after one tick.
+    /// Maps the hand's offset from its rest position, and its velocity, to their values one tick later.
     glm::dmat2 propagator_{1.0};
     std::array<Written, 9> in_flight_{};  ///< ring of delayed forces
 };

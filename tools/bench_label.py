@@ -21,7 +21,7 @@ FOLDER = ROOT / "build/bench"
 SHVR = Path(os.environ.get("SHVR", ROOT / "build/release/shvr"))
 PEER = ROOT / "tools/peers/label.py"
 
-# Name, side, threshold. Noise is even over all 256 bytes.
+# Name, side, threshold. The noise is uniform over all 256 values.
 VOLUMES = [("noise, 30 %", 256, 179), ("noise, 50 %", 256, 128), ("tubes", 256, 128), ("noise, 30 %", 512, 179),
            ("tubes", 512, 128)]
 
@@ -34,7 +34,7 @@ def output_of(arguments):
 
 
 def python_with(module):
-    """The interpreter that has it: this one, or Debian's own."""
+    """An interpreter that has the module: this one, or Debian's own."""
     for python in (sys.executable, "/usr/bin/python3"):
         if subprocess.run([python, "-c", f"import numpy, {module}"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
             return python

@@ -34,11 +34,11 @@ PEER_FRAMES = 5
 REFERENCE_PIXELS = 2000
 CAMERA = "bench"
 
-# Intensity and opacity per voxel. The background is noise about 40, so the translucent ramp begins within it.
+# Intensity and opacity per voxel. The background is noise around 40, so the translucent ramp begins within it.
 OPAQUE = [(120, 0.0), (160, 1.0), (255, 1.0)]
 TRANSLUCENT = [(38.7, 0.0), (120, 0.005), (255, 0.02)]
 OCCLUSION = {"strength": 0.8, "radius": 16, "rays": 32}
-# Opacities, whether it is shaded, ambient occlusion.
+# Opacities, shading on or off, ambient occlusion.
 SCENES = {"opaque shaded": (OPAQUE, True, None),
           "opaque occluded": (OPAQUE, True, OCCLUSION),
           "translucent shaded": (TRANSLUCENT, True, None),
@@ -94,7 +94,7 @@ def make_volume(side):
 
 def session_of(header, side, points, shaded, occlusion):
     centre = [0.5 * side] * 3
-    offset = [1.35, -2.7, 0.95]  # from there 30 degrees hold every corner
+    offset = [1.35, -2.7, 0.95]  # from there a field of view of 30 degrees covers every corner
     return {"shvr_session": 1,
             "volume": {"path": os.path.relpath(header, FOLDER)},
             "cameras": {CAMERA: {"projection": "perspective", "eye": [c + side * o for c, o in zip(centre, offset)],
@@ -109,7 +109,7 @@ def session_of(header, side, points, shaded, occlusion):
 
 
 def visible_share(voxels, side, points):
-    """How much of the volume is seen: the share of random places whose trilinear intensity has any opacity."""
+    """The visible share of the volume: random positions whose trilinear intensity has any opacity."""
     lowest = max(x for (x, y), (_, above) in zip(points, points[1:]) if y == 0 and above > 0)
     place = random.Random(1)
     count = 50000
@@ -190,7 +190,7 @@ def round_of_vtk(python, mapper, session_path, picture):
                         "-o", picture])
     lines = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
     times = [line["ms"] for line in lines if "frame" in line]
-    steady = times[2:]  # the first prepares, the second still warms caches
+    steady = times[2:]  # the first prepares, the second warms caches
     return {"frame_ms": statistics.median(steady), "frame_min_ms": min(steady), "first_frame_ms": times[0], **lines[-1]}
 
 

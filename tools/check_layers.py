@@ -12,8 +12,9 @@ from pathlib import Path, PurePosixPath
 
 # ---- The rules, as data ---------------------------------------------------------------------------------------------
 
-# Room: the rooms whose files it may include, besides its own. Exactly what is in use: a new arrow is a decision, made here.
-# A file belongs to the longest of these paths that is a prefix of its own; what has none may not exist. From the ground up:
+# Room: the rooms whose files it may include, besides its own. Exactly the arrows in use: a new arrow is a decision,
+# made here. A file belongs to the longest of these paths that is a prefix of its own; a file without one is an error.
+# From the ground up:
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",
@@ -53,7 +54,7 @@ MAY_INCLUDE = {
     "engine/annotation/files engine/annotation/measures engine/annotation/trace engine/annotation/work engine/session "
     "engine/live shaders ui",
 }
-# What knows no device: none of these rooms may come to include one that does, through however many others.
+# Rooms without a device: none of them may include a room that knows one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "haptics"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MOST_SOURCES = 30  # in a folder
@@ -64,8 +65,8 @@ THIRD_PARTIES = {
     "hidapi": (r"hidapi", r"haptics/hid_device\.cpp"),
     "GLFW": (r"GLFW/", r"ui/"),
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/"),
-    # 25,000 lines that every reader of a header would compile; json_fwd.hpp is small. JSON is read by engine/base/json.h:
-    # the other files write it.
+    # 25,000 lines for everyone who includes a header; json_fwd.hpp is small. engine/base/json.h reads JSON; the other
+    # files write it.
     "nlohmann/json": (
         r"nlohmann/(?!json_fwd\.hpp)",
         r"engine/(base/json|graph/|session/|projects/|formats/zarr/|annotation/files/).*\.cpp|tools/|tests/",
@@ -117,7 +118,7 @@ def read_includes(root, files):
         includes[file] = []
         for match in INCLUDE.finditer(text):
             line, spelled = text.count("\n", 0, match.start(2)) + 1, match[2]
-            # As compilers do: first beside the including file, then from the root.
+            # Like compilers: first beside the including file, then from the root.
             beside = PurePosixPath(os.path.normpath(file.parent / spelled))
             target = next((path for path in (beside, PurePosixPath(spelled)) if path in known), None)
             includes[file].append((line, spelled, target))
@@ -144,7 +145,7 @@ def check_arrows(includes, rooms):
 
 
 def check_table(includes, rooms):
-    """What the table grants and nobody uses; circles of rooms; rooms that must not know a device and could."""
+    """Arrows of the table that no file uses; cycles of rooms; rooms that must not know a device but could."""
     in_use = {
         (room_of(file, rooms), room_of(target, rooms)) for file, lines in includes.items() for _, _, target in lines if target
     }
@@ -222,7 +223,7 @@ def check(root, rooms=MAY_INCLUDE):
 
 # ---- The self-test --------------------------------------------------------------------------------------------------
 
-# The rooms of a made-up tree.
+# The rooms of an invented tree.
 ROOMS = {
     "shaders": "",
     "engine/base": "",

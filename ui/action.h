@@ -1,6 +1,6 @@
 #pragma once
-// What a person asks for. Keys, mouse, menus and panels make actions and change nothing themselves; the application
-// carries them out, in one place, in the order they came. Plain data; any thread.
+// What the user asks for. Keys, mouse, menus and panels create actions and change nothing themselves; the application
+// carries them out in one place, in order. Plain data; any thread.
 
 #include <filesystem>
 #include <string>
@@ -20,7 +20,7 @@ struct Orbit {
 struct Roll {
     double degrees = 0.0;
 };
-/// Along the camera's right, up and forward; 1 is the height of what is seen at the target's depth.
+/// Along the camera's right, up and forward; 1 is the height of the view at the target's depth.
 struct Move {
     glm::dvec3 heights{0.0};
 };
@@ -29,7 +29,7 @@ struct Zoom {
     glm::dvec2 pixel{0.0};
     double factor = 1.0;
 };
-/// Moves the camera in the plane of a map, so that it goes along with the mouse.
+/// Moves the camera in the plane of a map, following the mouse.
 struct DragInMap {
     size_t pane = 0;
     glm::dvec2 pixels{0.0};
@@ -40,20 +40,20 @@ struct SetView {
 struct LookFrom {
     std::string camera;  ///< a camera of the session, or a side
 };
-/// Cutting planes: axis 0 ... 2, the lower or upper one, in shares of the volume's size.
+/// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
 struct MoveCut {
     int axis = 0;
     bool upper = false;
     double share = 0.0;
 };
-/// Clip planes of the camera, in shares of the distance to the target.
+/// Clip planes of the camera, as fractions of the distance to the target.
 struct MoveClip {
     bool far = false;
     double share = 0.0;
 };
 struct ResetCuts {};
 
-// ---- What things look like
+// ---- Looks
 struct SetTransferFunction {
     TransferFunction function;
 };
@@ -67,21 +67,21 @@ struct SetBlend {
 struct SetLight {
     Light light;
 };
-/// See RenderSettings; steps longer than a voxel go without.
+/// See RenderSettings; not used for steps longer than a voxel.
 struct SetPreintegration {
     bool on = true;
 };
 struct SetOcclusion {
     OcclusionSettings occlusion;
 };
-struct UpdateOcclusion {};  ///< renews it where it is not renewed by itself
+struct UpdateOcclusion {};  ///< updates it where it does not update by itself
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
-struct ProbeOnto {  ///< onto what is seen there
+struct ProbeOnto {  ///< onto the visible surface there
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
@@ -89,7 +89,7 @@ struct PushProbe {  ///< away from the viewer of a pane, in voxels
     size_t pane = 0;
     double voxels = 0.0;
 };
-/// What a hand can aim with, in voxels along x. Sessions and scripts may use other radii.
+/// Limits of the probe's radius in the window, in voxels along x. Sessions and scripts may use other radii.
 inline constexpr double SMALLEST_RADIUS_VOXELS = 0.5, LARGEST_RADIUS_VOXELS = 60.0;
 struct ScaleProbe {
     double factor = 1.0;
@@ -102,26 +102,26 @@ struct ShowShell {  ///< an iso-surface at the paint threshold around the probe
     bool on = true;
     double opacity = 0.4;
 };
-struct ShowPreview {  ///< what the brush would change, drawn before it does
+struct ShowPreview {  ///< what the brush would change, drawn beforehand
     bool on = true;
 };
 struct ChooseGroup {
     uint8_t group = 1;
 };
 enum class Tool { paint, trace };
-/// How far a node may be from the probe to be nearby, in radii of the probe.
+/// A node counts as near the probe up to this distance, in radii of the probe.
 inline constexpr double NEARBY_RADII = 4.0;
-/// What the right mouse button, F and the stylus do, and what is shown of what they would.
+/// What the right mouse button, F and the stylus do, and which preview is shown.
 struct SetTool {
     Tool tool = Tool::paint;
 };
-struct Paint {  ///< begins and ends a stroke; where the tool is tracing, the beginning adds a node
+struct Paint {  ///< begins and ends a stroke; with the trace tool, its beginning adds a node
     bool on = false;
 };
 struct Trace {
     TraceOp op;
 };
-struct DragNode {  ///< the selected node goes with the probe until it is let go, as one step of the history
+struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
     bool on = false;
 };
 struct SetHapticThreshold {
@@ -159,7 +159,7 @@ using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFro
                             Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
-/// It may change what a session holds but for the camera and the probe's place.
+/// Whether it may change the session other than the camera and the probe's position.
 inline bool edits_session(const Action& action)
 {
     const auto is_one_of = [&]<class... Kinds>(const std::variant<Kinds...>*) {

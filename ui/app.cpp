@@ -13,12 +13,12 @@ namespace shvr::ui {
 
 namespace {
 
-/// While work is on its way the loop looks after it this often, so that the device never runs dry.
+/// While work is pending the loop runs at this interval, so that the device never runs out of work.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
-/// Without input, sharper tiles are shown this often: drawing the interface takes time from them.
+/// Without input, sharper tiles are shown at this interval, since drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
-/// Widgets settle, hover and blink for so long after the last event.
+/// Widgets settle, hover and blink for that long after the last event.
 constexpr double AFTERGLOW_S = 0.3;
 
 }  // namespace
@@ -51,8 +51,8 @@ void App::say(const std::string& status)
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }
 
-/// The device holds one volume at a time. The document before stays until the next one stands, and comes back if it
-/// cannot.
+/// The device holds one volume at a time. The previous document is kept until the next one is open, and comes back if
+/// that fails.
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
     const double begun_s = window_.now_s();
@@ -72,7 +72,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     std::string device_said;
     if (std::unique_ptr<HapticDevice> device = find_device(device_said))
         document_->touch.use(std::move(device), "haptic device");
-    window_.set_title("SHVR");  // until it can be seen
+    window_.set_title("SHVR");  // until the volume is visible
     std::string status = "Opened " + path.string();
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const std::string& message : document_->messages) status += "; " + message;
@@ -80,7 +80,8 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     say(status);
 }
 
-/// After the next scan could not be opened. Fails in any case, with a sentence that says why and what is open.
+/// Reopens the previous scan after the next one failed to open. Always throws, with a message saying why and what is
+/// open.
 void App::bring_back(const std::string& why)
 {
     const std::string before = document_->session_path.string();
@@ -93,7 +94,7 @@ void App::bring_back(const std::string& why)
     fail(why, "; ", before, " stays open");
 }
 
-/// Where the device cannot be used, that is said and the mouse takes its place.
+/// If the device cannot be used, reports that; the mouse is used instead.
 std::unique_ptr<HapticDevice> App::find_device(std::string& said) const
 {
     try {
@@ -144,7 +145,7 @@ void App::note_failure(Attempt& state, const std::string& why)
     state = {.said = why, .failed_s = now, .again_s = now + AGAIN_S};
 }
 
-/// A window that shows nothing any more is of no use: then the program ends with the reason.
+/// If frames keep failing the window is useless, so the program ends with the reason.
 void App::draw()
 {
     constexpr double PATIENCE_S = 10.0;
@@ -159,7 +160,7 @@ void App::draw()
     if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", drawing_.said);
 }
 
-/// Work is never lost: it is saved before the window goes, and where that fails the window stays.
+/// Never loses work: saves it before the window closes, and if saving fails keeps the window open.
 bool App::closes()
 {
     if (!window_.should_close()) return false;
@@ -172,7 +173,7 @@ bool App::closes()
     }
 }
 
-/// Paint is kept at any price. What was set is given up where a person closes the window a second time.
+/// Paint is never discarded. Unsaved settings are discarded if the user closes the window a second time.
 bool App::refuses_to_close(const std::string& why)
 {
     if (document_->work_is_saved() && was_asked_to_close_) return false;
@@ -191,10 +192,10 @@ bool App::something_moves() const
     return look_is_stale_ || camera_moved_ || glm::distance(document_->probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
 }
 
-/// When the interface should be drawn next, as far as is known: at once, a little later, or not at all.
+/// When the interface should be drawn next, as far as known: at once, a little later, or not at all.
 double App::next_reason_to_draw_s() const
 {
-    // Until there is something to see, the device is there for the first picture.
+    // Until there is something to see, the first picture has the device to itself.
     const bool waits_for_picture = document_ && !document_->screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
     if (something_moves()) return 0.0;
@@ -222,7 +223,7 @@ void App::handle_events(double timeout_s)
         if (document_) {
             const ImGuiIO& io = ImGui::GetIO();
             viewport_.handle(event, model(), io.WantCaptureMouse, io.WantTextInput, actions_);
-            apply_all();  // what the next event means may depend on it: where the probe is, what is selected
+            apply_all();  // the next event may depend on it: the probe's position, the selection
         } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
             if (!drop->paths.empty()) actions_.emplace_back(Open{drop->paths.front()});
         }
@@ -302,7 +303,7 @@ void App::follow_look()
             document.screen.look_from(document.camera, document.probe_voxel());
         look_is_stale_ = camera_moved_ = false;
     }
-    // A running stroke or touch names what it needs itself.
+    // A running stroke, or touch, requests its own bricks.
     if (!document.assistance && !document.annotator.stroke_is_running())
         renderer_->volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
@@ -312,7 +313,7 @@ void App::follow_look()
 void App::follow_screenshots()
 {
     if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
-        screenshots_.drop_large();  // paint would be in some parts of it and not in others
+        screenshots_.drop_large();  // paint would show in some of its parts only
         say("The large screenshot was cancelled by painting");
     }
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();

@@ -1,12 +1,12 @@
 #pragma once
-// The application: owns the window, the device and what is open; takes what the person did, carries out the actions,
-// and keeps everything that runs beside the user interface supplied with work.
+// The application: owns the window, the device and the open document; receives input, carries out actions, and keeps
+// everything that runs beside the user interface supplied with work.
 //
 //   events -> Viewport, keys, panels -> Actions -> apply -> Session, Annotator, Touch -> View -> Window
 //
-// Threads: this one (main), the servo's while assistance is on, and one that writes a screenshot. The device's queue is
-// shared by turns of a few milliseconds: brush, relevance, probe, sketch, tiles, user interface. The interface is drawn
-// when something changed, at most so many times a second as the session says; with nothing to do the loop sleeps.
+// Threads: this one (main), the servo's while assistance is on, and one that writes a screenshot. Brush, relevance,
+// probe, sketch, tiles and user interface share the device's queue in turns of a few milliseconds. The interface is
+// drawn when something changed, at most at the session's frame rate; with nothing to do the loop sleeps.
 
 #include <memory>
 #include <optional>
@@ -26,7 +26,7 @@ struct AppOptions {
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    bool allow_force = false;  ///< on the hand, by a haptic device whose profile is verified
+    bool allow_force = false;  ///< lets a haptic device with a verified profile push the hand
     glm::uvec2 window_size{1280, 800};
 };
 
@@ -34,7 +34,7 @@ class App {
 public:
     explicit App(const AppOptions& options);
 
-    /// Until the window is closed.
+    /// Returns when the window is closed.
     void run();
     AppReport report();
 
@@ -53,10 +53,10 @@ private:
     double time_to_wait() const;
     void apply_all();
     void say(const std::string& status);
-    /// A part of a turn. Where it fails, that is said once, and the part is tried again a little later: whatever fails,
-    /// the window stays, and so does all that was done in it.
+    /// A part of a turn. A failure is reported once, and the part is retried a little later: whatever fails, the window
+    /// stays open and no work is lost.
     struct Attempt {
-        std::string said;       ///< of the last failure
+        std::string said;       ///< message of the last failure
         double failed_s = 0.0;  ///< when that was; 0: never
         double again_s = 0.0;
     };
@@ -130,7 +130,7 @@ private:
     struct Detach {
         void operator()(Window* window) const { window->detach(); }
     };
-    std::unique_ptr<Window, Detach> attached_;  ///< the window lets go of the device before that goes
+    std::unique_ptr<Window, Detach> attached_;  ///< detaches the window before the device is destroyed
     std::unique_ptr<Document> document_;
     Viewport viewport_;
     std::vector<TransferPreset> presets_;
@@ -138,17 +138,17 @@ private:
     bool shows_help_ = false;
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
-    bool was_asked_to_close_ = false;  ///< and could not save what was set; nothing was done since
+    bool was_asked_to_close_ = false;  ///< and could not save the settings; nothing was done since
     Attempt events_, touching_, painting_, previewing_, looking_, photographing_, drawing_;
-    std::optional<double> undrawn_since_s_;  ///< every frame since has failed
+    std::optional<double> undrawn_since_s_;  ///< every frame has failed since then
     Screenshots screenshots_;
     bool device_paints_ = false;  ///< its paint button is down
     std::string status_;
-    std::string journal_failure_;  ///< as it was said
+    std::string journal_failure_;  ///< as last reported
 
     // Pace
     double next_frame_s_ = 0.0;
-    double ui_until_s_ = 1.0;  ///< the interface is drawn until then without further reason
+    double ui_until_s_ = 1.0;  ///< the interface is drawn at least until then
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     glm::dvec3 drawn_probe_voxel_{0.0};

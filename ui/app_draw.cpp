@@ -1,4 +1,4 @@
-// A frame of the window: what panels are shown, the lines over the panes, and what a run measured.
+// A frame of the window: the panels' model, the lines over the panes, and the report of a run.
 
 #include <algorithm>
 
@@ -23,8 +23,8 @@ void App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves();
-    // A software device presents after everything that was submitted before, so this waits for nothing it would not
-    // wait for below; and the view learns what its work costs without the interface's share.
+    // A software device presents after all earlier submissions, so this wait only moves forward one that would happen
+    // below; and the view's measured cost then excludes the interface.
     if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
@@ -51,8 +51,8 @@ void App::draw_ui()
                        .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
 }
 
-/// The lines over each pane: the probe's outline shows through what hides it, maps tell where the camera looks, and a
-/// line goes to where assistance pulls the probe.
+/// The lines over each pane: the probe's outline, visible even if the probe is hidden; in maps the camera's direction;
+/// and a line towards the point where assistance pulls the probe.
 void App::draw_strokes() const
 {
     const Document& document = *document_;

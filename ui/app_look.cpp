@@ -1,5 +1,4 @@
-// What actions do to the view and to what things look like. Each says in the status bar what a person would want to
-// read.
+// Actions that change the view and the look. Each reports its result in the status bar.
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +19,13 @@ std::string name_of(StereoOutput output)
     return {};
 }
 
-/// What the view turns about: the middle of what is looked at.
+/// The point that the view turns about: the middle of what is shown.
 glm::dvec3 pivot_of(const Document& document)
 {
     return document.camera.target;
 }
 
-/// The height of what is seen at the target's depth.
+/// The height of the view at the target's depth.
 double height_of(const Camera& camera)
 {
     return pixel_size(camera, {1, 1}, glm::distance(camera.eye, camera.target));
@@ -139,7 +138,7 @@ void App::apply(const ResetCuts&)
     say("All cutting planes are removed");
 }
 
-// ---- What things look like ------------------------------------------------------------------------------------------
+// ---- Looks ------------------------------------------------------------------------------------------------------
 
 void App::apply(const SetTransferFunction& action)
 {

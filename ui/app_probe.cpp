@@ -1,4 +1,4 @@
-// What actions do to the probe and with its brush.
+// Actions of the probe and its brush.
 
 #include <algorithm>
 #include <cmath>
@@ -154,7 +154,7 @@ void App::stroke_ended()
     say(painted_sentence(document_->brush, voxels));
 }
 
-/// Asked for while it is wanted and no stroke is running, which shows itself.
+/// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.
 void App::show_preview()
 {
     Document& document = *document_;

@@ -1,4 +1,4 @@
-// What actions do to the trace: operations as scripts have them, as commands of the one history.
+// Actions on the trace: the operations that scripts use, as commands of the one history.
 
 #include "ui/app.h"
 
@@ -6,7 +6,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// What was done, for the status bar.
+/// The result, for the status bar.
 std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace)
 {
     const TraceSelection& selected = trace.selection();

@@ -1,4 +1,4 @@
-// What actions do to the work: undo and redo, saving, pictures of it, another scan.
+// Actions on the work: undo and redo, saving, pictures, opening another scan.
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,7 @@ void App::apply(const Redo&)
     say("Redone: " + command->label);
 }
 
-/// What the window says of the trace; the scene itself learns of changes from the annotator.
+/// Updates the window's data about the trace; the annotator passes changes to the scene itself.
 void App::show_changes(const Command& command)
 {
     Document& document = *document_;
@@ -65,7 +65,7 @@ void App::apply(const Open& action)
     open(action.path, {});
 }
 
-/// Whatever was done is saved as by hand; if nothing was done but look, where from is kept without a word.
+/// Saves all work as the Save command does; if the user only looked around, saves the view silently.
 void App::save_before_leaving()
 {
     if (document_->is_saved() && !document_->annotator.stroke_is_running()) return document_->keep_view();
@@ -78,8 +78,8 @@ void App::note_edit()
     was_asked_to_close_ = false;
 }
 
-/// What a stroke has covered belongs to what is saved, so its bricks get time to arrive. Returns why it was not all
-/// painted; empty where it was.
+/// A save includes all that the stroke has covered, so this waits for its bricks. Returns why part of it was not
+/// painted; empty if all was.
 std::string App::finish_stroke()
 {
     constexpr double PATIENCE_S = 20.0;

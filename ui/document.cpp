@@ -13,7 +13,7 @@ namespace {
 
 const char* const WINDOW_CAMERA = "window";
 
-/// A session file is saved where it was; a volume, file or folder, gets one beside it.
+/// A session file is saved in place; for a volume, file or folder, the session file is put beside it.
 std::filesystem::path session_path_of(const std::filesystem::path& input)
 {
     std::filesystem::path of_project = input / "shvr" / "session.json";
@@ -118,7 +118,7 @@ Session Document::saved_session() const
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
-/// What a person has set, as it would be written. Surfaces are left out: nothing here changes them, and they are many.
+/// The user's settings, as they would be written. Surfaces are left out: nothing here changes them, and there are many.
 Session Document::edits() const
 {
     Session edits = saved_session();
@@ -156,7 +156,7 @@ void Document::keep_view() const
     if (is_kept || overridden_ || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored)) return;
     try {
         write_session();
-    } catch (const Error&) {  // a place to look from is not worth a question
+    } catch (const Error&) {  // a camera position is not worth an error message
     }
 }
 
@@ -171,8 +171,8 @@ void Document::save()
     note_saved();
 }
 
-/// GraphML alone keeps all of a trace, so one that came in another form is left as it was and goes to a file of its
-/// own.
+/// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left
+/// unchanged.
 void Document::name_trace()
 {
     if (annotator.work().trace_is_saved()) return;

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-// What a tap does.
+// Step sizes of a tap.
 constexpr double TURN_DEGREES = 3.0;
 constexpr double MOVE_HEIGHTS = 0.05;
 constexpr double CUT_SHARE = 0.01;
@@ -21,11 +21,11 @@ constexpr double PROBE_FACTOR = 1.1;
 constexpr double SLOWED = 0.2;
 constexpr double BLEND_STEP = 0.05;
 constexpr double MOST_BLEND = 20.0;
-constexpr double TAPS_PER_SECOND = 5.0;  ///< of a key that is held
-constexpr double LONGEST_FRAME_S = 0.5;  ///< a frame that hung must not throw the view away
+constexpr double TAPS_PER_SECOND = 5.0;  ///< of a held key
+constexpr double LONGEST_FRAME_S = 0.5;  ///< after a hung frame a held key must not throw the view far away
 constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and other locks
 
-// ---- What keys do. The ones with parameters stand several times in the table.
+// ---- Key actions. Those with parameters appear several times in the table.
 
 Action undo(const Model&, double)
 {
@@ -102,7 +102,7 @@ Action move_clip(const Model&, double amount)
     return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
 }
 
-/// Steps of a twentieth; what is nearly 0 is 0, which costs nothing.
+/// Steps of a twentieth; snaps values near 0 to 0, which costs nothing to render.
 double stepped(double value, double amount)
 {
     const double next = std::clamp(value + BLEND_STEP * amount, 0.0, MOST_BLEND);
@@ -147,19 +147,19 @@ Action scale_nodes(const Model& model, double amount)
 
 using Act = Action (*)(const Model&, double);
 
-/// A key that does one thing once.
+/// A key that acts once per press.
 constexpr KeyBinding tap(int key, int mods, const char* group, const char* name, Act action)
 {
     return {.key = key, .mods = mods, .group = group, .name = name, .action = action};
 }
 
-/// A key that does something once, and a fifth of it with Shift.
+/// A key that acts once per press, and by a fifth with Shift.
 constexpr KeyBinding step(int key, int mods, const char* group, const char* name, Act action)
 {
     return {.key = key, .mods = mods, .is_slowed = true, .group = group, .name = name, .action = action};
 }
 
-/// A key that goes on while it is held, and slowly with Shift.
+/// A key that acts while held, and slowly with Shift.
 constexpr KeyBinding hold(int key, int mods, const char* group, const char* name, Act action)
 {
     return {
@@ -283,7 +283,7 @@ constexpr KeyBinding BINDINGS[] = {
     hold(GLFW_KEY_V, CTRL, CLIP, "Far clip plane away", move_clip<true, 1>),
 };
 
-/// The modifiers are exactly the binding's; where Shift slows, it may be there or not.
+/// The modifiers are exactly the binding's; if Shift slows the binding, it may be down or not.
 bool mods_match(const KeyBinding& binding, int mods)
 {
     const int counted = binding.is_slowed ? MODIFIERS & ~GLFW_MOD_SHIFT : MODIFIERS;
@@ -295,7 +295,7 @@ double rate(const KeyBinding& binding, int mods)
     return binding.is_slowed && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
-/// What the keyboard's own repetition may do again: a step of the history at a time.
+/// Bindings that the keyboard's auto-repeat may trigger: single steps of the history.
 bool steps_through_history(const KeyBinding& binding)
 {
     return binding.action == undo || binding.action == redo;

@@ -1,6 +1,6 @@
 #pragma once
-// What panels may look at: the state of the application as it is in this frame, to read only. Plain references and
-// numbers; the application fills it once a frame.
+// A read-only view of the application's state in this frame, for panels and keys. Plain references and numbers; the
+// application fills it once per frame.
 
 #include <array>
 #include <string>
@@ -33,13 +33,13 @@ struct Model {
     bool assistance = false;
     ProxyLaw law = ProxyLaw::potential;
     const ServoState* servo = nullptr;  ///< null while no servo runs
-    std::string device_name;            ///< of what moves the probe: "mouse", ...
+    std::string device_name;            ///< device that moves the probe: "mouse", ...
 
     // Tracing
     Tool tool = Tool::paint;
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
-    /// Voxels that painting would change now; nothing where no preview is shown or it is on its way.
+    /// Number of voxels that painting would change now; nothing if no preview is shown or it is still pending.
     std::optional<int64_t> previewed_voxels;
 
     // The work
@@ -53,8 +53,8 @@ struct Model {
     std::string gpu_name;
     std::vector<View::PassTime> pass_times;
     bool view_is_complete = true;
-    bool view_is_limited = false;   ///< coarser than the screen: more is seen than the budget holds
-    double relevance_age_ms = 0.0;  ///< of what the servo uses; 0 without assistance
+    bool view_is_limited = false;   ///< coarser than the screen, because the visible bricks exceed the budget
+    double relevance_age_ms = 0.0;  ///< of the patch that the servo uses; 0 without assistance
     double ui_frame_ms = 0.0;       ///< median of the last frames
     uint64_t device_bytes = 0, device_budget = 0;
 };

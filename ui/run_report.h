@@ -1,6 +1,6 @@
 #pragma once
-// What a run measured: how long frames of the interface take, how soon keys are answered and pictures are there, and
-// what the person was told. Times are seconds of the window's clock. The main thread.
+// Measures a run: duration of interface frames, latency of keys and first pictures, and the messages shown. Times are
+// seconds of the window's clock. The main thread.
 
 #include <array>
 #include <optional>
@@ -13,23 +13,24 @@
 
 namespace shvr::ui {
 
-/// Measured over a run, for people who profile and for tests.
+/// Measurements of a run, for profiling and tests.
 struct AppReport {
     std::string gpu_name;
     uint64_t frames = 0;              ///< of the user interface
-    std::vector<double> frame_ms;     ///< one interface frame: from its first call to the device being done with it
+    std::vector<double> frame_ms;     ///< one interface frame: from its first call until the device has finished it
     std::vector<double> interval_ms;  ///< between two frames while something was moving
-    std::vector<double> input_ms;     ///< from a key or button to the frame that shows it being done
-    /// From opening the last volume to the frame that first showed anything of it, and all of it sharp, being done.
+    std::vector<double> input_ms;     ///< from a key or button until the frame that shows its effect is finished
+    /// From opening the last volume until the device finished the first frame that showed any of it, and all of it
+    /// sharp.
     std::optional<double> first_picture_ms, sharp_picture_ms;
-    std::vector<double> relevance_ms;  ///< from asking for relevance to the servo having it
+    std::vector<double> relevance_ms;  ///< from requesting relevance until the servo has it
     uint64_t view_submissions = 0;
     bool view_complete = false;
     ServoState servo;
     glm::dvec3 probe_voxel{0.0};
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
-    std::optional<int64_t> previewed_voxels;  ///< when the last stroke began, where there was a preview of it
+    std::optional<int64_t> previewed_voxels;  ///< at the start of the last stroke, if it had a preview
     std::string status;
     std::vector<std::string> messages;  ///< every status so far
     std::vector<std::string> validation_messages;
@@ -40,26 +41,26 @@ public:
     void said(const std::string& status) { report_.messages.push_back(status); }
     /// Another scan was opened: its first pictures are measured from here.
     void opened(double time_s);
-    /// A key or button, which the next frame answers.
+    /// Reports a key or button; the next frame shows its effect.
     void asked(double time_s) { unanswered_s_.push_back(time_s); }
     bool has_unanswered() const { return !unanswered_s_.empty(); }
     void previewed(int64_t voxels) { report_.previewed_voxels = voxels; }
 
-    /// A frame of the interface that was handed to the device.
+    /// A frame of the interface that was submitted to the device.
     struct Frame {
         uint64_t number = 0;
         double begun_s = 0.0;
-        bool moves = false;  ///< it was drawn because something moves
+        bool moves = false;  ///< drawn because something moves
         bool shows_picture = false, shows_sharp_picture = false;
     };
     void presented(const Frame& frame);
-    /// The device is done with all frames up to this one.
+    /// The device has finished all frames up to this one.
     void done(uint64_t number, double time_s);
     double last_begun_s() const { return last_begun_s_; }
-    /// Median of the last frames; 0 where there is none.
+    /// Median of the last frames; 0 if there is none.
     double recent_frame_ms() const;
 
-    /// What was measured, without what only the application knows.
+    /// The report, without the entries that only the application knows.
     const AppReport& measured() const { return report_; }
 
 private:

@@ -9,7 +9,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// "scan-view-1.png", or the first number that is free.
+/// "scan-view-1.png", or with the first free number.
 std::filesystem::path free_path(const std::filesystem::path& stem)
 {
     for (int number = 1;; ++number) {
@@ -36,7 +36,7 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
 
 Screenshots::Turn Screenshots::advance_large(const std::filesystem::path& stem)
 {
-    std::unique_ptr<PictureJob> job = std::move(large_);  // which ends here, should it fail
+    std::unique_ptr<PictureJob> job = std::move(large_);  // dropped here if it fails
     if (job->is_done()) {
         write(to_image8(job->take().image), stem);
         return {};

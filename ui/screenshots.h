@@ -1,6 +1,6 @@
 #pragma once
-// Pictures of the view in files: of what is shown, once it is sharp, and larger ones, part by part while nothing else
-// is to be drawn. A thread packs the file, which takes long; all else is the main thread's.
+// Saves pictures of the view: as shown, once it is sharp, or larger, rendered part by part while nothing else needs
+// drawing. Compressing the file is slow and runs on a thread; everything else runs on the main thread.
 
 #include <filesystem>
 #include <functional>
@@ -16,20 +16,20 @@ namespace shvr::ui {
 
 class Screenshots {
 public:
-    /// A picture of what is shown.
+    /// Requests a picture of the view as shown.
     void take() { is_wanted_ = true; }
     void take_large(std::unique_ptr<PictureJob> job) { large_ = std::move(job); }
-    /// No large one: its volume goes, or changes.
+    /// Abandons a large picture, since its volume changes or goes away.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
     bool is_writing() const { return written_.valid(); }
 
     struct Turn {
-        std::string said;      ///< for the person; empty: nothing
-        std::string progress;  ///< likewise, but not worth keeping
+        std::string said;      ///< message for the user; empty: none
+        std::string progress;  ///< likewise, but replaced as it changes
     };
-    /// To be called at every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nobody waits for the
-    /// device. Fails where a picture cannot be made; then it is given up.
+    /// Call every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nothing else waits for the device.
+    /// Fails if a picture cannot be made; then it is abandoned.
     Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still);
     /// Waits until the last one is written.
     void wait() const;
@@ -39,8 +39,8 @@ private:
     Turn advance_large(const std::filesystem::path& stem);
 
     bool is_wanted_ = false;
-    std::unique_ptr<PictureJob> large_;  ///< under way
-    std::future<std::string> written_;   ///< what to say of it
+    std::unique_ptr<PictureJob> large_;  ///< in progress
+    std::future<std::string> written_;   ///< message about it
 };
 
 }  // namespace shvr::ui

@@ -94,7 +94,7 @@ void Swapchain::choose_format()
     const auto formats = gpu::enumerate<VkSurfaceFormatKHR>([&](uint32_t* count, VkSurfaceFormatKHR* items) {
         vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, count, items);
     });
-    // What is shown is encoded already, so the image must not encode again; and it is copied byte by byte.
+    // The layers are already encoded and are copied byte by byte, so the image must not encode again.
     for (const VkSurfaceFormatKHR& candidate : formats)
         if (candidate.format == VK_FORMAT_B8G8R8A8_UNORM || candidate.format == VK_FORMAT_R8G8B8A8_UNORM) {
             format_ = candidate;
@@ -192,7 +192,7 @@ void Swapchain::create_swapchain()
     VkSurfaceCapabilitiesKHR capabilities;
     SHVR_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities));
     extent_ = capabilities.currentExtent;
-    if (extent_.width == ~0u) {  // the surface takes what it is given
+    if (extent_.width == ~0u) {  // the surface accepts any size
         glm::ivec2 size(0);
         glfwGetFramebufferSize(window_, &size.x, &size.y);
         extent_ = {uint32_t(size.x), uint32_t(size.y)};
@@ -297,10 +297,10 @@ void Swapchain::draw_layers(VkCommandBuffer commands, VkImage target, const std:
                                .extent = {size.x, size.y, 1}});
         }
         if (!regions.empty()) {
-            if (first > 0)  // over what is there
+            if (first > 0)  // overwrites earlier copies
                 memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            // A copy, not a blit: on a software device a blit of the whole view takes longer than all of the interface.
+            // A copy, not a blit: on a software device a blit of the whole view takes longer than the whole interface.
             vkCmdCopyImage(commands, source, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                            uint32_t(regions.size()), regions.data());
         }
@@ -322,11 +322,11 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                   TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &BACKDROP, 1, &whole);
-    // What the view's frames wrote, and the clearing, before the layers are copied.
+    // The writes of the view's frames and the clear come before the copy of the layers.
     memory_barrier(commands, WORK, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT, TRANSFER,
                    VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames may write what was copied only after that: their graphs do not know of this reader.
+    // The view's next frames must wait for the copy before they write: their graphs do not know this reader.
     memory_barrier(commands, TRANSFER, 0, WORK, 0);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT,

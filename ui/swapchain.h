@@ -1,6 +1,5 @@
 #pragma once
-// What the window shows: the swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that speak
-// Vulkan.
+// The window's swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that call Vulkan.
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
 //
@@ -18,7 +17,7 @@ namespace shvr::ui {
 
 class Swapchain {
 public:
-    /// Fails where the device cannot show pictures in the window.
+    /// Fails if the device cannot present to the window.
     Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
     ~Swapchain();
     Swapchain(const Swapchain&) = delete;
@@ -46,7 +45,7 @@ private:
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkSemaphore acquired = VK_NULL_HANDLE;
         VkFence done = VK_NULL_HANDLE;
-        uint64_t number = 0;  ///< of the frame it was used for last
+        uint64_t number = 0;  ///< last frame that used it
     };
 
     void create();

@@ -9,9 +9,9 @@ namespace {
 
 /// One voxel under the hand: the scale at which the force law's stiffness was chosen (micro-CT of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
-/// A haptic device's reach from side to side, which is laid over the height of the view.
+/// Width of a haptic device's workspace, mapped to the height of the view.
 constexpr double WORKSPACE_M = 0.12;
-/// Relevance is asked for anew this often, so that it is never older than a few of these.
+/// Relevance is requested at this interval, so that it is never older than a few intervals.
 constexpr uint64_t ASK_EVERY_NS = 16'000'000;
 
 uint64_t now_ns()
@@ -131,9 +131,9 @@ void Touch::advance(const TouchSettings& settings)
     if (is_mouse_ && !settings.assistance && servo_) {
         servo_.reset();
         mouse_ = nullptr;
-        wish_ = probe_;  // it stays where it was guided to
+        wish_ = probe_;  // it stays where assistance left it
     }
-    resets_ += settings.assistance && !was_assisting_;  // switching it on again is how a person clears a fault
+    resets_ += settings.assistance && !was_assisting_;  // users clear a fault by switching assistance on again
     was_assisting_ = settings.assistance;
     if (!servo_) return;
     send_settings(settings);

@@ -1,12 +1,12 @@
 #pragma once
-// Between the hand and the volume: runs the servo, tells it which voxels are relevant, and where the probe is.
+// Connects the hand to the volume: runs the servo, tells it which voxels are relevant, and knows where the probe is.
 //
 //   mouse -> wish -> servo's device -> probe -> relevance pass (device) -> bits -> Latest -> servo -> force -> probe
 //
-// With a haptic device the servo runs all the time, and the device alone moves the probe: its workspace is the view,
-// right, up and towards the user. Without one the mouse is a device: its hand has no mass, and gives way to the force;
-// then the servo runs while assistance is on, and otherwise the probe is where the mouse puts it, and nothing is
-// computed. Main thread; the servo has its own, and shares only latest values with it.
+// With a haptic device the servo always runs, and only the device moves the probe: its workspace is aligned with the
+// view (right, up, towards the user). Otherwise the mouse acts as a device whose hand has no mass and yields to the
+// force: the servo runs only while assistance is on; when it is off, the probe is where the mouse puts it and nothing
+// is computed. Main thread; the servo has its own thread and shares only latest values with it.
 
 #include <memory>
 #include <string>
@@ -23,23 +23,23 @@ struct TouchSettings {
     double threshold = 0.0;     ///< intensity
     double probe_radius = 1.0;  ///< physical units
     ProxyLaw law = ProxyLaw::potential;
-    CameraAxes axes;  ///< of the view, and what it looks at: where a device's workspace lies
+    CameraAxes axes;  ///< of the view: they place a device's workspace
     glm::dvec3 target{0.0};
     double view_height = 1.0;  ///< physical units, at the target
 };
 
 class Touch {
 public:
-    /// The mouse moves the probe until there is a device.
+    /// The mouse moves the probe until use() is called.
     explicit Touch(Renderer& renderer);
     /// From now on `device` moves the probe, and the servo runs.
     void use(std::unique_ptr<HapticDevice> device, const std::string& name);
 
-    /// Puts the probe somewhere at once (physical units of the volume).
+    /// Moves the probe at once (physical units of the volume).
     void place(const glm::dvec3& point);
-    /// Where the hand wants it.
+    /// Sets where the hand wants the probe.
     void wish(const glm::dvec3& point);
-    /// Takes what came from the servo and the device, and sends what they need.
+    /// Receives from the servo and the device, and sends what they need.
     void advance(const TouchSettings& settings);
 
     glm::dvec3 probe() const { return probe_; }
@@ -50,7 +50,7 @@ public:
     /// Of the device, as the servo read them last; 0 for the mouse.
     uint32_t buttons() const { return is_mouse_ ? 0 : state_.device.buttons; }
     bool paint_button() const { return (buttons() & PAINT_BUTTON) != 0; }
-    /// From asking the device which voxels are relevant to the servo being told, milliseconds; newest last.
+    /// Milliseconds from requesting relevance on the GPU until the servo has it; newest last.
     const std::vector<double>& mirror_ms() const { return mirror_ms_; }
     double relevance_age_ms() const;
     double relevance_gpu_ms() const { return relevance_gpu_ms_; }
@@ -71,7 +71,7 @@ private:
     bool is_mouse_ = true;
     std::string device_name_ = "mouse";
     std::unique_ptr<Servo> servo_;
-    SimulatedDevice* mouse_ = nullptr;  ///< the servo's, while it runs
+    SimulatedDevice* mouse_ = nullptr;  ///< owned by the servo while it runs
     bool was_assisting_ = false;
     uint32_t resets_ = 0;
     uint32_t jumps_ = 0;

@@ -23,7 +23,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// The mean radius of some nodes, in voxels along x; what has none counts as half a voxel.
+/// The mean radius (the probe's if there is none), at least half a voxel, times the factor; in voxels along x.
 double scaled_radius(const Model& model, const Mean& mean, double factor)
 {
     const double probe = model.brush.radius_voxels * model.volume.spacing.x;
@@ -44,7 +44,7 @@ TraceOp nearest_selection(const Model& model)
     SelectOp op{.near = model.probe_voxel, .number = {}, .is_internode = false, .within_voxels = within_voxels(model)};
     if (is_nearest && !model.trace.internodes_of(*selected).empty()) {
         op.is_internode = true;
-        op.within_voxels.reset();  // its node is at hand
+        op.within_voxels.reset();  // its node is known
     }
     return op;
 }

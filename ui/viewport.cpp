@@ -8,7 +8,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turns by half a turn
+constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turns the view by half a turn
 constexpr double DOUBLE_CLICK_S = 0.35;
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
@@ -34,7 +34,7 @@ size_t Viewport::pane_at(const glm::dvec2& at, const Model& model) const
     return 0;
 }
 
-/// In the pixels of the pane that has the mouse.
+/// In pixels of the pane under the mouse.
 glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
 {
     const glm::uvec2 origin = pane_ < model.panes.size() ? model.panes[pane_].pane.box.begin : glm::uvec2(0);
@@ -79,7 +79,7 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
     const glm::dvec2 way = event.at - last_, heights = way / std::max(1.0, height);
     last_ = event.at;
     switch (gesture_) {
-        // What is under the mouse goes along with it, so the eye goes the other way.
+        // The object follows the mouse, so the eye moves the other way.
         case Gesture::turn:
             actions.emplace_back(Orbit{-DEGREES_PER_HEIGHT * heights.x, DEGREES_PER_HEIGHT * heights.y});
             break;

@@ -1,10 +1,10 @@
 #pragma once
-// Mouse and keys in the graphics window, turned into actions. Knows where the graphics window lies, and which gesture
-// is under way; changes nothing else. Main thread.
+// Turns mouse and keys in the graphics window into actions. Its only state is the layout of that window and the gesture
+// in progress. Main thread.
 //
 //   no button          the probe follows in its plane          wheel          zoom
 //   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
-//   middle drag        move (also Shift + left drag)           double click   put the probe onto what is seen there
+//   middle drag        move (also Shift + left drag)           double click   put the probe onto the surface there
 //   right held, or F   paint, or add a node            M held         the selected node goes with the probe
 //
 // In a map, left and middle drag move the camera and the wheel takes it forward; in a slice the wheel moves the slice.
@@ -22,7 +22,7 @@ public:
     const Layout& layout() const { return layout_; }
     glm::uvec2 pixels() const { return layout_.end - layout_.begin; }
 
-    /// `ui_has_mouse`, `ui_has_keys`: Dear ImGui wants them.
+    /// `ui_has_mouse`, `ui_has_keys`: Dear ImGui uses them.
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, bool ui_has_keys, Actions& actions);
 
 private:

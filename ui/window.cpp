@@ -22,11 +22,11 @@ std::string glfw_error()
 
 }  // namespace
 
-/// GLFW's window and what the person did in it.
+/// GLFW's window and the input received in it.
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
-    bool frame_is_open = false;  ///< of the interface: begun, and not yet rendered
+    bool frame_is_open = false;  ///< an interface frame was begun and not yet rendered
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
     template <class Event>
@@ -34,8 +34,8 @@ struct Window::Input {
     {
         of(window).events.push_back({std::move(event), glfwGetTime()});
     }
-    /// Where the mouse was when the event happened: GLFW itself tells where it is by now, which is too late where a
-    /// turn of the loop takes in a whole gesture.
+    /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one turn of
+    /// the loop receives a whole gesture.
     std::optional<glm::dvec2> last_cursor;
     static glm::dvec2 cursor(GLFWwindow* window)
     {
@@ -64,7 +64,7 @@ struct Window::Input {
                (down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
                (down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
     }
-    /// Before Dear ImGui installs its own callbacks, which call these.
+    /// Call before Dear ImGui installs its own callbacks, which call these.
     void listen() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
@@ -102,7 +102,7 @@ Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::m
     glfwSetWindowUserPointer(input_->window, input_.get());
     input_->listen();
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // no file is left behind in the working directory
+    ImGui::GetIO().IniFilename = nullptr;  // no settings file in the working directory
     ImGui_ImplGlfw_InitForVulkan(input_->window, true);
 }
 
@@ -191,7 +191,7 @@ bool Window::is_down(int key) const
 
 void Window::begin_ui()
 {
-    if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last one failed before it was shown
+    if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();

@@ -1,15 +1,14 @@
 #pragma once
-// The window, by GLFW: it shows images of the view under the user interface (swapchain.h), and collects what the person
-// did.
+// The window, by GLFW: shows images of the view under the user interface (swapchain.h) and collects input.
 //
-//     Window window({...});                                  // before the device, which must know what it needs
+//     Window window({...});                                  // before the device, which needs its requirements
 //     Renderer renderer({.device = window.device_needs()});
 //     window.attach(renderer.device(), renderer.memory());
 //     while (!window.should_close()) {
 //         for (const InputEvent& event : window.wait_events(0.01)) ...
 //         window.begin_ui(); ... ImGui calls ...; window.present(layers, origin);
 //     }
-//     window.detach();                                       // before the device goes
+//     window.detach();                                       // before the device is destroyed
 //
 // The main thread.
 
@@ -46,9 +45,9 @@ struct ScrollEvent {
 struct DropEvent {
     std::vector<std::string> paths;
 };
-/// The window's size changed, or what it shows was lost.
+/// The window's size changed, or its contents were lost.
 struct DamageEvent {};
-/// Positions are pixels of the frame buffer.
+/// Positions are in pixels of the frame buffer.
 struct InputEvent {
     std::variant<KeyEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
     double time_s = 0.0;  ///< when it was received
@@ -58,13 +57,13 @@ class Swapchain;
 
 class Window {
 public:
-    /// Fails where there is no display.
+    /// Fails if there is no display.
     Window(const std::string& title, const glm::uvec2& size);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// What a device that is to draw here must have.
+    /// Requirements for a device that presents to this window.
     gpu::DeviceOptions device_needs() const;
     void attach(gpu::Device& device, gpu::Memory& memory);
     void detach();
@@ -77,7 +76,7 @@ public:
     double content_scale() const;  ///< 2 on a HiDPI screen
     double now_s() const;
 
-    /// Waits for events, at most so long (0: not at all), and gives those that came.
+    /// Waits for events, at most that long (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
     /// Whether a key is held down.
     bool is_down(int key) const;
@@ -87,10 +86,10 @@ public:
 
     void begin_ui();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
-    /// where there is nothing to draw on (minimised).
+    /// if there is nothing to draw on (minimised).
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
 
-    /// Frames that were handed to the device, and those it is done with: they can be seen. Never waits.
+    /// Frames submitted to the device, and those it has finished, which are visible. Never waits.
     uint64_t frames_presented() const;
     uint64_t frames_done() const;
 

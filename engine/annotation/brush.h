@@ -1,5 +1,5 @@
 #pragma once
-// Brushes, and what one stroke of a brush is: the same description for scripts, the window and a stylus.
+// Brushes, and the description of one stroke, shared by scripts, the window and a stylus.
 
 #include <array>
 #include <optional>
@@ -58,17 +58,17 @@ constexpr std::span<const Spelling<RegionShape>> spellings_of(RegionShape)
     return REGION_SHAPES;
 }
 
-/// How a person has set the brush.
+/// The user's settings of the brush.
 struct BrushSettings {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;                  ///< 0 erases
-    std::optional<double> threshold{};  ///< intensity; the middle of what the transfer function shows
+    std::optional<double> threshold{};  ///< intensity; default: from the transfer function
     double radius_voxels = 6.0;         ///< along x; of the probe, too
     int connectivity = 6;               ///< 6 or 26
     /// Density painting: the brush raises intensities, beside painting its group or instead of it.
     std::optional<DensityBrush> density{};
-    bool paints_group = true;  ///< false, where there is `density`: offsets alone
+    bool paints_group = true;  ///< false, with `density` set: offsets only
     bool operator==(const BrushSettings&) const = default;
 };
 
@@ -83,14 +83,14 @@ struct PaintOp {
     std::vector<glm::dvec3> path;  ///< voxel coordinates
     /// Offsets for the selected voxels; group 0 removes theirs.
     std::optional<DensityBrush> density{};
-    bool paints_group = true;  ///< false: offsets alone
+    bool paints_group = true;  ///< false: offsets only
     bool operator==(const PaintOp&) const = default;
 
-    /// It takes voxels out of their group; their offsets too, where it paints offsets.
+    /// Removes voxels from their group; also their offsets, if it paints offsets.
     bool erases() const { return paints_group && group == 0; }
 };
 
-/// `threshold` is taken where the settings have none.
+/// `threshold` is the default if the settings have none.
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
     // A new member does not compile until it is here.

@@ -10,7 +10,7 @@ std::string DensityField::why_it_does_not_fit(const DensityBrickChange& change, 
 {
     return SparseBricks::why_it_does_not_fit(
         change, direction, [&](uint32_t bits) { return sentence("offset ", offset_of(type_, bits)); },
-        // not a number is not within the limit
+        // NaN is not within the limit
         [&](uint32_t bits) { return std::abs(offset_of(type_, bits)) <= offset_limit(type_); });
 }
 

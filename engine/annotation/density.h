@@ -33,7 +33,7 @@ public:
     /// How many voxels have an offset.
     int64_t voxels() const { return voxels_; }
 
-    /// Why a record cannot be applied; empty where it fits. Offsets must be numbers within the limit (offset_limit).
+    /// Why a record cannot be applied; empty if it fits. Offsets must be numbers within the limit (offset_limit).
     std::string why_it_does_not_fit(const DensityBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const DensityBrickChange& change, Direction direction);

@@ -1,5 +1,5 @@
 #pragma once
-// What a stroke does to density offsets: the rule of density.h, for the voxels that a brush selects at each position.
+// Applies a stroke to density offsets: the rule of density.h, for the voxels that a brush selects at each position.
 //
 //     p(v) = P                                  flat
 //     p(v) = P max(0, 1 - d / r)                distance: d from the voxel's centre to the position, in physical units;
@@ -31,7 +31,7 @@ struct DensityBrush {
     bool operator==(const DensityBrush&) const = default;
 };
 
-/// The lowest point of the transfer function minus the paint threshold; 0 where that is negative, since such voxels are
+/// The lowest point of the transfer function minus the paint threshold; 0 if that is negative, since such voxels are
 /// visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
@@ -41,7 +41,7 @@ uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t he
 
 class DensityStroke {
 public:
-    /// Fails where the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
+    /// Fails if the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
     /// Adds the voxels of `region`, which lies around `centre_voxel`, whose bit is set (VoxelSelection::add).
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,

@@ -12,18 +12,18 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MOST_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count in whole words
+constexpr int64_t MOST_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count as whole words
 
 struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last for which `holds`. The test itself decides; the estimate, `reach`
-/// to both sides of `centre`, is only where the search begins.
+/// The voxels of `within` from the first to the last for which `holds`. The test decides; the estimate, `reach` to both
+/// sides of `centre`, only gives the starting point.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
-    constexpr double FAR_AWAY = 1 << 22;  // beyond it (or where it is not a number) the estimate is no help
+    constexpr double FAR_AWAY = 1 << 22;  // beyond it (or if NaN) the estimate is useless
     Range range = within;
     if (reach < FAR_AWAY && std::abs(centre) < FAR_AWAY) {
         range.begin = std::clamp(int64_t(std::floor(centre - reach)) - 1, within.begin, within.end);
@@ -42,7 +42,7 @@ uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
     return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
 }
 
-/// Along a stroke, at least 1: a point given twice stays two positions.
+/// At least 1: a point given twice stays two positions of the stroke.
 double steps_between(const glm::dvec3& a, const glm::dvec3& b)
 {
     const glm::dvec3 way = glm::abs(b - a);
@@ -85,7 +85,7 @@ bool BrushRegion::contains(const Size3& voxel) const
 
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size)
 {
-    // Centred on a voxel, or between two: an odd or an even number of voxels along each axis.
+    // Centred on a voxel or between two: the number of voxels along each axis is odd or even.
     const glm::dvec3 reach = glm::min(radius_voxels * spacing.x / spacing, glm::dvec3(volume_size));
     const Size3 widest = glm::max(2l * Size3(glm::floor(reach)) + 1l, 2l * Size3(glm::floor(reach + 0.5)));
     refuse_size(radius_voxels, glm::min(widest, volume_size));
@@ -154,8 +154,8 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 
 VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_(brick_grid(size)) {}
 
-// A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks that
-// a row of the region goes through are looked up once for all rows that go through the same ones.
+// A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks
+// along a row are looked up once for all rows through the same bricks.
 void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> words)
 {
     const Size3 size = region.box.size();

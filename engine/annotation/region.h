@@ -28,16 +28,16 @@ struct BrushRegion {
 
 /// A voxel belongs to the ball when its centre lies within `radius_voxels` (measured along x: radius_voxels *
 /// spacing.x) of `centre_voxel`, in physical units. The box takes each axis on its own with the same radius.
-/// Fails where the region's box, each row filled up to whole words, holds more than 256^3 voxels.
+/// Fails if the region's box, each row filled up to whole words, holds more than 256^3 voxels.
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
-/// Fails where the region of such a brush would be too large at some position in a volume of that size.
+/// Fails if the region of such a brush would be too large at some position in a volume of that size.
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
 
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
 /// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
-/// Fails where there are more than MOST_STROKE_POSITIONS.
+/// Fails if there are more than MOST_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
 /// How many positions that is, without making them; infinite where coordinates are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);

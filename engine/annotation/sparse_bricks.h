@@ -36,7 +36,7 @@ struct BrickRun {
     bool operator==(const BrickRun&) const = default;
 };
 
-/// What changed in one brick. Runs ascend and do not overlap.
+/// The changes in one brick. Runs ascend and do not overlap.
 template <class Value>
 struct BrickChange {
     int64_t brick = 0;  ///< linear index in the grid of bricks, x fastest
@@ -103,19 +103,19 @@ protected:
     /// The value of a voxel of the volume (SHVR_CHECK).
     Value value_at(const Size3& voxel) const;
 
-    /// What error messages call a value: "group 3".
+    /// Name of a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
     /// Whether voxels may come to hold a value; empty: any.
     using Allowed = std::function<bool(Value)>;
     /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must hold what the
-    /// record says they hold before the change. Empty where it fits.
+    /// record says they hold before the change. Empty if it fits.
     std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
                                     const Allowed& allowed = {}) const;
     /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.
     template <class Replaced>
     void replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced);
-    /// Adds a brick where there is none (SHVR_CHECK) and returns how many of its voxels are not 0; those beyond the
-    /// volume's border become 0.
+    /// Adds a missing brick (SHVR_CHECK) and returns how many of its voxels are not 0; those beyond the volume's border
+    /// become 0.
     int64_t put(int64_t index, Brick values);
 
 private:

@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-/// Voxels that are read at once, unless a row of blocks holds more: what the second-level cache of a core takes.
+/// Bytes of voxels read at once, unless a row of blocks is larger: the size of a core's second-level cache.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MOST_BIT_BYTES = int64_t{64} << 20;
 
@@ -38,7 +38,7 @@ void BitSlab::read(int64_t lower, int64_t upper)
 /// The columns that can hold a voxel at or above the threshold: whole words, and all of them inside the volume.
 std::pair<int64_t, int64_t> BitSlab::columns_above(const VoxelBox& strip) const
 {
-    // Infinities are above thresholds, but in no range.
+    // Infinities can be above the threshold, but ranges leave them out.
     if (is_float(bits_.type())) return {0, size_.x};
     const Size3 first = strip.lower / BRICK_SIDE, last = (strip.upper - int64_t{1}) / BRICK_SIDE;
     const auto is_above = [&](int64_t x) {

@@ -15,7 +15,7 @@ public:
     /// How many slices are read at once: enough for the source's blocks to be decoded once, unless the bits of that
     /// many slices take more than 64 MiB.
     int64_t slices() const { return slices_; }
-    /// Slices [lower, upper), at most `slices()`. What the source knows to be below the threshold is not read.
+    /// Slices [lower, upper), at most `slices()`. Blocks that the source knows to be below the threshold are not read.
     void read(int64_t lower, int64_t upper);
     /// Row y of slice `lower` + slice.
     std::span<const uint64_t> row(int64_t y, int64_t slice) const

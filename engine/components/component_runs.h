@@ -17,7 +17,7 @@ struct LabelledRun {
     uint32_t begin = 0, end = 0, label = 0;
 };
 
-/// Runs of consecutive rows: those of row i are runs[rows[i]] to runs[rows[i + 1]].
+/// Runs of consecutive rows: those of row i are [rows[i], rows[i + 1]).
 struct SliceRuns {
     std::vector<uint32_t> rows{};
     std::vector<LabelledRun> runs{};
@@ -37,7 +37,7 @@ struct SliceRuns {
 /// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// In `folder`, for volumes of `size`. Fails where no file can be made there.
+    /// In `folder`, for volumes of `size`. Fails if no file can be created there.
     RunFile(const std::filesystem::path& folder, const Size3& size);
 
     void write(int64_t z, const SliceRuns& slice);
@@ -48,8 +48,8 @@ public:
 private:
     std::filesystem::path folder_;
     FileDescriptor file_;
-    int64_t rows_bytes_;           ///< before the runs of a slice
-    std::vector<int64_t> places_;  ///< of slices; -1: without runs
+    int64_t rows_bytes_;           ///< size of the row table before the runs of a slice
+    std::vector<int64_t> places_;  ///< file offsets of slices; -1: no runs
     std::atomic<int64_t> end_ = 0;
 };
 

@@ -45,7 +45,7 @@ private:
 };
 
 /// Joins the runs of two neighbouring rows that touch; `reach` 1: over an edge or a corner, too. Runs of `row` that
-/// have no label yet take one.
+/// have no label yet take that of their neighbour.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
     auto first = before.begin();
@@ -75,7 +75,7 @@ class LabelledRange {
 public:
     LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
 
-    /// `slices_done` counts them as they are.
+    /// `slices_done` counts finished slices.
     void label(BitSlab& slab, const Size3& size, Connectivity connectivity, RunFile* file, HeldBytes& held,
                std::atomic<int64_t>& slices_done)
     {
@@ -97,7 +97,7 @@ public:
         count_held(held);
     }
 
-    SliceRuns first, last;  ///< their labels are this range's own
+    SliceRuns first, last;  ///< with this range's own labels
     LabelForest forest;
     int64_t foreground_voxels = 0;
     int64_t lower_slice() const { return lower_; }
@@ -148,7 +148,7 @@ private:
 
 // ---- All ranges -----------------------------------------------------------------------------------------------------
 
-/// What the volume of labels keeps of the labelling.
+/// The data that the volume of labels needs.
 struct LabelTable {
     LabelForest forest;             ///< the parent of a provisional label is its final one
     std::vector<int64_t> lower;     ///< first slice of each range
@@ -232,7 +232,7 @@ private:
                                                  : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
         const ThresholdBits bits(source_info_.type, options_.threshold);
         std::vector<BitSlab> slabs(static_cast<size_t>(threads), BitSlab(source, bits));
-        // Whole blocks, so that nothing is decoded twice.
+        // Ranges are whole blocks, so that no block is decoded twice.
         const int64_t block = std::min(source.block().z, size.z);
         const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
         const int64_t thickness =
@@ -252,7 +252,7 @@ private:
         counts_.peak_bytes = held.peak();
     }
 
-    /// One forest of all, in which the last slice of a range meets the first of the next one.
+    /// Merges the forests into one and joins the last slice of each range to the first of the next.
     void join_ranges()
     {
         LabelForest& forest = table_->forest;
@@ -273,7 +273,7 @@ private:
         counts_.forest_bytes = forest.bytes();
     }
 
-    /// Afterwards the parent of every label is its component's smallest one, which has all voxels.
+    /// Afterwards the parent of every label is the smallest label of its component, which holds the voxel count.
     void resolve()
     {
         LabelForest& forest = table_->forest;
@@ -293,11 +293,11 @@ private:
             return a.voxels != b.voxels ? a.voxels > b.voxels : a.label < b.label;
         }
     };
-    /// The `most` largest of those that `visit` reports.
+    /// The `most` largest components that `visit` reports.
     template <class Visit>
     static std::vector<Component> largest_of(size_t most, const Visit& visit)
     {
-        std::vector<Component> heap;  // the smallest on top
+        std::vector<Component> heap;  // min-heap
         visit([&](const Component& component) {
             if (heap.size() == most && !Larger{}(component, heap.front())) return;
             heap.push_back(component);
@@ -310,7 +310,7 @@ private:
         return heap;
     }
 
-    /// From provisional labels to final ones.
+    /// Replaces provisional labels by final ones.
     void number()
     {
         LabelForest& forest = table_->forest;
@@ -335,7 +335,7 @@ private:
                 const auto label = static_cast<uint32_t>(i);
                 const int64_t voxels = forest.voxels(label);
                 if (voxels == 0) {
-                    forest.parent(label) = forest.parent(forest.parent(label));  // the root's, which has its number
+                    forest.parent(label) = forest.parent(forest.parent(label));  // the final label, stored at the root
                     continue;
                 }
                 ++counts_.found;

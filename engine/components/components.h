@@ -16,7 +16,7 @@
 
 namespace shvr {
 
-enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are joined where they share one
+enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are joined if they share one
 
 struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
@@ -24,7 +24,7 @@ struct ComponentOptions {
     int64_t fewest_voxels = 1;    ///< smaller components are dropped
     int64_t most_components = 0;  ///< only the largest N are kept, the first of equal ones; 0: all
     int threads = 0;              ///< 0: one per core
-    /// Where the temporary file is made; nothing: labels are not wanted, and `labels` may not be called.
+    /// Folder of the temporary file; if unset, no labels are kept and `labels` may not be called.
     std::optional<std::filesystem::path> run_folder{};
     std::function<void(double fraction)> progress{};  ///< called a few times per second, on the calling thread
 };
@@ -39,7 +39,7 @@ public:
         int64_t found = 0, kept = 0;
         int64_t foreground_voxels = 0;  ///< of all components
         int64_t kept_voxels = 0;
-        int64_t largest_voxels = 0;      ///< 0 where there is none
+        int64_t largest_voxels = 0;      ///< 0 if there is none
         std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MOST_LARGEST
         int64_t provisional = 0;         ///< labels
         int64_t peak_bytes = 0;          ///< of memory while labelling
@@ -51,16 +51,17 @@ public:
     virtual ~Components() = default;
     const Counts& counts() const { return counts_; }
 
-    /// The volume of labels: 0 where nothing was kept, and 1 ... kept in the order of components' first voxels (z, then
-    /// y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this and `source`.
+    /// The volume of labels: 0 for dropped and background voxels, and 1 ... kept in the order of components' first
+    /// voxels (z, then y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this and
+    /// `source`.
     virtual std::unique_ptr<VolumeSource> labels() const = 0;
 
 protected:
     Counts counts_;
 };
 
-/// Fails where the source does, where there are more than 2^32 provisional labels, and where the temporary file cannot
-/// be written. One thread may call it.
+/// Fails if reading the source fails, if there are more than 2^32 provisional labels, or if the temporary file cannot
+/// be written. Call from one thread at a time.
 std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options);
 
 }  // namespace shvr

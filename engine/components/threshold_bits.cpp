@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// The smallest voxel that is at or above the threshold; nothing where none is.
+/// The smallest voxel value at or above the threshold; nothing if there is none.
 template <class T>
 std::optional<T> lowest_above(double threshold)
 {
@@ -51,7 +51,7 @@ template <class T>
 void convert_row(const T* voxels, size_t count, T lowest, uint64_t* words)
 {
     size_t at = 0;
-    // A length that compilers know.
+    // A compile-time length, which compilers unroll.
     for (; at + 64 <= count; at += 64) *words++ = word_of(voxels + at, 64, lowest);
     if (at < count) *words = word_of(voxels + at, count - at, lowest);
 }

@@ -1,7 +1,7 @@
 #pragma once
 // The looks of colour groups in the label image that a mask is kept in (OME-Zarr 0.4, image-label: colors and
-// properties). Colours are sRGB of 8 bits a channel there, alpha the opacity; the tree of groups and what is hidden
-// have no place in it.
+// properties). Colours are sRGB of 8 bits a channel there, alpha the opacity; the format cannot hold the tree of groups
+// nor which groups are hidden.
 
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// Of the groups that are painted or set up, ascending.
+/// The looks of all groups that are painted or defined, in ascending order.
 std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask);
 
 /// Gives each group that `groups` does not define its look in the label image `mask`, if that differs from the default.

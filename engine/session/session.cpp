@@ -28,10 +28,10 @@ bool is_session_file(const fs::path& path)
     return extension == ".json";
 }
 
-/// The session file that `path` means; empty where it is a volume file.
+/// The session file that `path` refers to; empty if it is a volume file.
 fs::path session_file_of(const fs::path& path)
 {
-    std::error_code ignored;  // what cannot be looked at is treated as absent
+    std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
         if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
@@ -45,7 +45,7 @@ fs::path session_file_of(const fs::path& path)
 JsonDocument document_for_volume(const fs::path& path)
 {
     JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
-    // Not by way of text: a path need not be UTF-8.
+    // Set directly, not parsed from text: a path need not be UTF-8.
     document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
     return document;
 }
@@ -75,7 +75,7 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
     opened.source = open_source(session);
-    // A project whose record is sound knows its statistics, too.
+    // A project with a valid record already has its statistics.
     std::error_code ignored;
     const fs::path record = session.volume_path / PROJECT_RECORD;
     if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))

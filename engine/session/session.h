@@ -1,6 +1,6 @@
 #pragma once
-// A session: everything that makes a picture, in one JSON file (version 1). It feeds the window, the command line, the
-// goldens and bug reports alike. engine/session/README.md lists every key; unknown keys are refused by name.
+// A session: everything that determines a picture, in one JSON file (version 1). The window, the command line, goldens
+// and bug reports all use it. engine/session/README.md lists every key; unknown keys are refused by name.
 
 #include <array>
 #include <filesystem>
@@ -20,24 +20,25 @@
 
 namespace shvr {
 
-/// What the window does while somebody works.
+/// Settings of the interactive window.
 struct InteractionSettings {
-    double resolution = 0.7;  ///< of the screen's, along each axis, while something moves; less where that is slow
+    double resolution = 0.7;  ///< share of the screen's, along each axis, while something moves; less if that is slow
     double frames_per_second = 30.0;  ///< at most
     uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
     bool operator==(const InteractionSettings&) const = default;
 };
 
-/// Where a person works, and with what. What is not given here is chosen for the volume.
+/// The probe and the brush. Values not given here are chosen for the volume.
 struct ProbeSettings {
-    std::optional<glm::dvec3> voxel;  ///< the probe's centre; the volume's middle
+    std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's middle
     BrushSettings brush;
-    std::optional<double> haptic_threshold;  ///< intensity; the brush's threshold
+    std::optional<double> haptic_threshold;  ///< intensity; default: the brush's threshold
     bool shown = false;                      ///< in pictures; the window shows it always
-    /// An iso-surface at the brush's threshold in the probe's region: what density painting would lift over it.
+    /// An iso-surface at the brush's threshold in the probe's region: it shows what density painting would raise above
+    /// it.
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
-    bool preview = false;        ///< what the brush would change there is drawn
+    bool preview = false;        ///< the brush's effect at the probe is drawn
     bool operator==(const ProbeSettings&) const = default;
 };
 
@@ -48,7 +49,7 @@ struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;  ///< for bare voxels
-    OpenOptions open_options;             ///< what to take from files that hold more than one volume
+    OpenOptions open_options;             ///< selects from files that hold more than one volume
     /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and
     /// in a session that was only read. Not written.
     std::string volume_hash;
@@ -66,14 +67,14 @@ struct Session {
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
     std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
-    /// The same of the trace, in a form that `load_trace` reads; beside the mask where none is given.
+    /// Likewise for the trace, in a form that `load_trace` reads; default: beside the mask.
     std::filesystem::path trace_path;
-    std::filesystem::path density_path;  ///< the same, of density offsets
-    /// The journal beside the session's file (engine/annotation/work/work.h); empty where a bare volume was opened.
+    std::filesystem::path density_path;  ///< likewise, for density offsets
+    /// The journal beside the session's file (engine/annotation/work/work.h); empty if a bare volume was opened.
     std::filesystem::path journal_path;
     bool operator==(const Session&) const = default;
 
-    /// What pictures depend on of it.
+    /// The part that pictures depend on.
     Look look() const { return {transfer_function, groups, light, blend, cut, render, view.slices}; }
 };
 
@@ -89,7 +90,8 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
-/// Without what takes a pass over the voxels: the transfer function is the file's, and only projects have a hash.
+/// Skips everything that needs a pass over the voxels: the transfer function is the file's, and only projects have a
+/// hash.
 struct UnmeasuredSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -105,25 +107,26 @@ Session parse_session(const std::string& text, const std::filesystem::path& fold
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
 
-/// Where the darker of two classes of voxels ends, the air around a scanned object (Otsu's threshold, but never less
-/// than half of all voxels), and where nine tenths of the rest lie below.
+/// The upper end of the darker of two classes of voxels, the air around a scanned object (Otsu's threshold, but never
+/// less than half of all voxels), and the value that nine tenths of the rest lie below.
 struct TissueRange {
     double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
 };
 TissueRange tissue_range(const VolumeStatistics& statistics);
 
 /// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
-/// half of all voxels), so that the air around a scanned object is not seen. Equal statistics, equal function.
+/// half of all voxels), so that the air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
-/// The middle of what a transfer function shows, weighted by its opacity: the default threshold of the brush.
+/// Halfway between a transfer function's lowest point and its mean intensity, weighted by opacity, within the volume's
+/// range: the brush's default threshold.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
-/// Writes what `parse_session` reads: every key, paths inside `folder` (if that is a project's shvr: inside the
-/// project) relative to it and others absolute. Colours are rounded to the 8 bits of their spelling.
+/// Writes every key in the form that `parse_session` reads. Paths inside `folder` (if that is a project's shvr: inside
+/// the project) are relative to it, others absolute. Colours are rounded to the 8 bits of their spelling.
 std::string to_text(const Session& session, const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -73,7 +73,7 @@ TissueRange tissue_range(const VolumeStatistics& statistics)
     const double minimum = statistics.range().lower;
     const double maximum = statistics.range().upper;
     const std::vector<int64_t>& histogram = statistics.histogram;
-    // Nothing tells voxels apart.
+    // All voxels are equal, or there is no useful histogram.
     if (!(minimum < maximum) || histogram.size() < 4) return {minimum - 0.5, minimum + 0.5};
     const auto bins = static_cast<double>(histogram.size());
     const auto intensity_of = [&](size_t split) {
@@ -89,7 +89,7 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 {
     const TissueRange tissue = tissue_range(statistics);
     const auto [minimum, maximum] = statistics.range();
-    // A thin haze shows that there is a volume.
+    // A thin haze, so that something is visible.
     if (!(minimum < maximum) || statistics.histogram.size() < 4)
         return TransferFunction({point(tissue.lower, "#808080", 0.02), point(tissue.upper, "#808080", 0.02)});
     return TransferFunction(

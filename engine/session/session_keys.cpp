@@ -1,4 +1,4 @@
-// The keys of a session file, but for those of what a picture looks like (session_keys_look.cpp) and of cameras
+// The keys of a session file, except those of the look (session_keys_look.cpp) and of cameras
 // (session_keys_camera.cpp).
 
 #include "engine/session/session_keys.h"
@@ -12,7 +12,7 @@
 
 namespace shvr {
 
-// ---- What the forms of values share ---------------------------------------------------------------------------------
+// ---- Shared helpers for values --------------------------------------------------------------------------------------
 
 void Fields::flag(std::string_view name, bool& value, const About& about)
 {
@@ -108,7 +108,7 @@ void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>
     spacing_fields(f, layout->spacing, layout->unit);
 }
 
-/// Of three forms: a function, bare voxels, or a file in a known format.
+/// One of three forms: a procedural function, bare voxels, or a file in a known format.
 void volume_fields(Fields& f, Session& session)
 {
     if (f.has("procedural", session.procedural.has_value())) {

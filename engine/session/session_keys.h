@@ -21,17 +21,17 @@
 
 namespace shvr {
 
-/// What a person is told of a key.
+/// The documentation of a key.
 struct About {
     const char* meaning = "";   ///< one line; empty for sections that need none
     const char* unit = "";      ///< stands before the range
-    const char* allowed = "";   ///< instead of unit and range
-    const char* standard = "";  ///< the default, where that is no plain value
+    const char* allowed = "";   ///< printed instead of unit and range
+    const char* standard = "";  ///< the default, if it is not a plain value
     bool is_required = false;
 };
 
-/// Visits values by their keys. A value that is optional, or a text or path that is empty, is not written; what is not
-/// in a file keeps the value it has.
+/// Visits values by their keys. Unset optional values and empty texts and paths are not written; a value whose key is
+/// missing from a file stays unchanged.
 class Fields {
 public:
     using Visit = std::function<void(Fields&)>;
@@ -50,7 +50,7 @@ public:
         any_whole(name, number, lower, upper, about);
         value = Whole(number.value_or(int64_t{value}));
     }
-    /// Of an enumeration that has `spellings_of`.
+    /// An enumeration that has `spellings_of`.
     template <class Value>
     void choice(std::string_view name, Value& value, const About& about)
     {
@@ -79,11 +79,11 @@ public:
     virtual void any_flag(std::string_view name, std::optional<bool>& value, const About& about) = 0;
     virtual void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                            const About& about) = 0;
-    /// A value with a form of its own: `read` takes it, `written` gives its JSON, or nothing.
+    /// A value with its own format: `read` parses it; `written` returns its JSON, or nothing.
     virtual void other(std::string_view name, const std::function<void(const JsonNode&)>& read,
                        const std::function<std::optional<std::string>()>& written, const About& about) = 0;
 
-    /// An object with the fields that `visit` visits, once or more often.
+    /// An object with the fields that `visit` visits; `visit` may be called more than once.
     virtual void section(std::string_view name, const Visit& visit, const About& about = {}) = 0;
     template <class Value>
     void section(std::string_view name, Value& value, const About& about = {})
@@ -107,13 +107,13 @@ public:
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 
-    /// Whether a key is there: in a file that is read; `is_set` where a session is written.
+    /// Whether a key is present: when reading, in the file; when writing, `is_set`.
     virtual bool has(std::string_view name, bool is_set) = 0;
-    /// A key that is known here, but not visited now.
+    /// A key that is valid here, but not visited this time.
     virtual void mention(std::string_view name, const About& about) = 0;
-    /// Refuses what was read: `name` is empty where the section itself is meant.
+    /// Refuses the input unless the condition holds; an empty `name` means the section itself.
     virtual void check(std::string_view /*name*/, bool /*holds*/, const std::string& /*expected*/) {}
-    /// Runs a check that fails on its own; the section's key is put in front of what it says.
+    /// Runs a check that throws its own errors; the section's key is put in front of their messages.
     virtual void checked(const std::function<void()>&) {}
 };
 
@@ -142,8 +142,8 @@ void camera_fields(Fields& f, Session& session);
 struct SessionKey {
     std::string name;  ///< "groups.N.color": N stands for any number or name, NAME for any name
     std::string meaning, allowed, standard;
-    bool is_text = false;  ///< --set takes the value as it stands
-    /// Whether it is the one of that name.
+    bool is_text = false;  ///< --set takes the value verbatim
+    /// Whether this row describes the key of that name.
     bool covers(std::string_view key) const;
 };
 std::vector<SessionKey> session_keys();
@@ -151,7 +151,7 @@ std::vector<SessionKey> session_keys();
 inline const NumberRange SHARE{0.0, 1.0};
 /// Far beyond any volume in any unit, and far below where squares overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};
-/// What voxels hold.
+/// The range of voxels.
 inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 
 // session_read.cpp
@@ -163,7 +163,7 @@ bool is_camera_object(const std::string& name_or_json);
 glm::dvec3 read_color(const JsonNode& node);
 
 // session_settings.cpp
-/// Applies "key=value" settings; nothing where the document is no object, which `read_session` refuses.
+/// Applies "key=value" settings; does nothing if the document is not an object, which `read_session` refuses.
 void apply_settings(JsonDocument& document, const std::vector<std::string>& settings);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-// The keys of a session file that say what a picture looks like.
+// The keys of a session file for the look of a picture.
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-// Session files: keys in.
+// Reads session files.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// Which keys an object may have. Of values it reads only choices, on which other keys depend.
+/// Collects the keys that an object may have. Reads only those values that decide which other keys are valid.
 class KnownKeys : public Fields {
 public:
     explicit KnownKeys(const JsonNode& node) : node_(node) {}
@@ -193,7 +193,7 @@ public:
 private:
     Reader(const JsonNode& node, const std::filesystem::path& folder) : node_(node), folder_(folder) {}
 
-    /// The value of a key, if it is there; one that must be there refuses itself when its value is taken.
+    /// The value of a key, which may be missing; reading a missing value that is required fails.
     struct Member : JsonNode {
         bool is_taken;
         explicit operator bool() const { return is_taken; }

@@ -1,5 +1,5 @@
-// "--set key=value": dotted keys into the JSON of a session. What the value is, the table of keys says: a text is taken
-// as it stands, anything else is JSON.
+// "--set key=value": dotted keys into the JSON of a session. The table of keys gives the type: texts are taken
+// verbatim, anything else is JSON.
 
 #include <charconv>
 
@@ -19,7 +19,7 @@ struct Setting {
     json value;
 };
 
-/// The value of a key that is a text may be a JSON text, too.
+/// The value of a text key may also be a JSON string.
 json value_of(const std::string& key, const std::string& text, const std::string& setting)
 {
     static const std::vector<SessionKey> keys = session_keys();
@@ -35,7 +35,7 @@ template <class... Parts>
     throw UsageError(sentence("--set ", setting, ": ", parts...));
 }
 
-/// Messages quote keys and values, which takes valid UTF-8.
+/// Messages quote keys and values, which must therefore be valid UTF-8.
 bool is_utf8(const std::string& text)
 {
     try {
@@ -64,7 +64,7 @@ Setting parse_setting(const std::string& setting)
     return parsed;
 }
 
-/// The member or element `key` of `container`; made where an object lacks it.
+/// The member or element `key` of `container`; created if an object lacks it.
 json& member_of(json& container, const std::string& key, const std::string& container_key, const std::string& setting)
 {
     if (container.is_object()) return container[key];

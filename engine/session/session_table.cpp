@@ -1,4 +1,4 @@
-// The table of keys: for README.md, and for --set, which is told from it what is a text.
+// The table of keys, for README.md and for --set, which needs to know which values are texts.
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,12 @@ std::string in_code(std::string_view text)
 
 std::string range_text(double lower, double upper)
 {
-    // 0.0001, not 1e-04, as the shortest digits would be
+    // 0.0001, not 1e-04, the shortest form
     const auto digits = [](double value) { return value == std::floor(value) ? digits_of(value) : sentence(value); };
     return digits(lower) + " ... " + digits(upper);
 }
 
-/// Visits a new session. Of keys that exclude one another it sees those that `takes_optional_forms` leads to.
+/// Visits a new session. `takes_optional_forms` selects between keys that exclude each other.
 class Table : public Fields {
 public:
     Table(std::vector<SessionKey>& rows, std::string prefix, bool takes_optional_forms)

@@ -1,4 +1,4 @@
-// Session files: keys out, in the order in which session_keys*.cpp visits them.
+// Writes session files; the keys are in the order in which session_keys*.cpp visits them.
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,7 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
 {
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
-    // What belongs to a project lies beside or around its folder shvr, and moves with it.
+    // A project's files are in or beside its folder shvr and move together with it.
     const bool is_project = whole.parent_path().filename() == "shvr";
     auto step = relative.begin();
     if (is_project && step != relative.end() && *step == "..") ++step;
@@ -131,7 +131,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
-    Session written = session;  // `fields` takes what it could change
+    Session written = session;  // `fields` takes a mutable session
     try {
         const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";

@@ -21,7 +21,7 @@ TransferPreset transfer_preset_named(const std::string& name);
 /// A preset's text; `origin` names it in messages.
 TransferPreset parse_transfer_preset(const std::string& text, const std::string& name, const std::string& origin);
 
-/// Laid over the intensities of a volume.
+/// The preset, scaled to the intensities of a volume.
 TransferFunction transfer_function_of(const TransferPreset& preset, const VolumeStatistics& statistics);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-"""What the tests of the command line share: running the program, tiny volumes, and brushes in plain Python."""
+"""Shared by the tests of the command line: running the program, tiny volumes, and brushes in plain Python."""
 import itertools
 import json
 import math
@@ -25,7 +25,7 @@ def run(*arguments, environment=None):
 
 
 class CliTest(unittest.TestCase):
-    """Every test has an empty folder of its own."""
+    """Every test has its own empty folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="shvr-cli-")
@@ -38,14 +38,14 @@ class CliTest(unittest.TestCase):
         return result
 
     def check_json(self, *arguments, status=0):
-        """The one object on standard output."""
+        """The JSON object on standard output."""
         result = self.check(*arguments, "--json", status=status)
         value = json.loads(result.stdout)
         self.assertIsInstance(value, dict)
         return value
 
     def check_refused(self, *arguments, status=1, says=()):
-        """Fails with one sentence on standard error that says all of `says`, and nothing on standard output."""
+        """Expects a failure: one sentence with all of `says` on standard error, nothing on standard output."""
         result = self.check(*arguments, status=status)
         self.assertEqual(result.stdout, "")
         lines = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
@@ -109,7 +109,7 @@ class Volume:
     def index(self, voxel):
         return voxel[0] + self.size[0] * (voxel[1] + self.size[1] * voxel[2])
 
-    # ---- Brushes, as the definitions say them and as slow as that ----
+    # ---- Brushes by their definitions, slow and simple ----
 
     def region(self, shape, position, radius):
         """Voxels of a ball (centres within the radius, measured along x, in physical units) or of its box."""
@@ -126,7 +126,7 @@ class Volume:
         return {voxel for voxel in itertools.product(*near) if belongs(voxel)}
 
     def component(self, seed, allowed, connectivity):
-        """What is connected to `seed` inside the set `allowed`, breadth first."""
+        """The voxels connected to `seed` within `allowed`, breadth first."""
         found, queue = {seed}, deque([seed])
         while queue:
             voxel = queue.popleft()
@@ -168,7 +168,7 @@ NEIGHBOURS = {6: [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0
 
 
 def stroke(path):
-    """The probe's positions: the points, and between two as many as keep neighbours a voxel apart at most."""
+    """The probe's positions: the points, and between them enough that neighbours are at most a voxel apart."""
     positions = [path[0]]
     for a, b in zip(path, path[1:]):
         steps = max(1, math.ceil(max(abs(q - p) for p, q in zip(a, b))))

@@ -94,7 +94,7 @@ class Annotate(CliTest):
 
         while len(states) < 6:
             operation = self.random_operation(numbers, "flood")
-            if self.apply(mask, operation):  # what changes nothing is not a command
+            if self.apply(mask, operation):  # no change, no command
                 operations.append(operation)
                 states.append(bytes(mask))
         empty = bytes(len(mask))
@@ -210,7 +210,7 @@ class Annotate(CliTest):
         self.assertIn("the mask was painted on other voxels", stderr)
         self.assertEqual(stderr.count("shvr: "), 1, stderr)
         self.assertEqual(self.mask.read_bytes(), painted)
-        # Whoever wants it nevertheless removes the record, and so are masks of older programs.
+        # Removing the record allows it anyway; masks of older programs have none.
         record.unlink()
         self.annotate([{"op": "save"}])
         self.assertNotEqual(json.loads(record.read_text())["image"], image)
@@ -221,7 +221,7 @@ class Annotate(CliTest):
 
 
 class Journal(CliTest):
-    """What was done is there without a save; tests/durability shows what it survives."""
+    """Work is kept without a save; tests/durability shows what it survives."""
 
     def setUp(self):
         super().setUp()
@@ -241,12 +241,12 @@ class Journal(CliTest):
         self.assertGreater(voxels, 0)
         self.assertFalse((self.folder / "paint.mask").exists())
         kept = self.journal.read_bytes()
-        # Another run goes on, and undoes what an earlier one did.
+        # Another run continues, and undoes commands of an earlier one.
         result = self.annotate([{"op": "expect", "voxels_in_group": {"7": voxels}}, {"op": "undo"},
                                 {"op": "expect", "voxels_in_group": {"7": 0}}, {"op": "redo"}])
         self.assertEqual(result["journal_bytes"], self.journal.stat().st_size)
         self.assertTrue(self.journal.read_bytes().startswith(kept))
-        # Who only looks sees it, says so, and leaves it as it is.
+        # Read-only commands show the work, report it, and leave it unchanged.
         kept = self.journal.read_bytes()
         export = self.check("export", self.session, "--mask", self.folder / "out.mask")
         self.assertIn("session.journal: holds 3 steps that were not saved", export.stderr)
@@ -285,7 +285,7 @@ class Killed(CliTest):
             volume={"procedural": "constant", "size": [self.SIDE] * 3})
         mask = self.folder / "paint.mask"
         operations = []
-        for i in range(400):  # far more than it gets to
+        for i in range(400):  # far more than it can finish
             operations += [paint("fill", "box", i % 250 + 1, 1, self.SIDE, [[self.SIDE / 2] * 3]), {"op": "save"}]
         script = self.write_script("script.jsonl", operations)
         numbers = random.Random(seed)

@@ -47,7 +47,7 @@ class Compare(CliTest):
         picture = self.folder / "diff.png"
         self.check_json("compare", self.a, self.b, "--diff", picture)
         self.assertEqual(read_png_header(picture), (20, 10))
-        # 6 levels times 16, against a picture of just that.
+        # 6 levels times 16, compared with a picture of that value.
         expected = write_png(self.folder / "expected.png", 20, 10,
                              lambda x, y: (96 if x == 3 else 0, 0, 0, 255))
         self.assertEqual(self.check_json("compare", picture, expected)["max_abs"], 0)
@@ -57,7 +57,7 @@ class Compare(CliTest):
         for gate in (["--max-abs", "5"], ["--max-rmse", "0.5"]):
             result = self.check("compare", self.a, self.b, *gate, "--json", status=3)
             self.assertIn(gate[0], result.stderr)
-            self.assertIn('"max_abs"', result.stdout)  # the numbers are told either way
+            self.assertIn('"max_abs"', result.stdout)  # the numbers are printed either way
 
     def test_sizes_that_differ_are_refused(self):
         other = write_png(self.folder / "other.png", 10, 20, lambda x, y: (0, 0, 0, 255))

@@ -95,7 +95,7 @@ class Density(CliTest):
         raised = len(self.volume.select({**both, "path": [[8, 8, 8]]}))
         expect = {"op": "expect", "voxels_with_offset": raised, "voxels_in_group": {"3": raised}}
         none = {"op": "expect", "voxels_with_offset": 0, "voxels_in_group": {"3": 0}}
-        # Only what was raised is at or above 90.
+        # Only raised voxels are at or above 90.
         fill = {"op": "paint", "brush": "fill", "group": 3, "threshold": 90, "radius": 7, "path": [[8, 8, 8]]}
         self.annotate([both, expect, {"op": "undo"}, none, fill, none, {"op": "redo"}, expect,
                        density("fill", 0, 7, [[8, 8, 8]], group=0), none, {"op": "undo"}, expect, {"op": "undo"},

@@ -1,4 +1,4 @@
-"""What every command does with wrong usage and with a world that is not as expected."""
+"""Every command's reaction to wrong usage and to unexpected files."""
 import json
 import os
 import subprocess

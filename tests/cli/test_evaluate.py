@@ -68,7 +68,7 @@ class Evaluate(CliTest):
         self.assertEqual((result["segments"], result["topological_errors"]), ([3, 3], 0))
         self.assertAlmostEqual(result["centreline_rms_um"], 0, places=6)
 
-        # One arm is missing, and one is linked to where nothing is.
+        # One arm is missing, and one is linked to an empty place.
         mine = self.trace("mine.txt", self.TRUTH[:2] + [((4, 12, 10), (4, 12, 18))])
         result = self.evaluate(*arguments, "--trace", mine)
         self.assertEqual((result["segments"], result["topological_errors"]), ([2, 3], 1))

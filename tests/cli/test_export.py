@@ -1,4 +1,4 @@
-"""shvr export: what other programs get, read back by shvr or in plain Python."""
+"""shvr export: files for other programs, read back by shvr or in plain Python."""
 import csv
 import json
 import math
@@ -147,7 +147,7 @@ class Export(CliTest):
                     "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
                 self.check("export", other, "--mask", self.folder / "b.mask")
                 self.assertEqual((self.folder / "b.mask").read_bytes(), saved)
-                # What annotate paints on top is saved in the same form.
+                # Further painting by annotate is saved in the same format.
                 script = self.write_script("more.jsonl", [
                     {"op": "paint", "brush": "fill", "region": "box", "group": 7, "threshold": 0, "radius": 2,
                      "path": [[12, 12, 12]]}, {"op": "save"}])
@@ -168,7 +168,7 @@ class Export(CliTest):
                     other = self.write_session("other.json", annotation={"mask": name}, volume={
                         "procedural": "constant", "size": size, "spacing": spacing, "unit": unit})
                     self.check_refused("export", other, "--mask", self.folder / "b.mask", says=says)
-            # The same size of a voxel in another unit.
+            # The same voxel size in another unit.
             other = self.write_session("other.json", annotation={"mask": name}, volume={
                 "procedural": "constant", "size": self.SIZE, "spacing": [500, 1000, 2000], "unit": "um"})
             self.check("export", other, "--mask", self.folder / "b.mask")
@@ -206,14 +206,14 @@ class Export(CliTest):
         self.assertEqual(label["properties"], [{"label-value": 3, "name": "vessel"},
                                                {"label-value": 5, "name": "not painted"},
                                                {"label-value": 12, "name": "group 12"}])
-        # A session that knows nothing of them draws the same picture, and says the same of them.
+        # A session without groups draws the same picture and reports the same looks.
         plain = self.write_session("plain.json", volume=volume, annotation={"mask": "own.zarr"})
         for session, name in [(drawn, "drawn"), (plain, "plain")]:
             self.check("render", session, "-o", self.folder / f"{name}.png")
             self.check("export", session, "--mask", self.folder / f"{name}.zarr")
         self.assertEqual((self.folder / "drawn.png").read_bytes(), (self.folder / "plain.png").read_bytes())
         self.assertEqual(json.loads((self.folder / "plain.zarr" / ".zattrs").read_text())["image-label"], label)
-        # What a session says itself goes before, whole.
+        # A group that the session itself defines takes precedence as a whole.
         own = self.write_session("own.json", volume=volume, groups={"3": {"name": "mine"}},
                                  annotation={"mask": "own.zarr"})
         self.check("export", own, "--mask", self.folder / "again.zarr")
@@ -261,7 +261,7 @@ class Export(CliTest):
         self.assertEqual((self.folder / "a.offset").read_bytes(), saved)
         self.assertTrue((self.folder / "a.nrrd").read_bytes().endswith(struct.pack(f"<{len(offsets)}f", *offsets)))
         for name in ["a.nrrd", "a.tif"]:
-            # A session that names such a file takes it, and saves in the same form.
+            # A session that names such a file reads it and saves in the same format.
             other = self.write_session("other.json", annotation={"mask": "other.mask", "density": name}, volume={
                 "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
             self.check("export", other, "--offset", self.folder / "b.offset")

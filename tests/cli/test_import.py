@@ -18,7 +18,7 @@ from pathlib import Path
 from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
 # Runs in an interpreter that has python3-zarr, which need not be the one that runs this file. Every level is read by
-# python3-zarr, made anew from the level before, and compared; level 0 is compared with bare voxels.
+# python3-zarr, recomputed from the level before, and compared; level 0 is compared with bare voxels.
 ZARR = """
 import json, sys
 import numpy, zarr
@@ -164,7 +164,7 @@ class Import(CliTest):
                 block = [fine[i + sides[0] * (j + sides[1] * k)]
                          for k in range(2 * z, min(2 * z + 2, sides[2])) for j in range(2 * y, min(2 * y + 2, sides[1]))
                          for i in range(2 * x, min(2 * x + 2, sides[0]))]
-                # Of equally frequent ones not 0, then the smallest.
+                # Of equally frequent labels: not 0, then the smallest.
                 expected.append(min(set(block), key=lambda label: (-block.count(label), label == 0, label)))
             self.check("import", self.project() / str(level), self.folder / f"level{level}", "--quiet")
             info = self.check_json("info", self.folder / f"level{level}")
@@ -175,7 +175,7 @@ class Import(CliTest):
         attributes = json.loads((self.project() / ".zattrs").read_text())
         self.assertEqual(attributes["multiscales"][0]["type"], "mode")
         self.assertIn("image-label", attributes)
-        # Who imports labels as intensities is told.
+        # Importing labels as intensities gives a warning.
         warnings = self.check_json("import", self.project(), self.folder / "again")["warnings"]
         self.assertIn("--labels", " ".join(warnings))
 
@@ -219,7 +219,7 @@ class Import(CliTest):
         painted = self.check_json("annotate", self.project(), "--script", script)
         self.assertGreater(painted["voxels_changed"], 50)
         self.assertTrue((self.project() / "shvr/paint.mask").exists())
-        # Without its session it is still an OME-Zarr that opens.
+        # Without its session the OME-Zarr still opens.
         (self.project() / "shvr/session.json").unlink()
         self.check("render", self.project(), "-o", self.folder / "c.png", *arguments)
         self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "c.png").read_bytes())
@@ -310,11 +310,11 @@ class Refusals(CliTest):
 
 
 class EndingEarly(CliTest):
-    """A part of a project is never a project, and the same command goes on from it."""
+    """A partial project never counts as a project, and the same command resumes it."""
 
     def setUp(self):
         super().setUp()
-        # Enough slabs of 64 slices for several states on the way.
+        # Enough slabs of 64 slices for several intermediate states.
         size = (80, 70, 64 * 20)
         self.header = Volume(size, [], voxel_type="uint16").write(self.folder)
         (self.folder / "volume.raw").write_bytes(random.Random(8).randbytes(2 * math.prod(size)))
@@ -377,7 +377,7 @@ class EndingEarly(CliTest):
             self.wait_for_chunks(process, 20)
             process.send_signal(number)
             output, said = process.communicate(timeout=60)
-            if process.returncode == 0:  # it was faster
+            if process.returncode == 0:  # it finished first
                 self.clear()
                 continue
             self.assertEqual((process.returncode, output), (1, ""))
@@ -399,7 +399,7 @@ class EndingEarly(CliTest):
                 time.sleep(whole * step / 7)
                 process.send_signal(signal.SIGINT)
                 _, said = process.communicate(timeout=60)
-                # Before there is anything to keep it ends at once, as any program does.
+                # Before there is anything to keep it ends at once, like any program.
                 self.assertIn(process.returncode, (0, 1, -signal.SIGINT))
                 if process.returncode == 1:
                     self.assertIn("the import was stopped; what is done is kept", said.splitlines()[-1])
@@ -437,7 +437,7 @@ class EndingEarly(CliTest):
             self.skipTest("this process may not mount a file system")
         try:
             self.arguments[1] = disk / "project"
-            # Full at the first small file, at the first chunks, half-way, and near the end.
+            # The disk is full at the first small file, at the first chunks, half-way, and near the end.
             for size in ("4k", "64k", "512k", "4m", "8m", "15m"):
                 subprocess.run(["mount", "-o", f"remount,size={size}", disk], check=True)
                 said = self.check_refused("import", *self.arguments, "--quiet",

@@ -1,4 +1,4 @@
-"""shvr info: what a file is."""
+"""shvr info: descriptions of files."""
 import unittest
 
 from harness import CliTest, Volume, run

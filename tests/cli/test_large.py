@@ -18,7 +18,7 @@ RED, WHITE = (255, 0, 0), (255, 255, 255)
 
 
 def write_sparse(folder):
-    """Marks of 64^3 voxels in the first and the last corner; all other chunks are missing: they are the fill value, 0."""
+    """Marks of 64^3 voxels in the first and the last corner; all other chunks are missing, so 0, the fill value."""
     multiscales = [{"version": "0.4", "name": "sparse",
                     "axes": [{"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"],
                     "datasets": [{"path": str(level), "coordinateTransformations": [
@@ -101,7 +101,7 @@ class Large(CliTest):
         return json.loads(out), read_png(picture), 1024 * usage.ru_maxrss
 
     def check_bytes(self, result, resident):
-        """Own accounting, and what the process took more than for a picture of almost nothing."""
+        """The program's own accounting, and its memory beyond that of an almost empty picture."""
         budget = BUDGET_MIB << 20
         self.assertLessEqual(result["bytes"]["peak_device"], budget)
         self.assertLessEqual(result["bytes"]["peak_host"], budget)
@@ -147,8 +147,8 @@ class Large(CliTest):
 
     def test_a_procedural_65536(self):
         volume = {"procedural": "sphere", "size": [65536] * 3}
-        # Where the sphere's density, a ramp of 125 +- 1000 / 65536 a voxel around a radius of 0.35, falls to 60: the
-        # upper end of what is seen of it.
+        # The upper end of the visible sphere: where its density, a ramp of 125 +- 1000 / 65536 a voxel around a radius
+        # of 0.35, falls to 60.
         top = 32768 + 0.35 * 65536 + (125 - 60) * 65.536
         result, pixels, resident = self.render(session_of(volume, [32768, 0, top], [32768, 32768, top], 4096))
         self.assertIs(result["complete"], True)
@@ -161,7 +161,7 @@ class Plain(CliTest):
     """A file without levels that is larger than the device's budget."""
 
     def write_plain(self):
-        """64 MiB of zeros, which the disk need not hold."""
+        """64 MiB of zeros in a sparse file."""
         header = Volume((8, 8, 8), bytes(512)).write(self.folder, "plain")
         header.write_text(header.read_text().replace("sizes: 8 8 8", "sizes: 512 512 256"))
         os.truncate(self.folder / "plain.raw", 512 * 512 * 256)

@@ -1,4 +1,4 @@
-"""shvr annotate: nodes and internodes by script; saved, gone on with, undone."""
+"""shvr annotate: nodes and internodes by script; saved, continued, undone."""
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -45,7 +45,7 @@ class Trace(CliTest):
                                 expect(3, 1), {"op": "save"}])
         self.assertEqual((result["nodes"], result["internodes"], result["voxels_changed"]), (3, 1, 0))
         nodes, edges = self.read_graph()
-        # Voxels become the volume's unit, radii by the spacing along x.
+        # Voxels are converted to the volume's unit, radii by the spacing along x.
         self.assertEqual(nodes["n1"], {"x": "4", "y": "4", "z": "8", "radius": "1.5", "group": "7"})
         self.assertEqual(edges, [("n0", "n1", "7")])
 
@@ -65,7 +65,7 @@ class Trace(CliTest):
                           "n3": ("2", "3", "0.5"), "n4": ("2", "3", "0.5")})
         self.assertEqual(edges, [("n0", "n1", "5"), ("n1", "n2", "1"), ("n2", "n0", "1"), ("n2", "n3", "3"),
                                  ("n3", "n4", "3")])
-        # The saved trace is gone on with; the stalk is deleted as a whole, the branch stays.
+        # Continues the saved trace; the stalk is deleted as a whole, the branch stays.
         self.annotate([expect(5, 5), {"op": "select", "node": 4}, {"op": "select_segment"}, {"op": "delete"},
                        expect(3, 3), {"op": "select", "node": 2}, {"op": "delete"}, expect(2, 1),
                        {"op": "undo", "count": 2}, expect(5, 5)])

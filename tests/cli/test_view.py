@@ -13,7 +13,7 @@ WINDOW = (900, 600)
 
 
 class Display:
-    """A virtual screen of its own."""
+    """A separate virtual screen."""
 
     def __init__(self):
         read_end, write_end = os.pipe()
@@ -28,7 +28,7 @@ class Display:
         self.server.wait()
 
     def do(self, *arguments):
-        """One chain of xdotool commands; returns what it printed."""
+        """Runs one chain of xdotool commands; returns its output."""
         return subprocess.run(["xdotool", *map(str, arguments)], capture_output=True, text=True, timeout=PATIENCE_S,
                               env={**os.environ, "DISPLAY": self.name}).stdout
 
@@ -64,14 +64,14 @@ class View(CliTest):
             time.sleep(0.05)
 
     def finish(self):
-        """Closes the window by its key; the report, which a validation message would have turned into a failure."""
+        """Closes the window by its key; returns the report. A validation message makes this fail."""
         self.do("key", "ctrl+q")
         output, errors = self.program.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.program.returncode, 0, errors)
         return json.loads(output)
 
     def open(self, path):
-        """By the menu, as a person does."""
+        """By the menu, as a user does."""
         for at in [(20, 10), (30, 32)]:   # File, Open...
             self.do("mousemove", *at, "sleep", 0.2, "mousedown", 1, "sleep", 0.2, "mouseup", 1, pause_s=0.5)
         self.do("type", "--delay", 30, path)
@@ -87,7 +87,7 @@ class View(CliTest):
                "probe": {"radius_voxels": 5, "group": 3, "paint_threshold": 120}, **keys})
 
     def middle(self):
-        """Of the graphics window: left of the side panel, between menu and status bar."""
+        """Centre of the graphics window: left of the side panel, between menu and status bar."""
         return (WINDOW[0] - 330) // 2, WINDOW[1] // 2
 
     def test_a_scan_is_looked_at_painted_saved_and_photographed(self):
@@ -166,7 +166,7 @@ class View(CliTest):
         self.assertEqual(self.check_json("compare", photograph, picture)["max_abs"], 0)
 
     def check_photograph(self, session, photograph):
-        """It is what `shvr render` makes of what was saved, but for the probe's ball."""
+        """The picture equals `shvr render` of the saved session, except for the probe's ball."""
         size = read_png_header(photograph)
         picture = self.folder / "render.png"
         self.check("render", session, "-o", picture, "--size", f"{size[0]}x{size[1]}")
@@ -289,7 +289,7 @@ class View(CliTest):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        # A group, the brush's radius, a cutting plane, shading: none of them paint.
+        # A group, the brush's radius, a cutting plane, shading: settings, not paint.
         self.do("mousemove", x, y, "key", "7", "key", "bracketright", "key", "ctrl+shift+Right", pause_s=0.5)
         self.do("key", "F9", pause_s=0.5)
         self.finish()
@@ -316,7 +316,7 @@ class View(CliTest):
         self.do(*look)
         self.assertNotIn("Saved", "\n".join(self.finish()["messages"]))
         self.assertEqual(self.saved(session)["camera"], "window")
-        # Whoever only looks at a bare volume leaves no file.
+        # Just looking at a bare volume creates no file.
         volume = Volume.noise((24, 24, 24), 1).write(self.folder, "bare")
         before = sorted(self.folder.iterdir())
         self.start(volume)
@@ -331,7 +331,7 @@ class View(CliTest):
         self.wait_for_window("sphere.* - SHVR")
         self.do("mousemove", *self.middle(), "key", "7", pause_s=0.5)
         session.unlink()
-        session.mkdir()   # nobody writes a file there
+        session.mkdir()   # no file can be written there
         self.do("key", "ctrl+q", pause_s=1.0)
         self.assertIsNone(self.program.poll())
         report = self.finish()
@@ -344,7 +344,7 @@ class View(CliTest):
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
         self.do("mousemove", x - 150, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=2.5)
-        # All in one turn of the loop: the bricks of the stroke were never asked for.
+        # All in one turn of the loop: the bricks of the stroke were never requested.
         self.program.send_signal(signal.SIGSTOP)
         self.do("mousemove", x, y, "keydown", "f", "mousemove", x + 40, y - 20, "key", "ctrl+s", "keyup", "f")
         self.program.send_signal(signal.SIGCONT)
@@ -354,7 +354,7 @@ class View(CliTest):
         self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
             {"op": "expect", "voxels_in_group": {"3": report["voxels_in_group"]["3"]}}]))
 
-    # ---- What fails is said, and everything else goes on
+    # ---- Failures are reported, and everything else continues
 
     def test_a_window_that_grows_over_the_budget_says_so_and_recovers(self):
         session = self.write_ball()

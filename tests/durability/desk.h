@@ -1,5 +1,5 @@
 #pragma once
-// A folder to work in, and steps of work at random that two processes make alike.
+// A working folder, and random steps of work that two processes can reproduce identically.
 
 #include <memory>
 #include <random>
@@ -9,18 +9,18 @@
 
 namespace shvr::test {
 
-/// What opening says goes to `said`.
+/// Messages from opening go to `said`.
 inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said)
 {
     auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
-    // So small that states and fetching from the journal are part of it.
+    // Small limits, so that states and reads from the journal are exercised.
     work->set_limits({.history_bytes = 20000, .bytes_between_states = 20000, .steps_between_states = 100});
     said.clear();
     for (const std::string& message : work->open(files)) said += message + "\n";
     return work;
 }
 
-/// A command, an undo or a redo; false where it did nothing. `Work` or a model of it.
+/// A command, an undo or a redo; false if it did nothing. For `Work` or a model of it.
 template <class Undo, class Redo, class Perform>
 bool random_step(const Document& document, std::mt19937& random, const Undo& undo, const Redo& redo,
                  const Perform& perform)
@@ -41,7 +41,7 @@ inline bool random_step(Work& work, std::mt19937& random)
         [&](Command command) { work.perform(std::move(command)); });
 }
 
-/// How many steps a journal holds.
+/// The number of steps in a journal.
 inline size_t steps_in(const std::filesystem::path& journal)
 {
     size_t steps = 0;

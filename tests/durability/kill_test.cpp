@@ -1,5 +1,5 @@
-// The program is killed at any moment of its work, 200 times in the same folder: what is found is what was done up to
-// some step, and the steps that are gone are of the last moments.
+// Kills the program at random moments of its work, 200 times in the same folder: it finds its state after some step,
+// and only the steps of the last moments are lost.
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr size_t MOST_STEPS = 4096;
 
-/// What a child tells before it is killed.
+/// The child's reports before it is killed.
 struct Told {
     std::atomic<size_t> steps;
     std::atomic<int64_t> done_ns[MOST_STEPS];
@@ -96,7 +96,7 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
         const size_t kept_now = steps_in(files.journal);
         REQUIRE(kept_now >= kept_before);
         const size_t kept = kept_now - kept_before;
-        // One more may be in the journal than the child could tell of.
+        // The journal may hold one more step than the child could report.
         CHECK(kept <= done + 1);
         model.steps(round, kept);
         std::string said;
@@ -116,10 +116,10 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
     }
     ::munmap(told, sizeof(Told));
     CHECK(wrong == 0);
-    CHECK(steps >= 200);  // how many more depends on the machine
+    CHECK(steps >= 200);  // the exact number depends on the machine
     MESSAGE(steps, " steps, ", lost, " lost in ", opened_with_loss, " of 200 kills, at most of the last ",
             double(longest_lost_ns) * 1e-6, " ms; opened in at most ", double(longest_opening_ns) * 1e-6, " ms");
-    // 250 ms are promised; a machine that stands still is not the journal's fault.
+    // The guarantee is 250 ms; the rest is slack for a stalled machine.
     CHECK(longest_lost_ns < 2'000'000'000);
     for (const fs::directory_entry& entry : fs::directory_iterator(folder.path))
         CHECK_FALSE(contains(entry.path().filename().string(), ".old"));

@@ -25,7 +25,7 @@ void apply_call(std::string& content, const FileCall& call)
                    [](std::byte byte) { return char(byte); });
 }
 
-/// All of a call, nothing, or some of its sectors.
+/// Applies all of a call, nothing, or some of its sectors.
 void apply_some(std::string& content, const FileCall& call, std::mt19937& random)
 {
     const auto fate = random() % 4;
@@ -57,8 +57,8 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
         const FileCall* call;
         std::shared_ptr<File> created;
     };
-    Folder now, synced;        // entries as programs see them, and as the disk holds them for sure
-    std::vector<Entry> later;  // what leads from one to the other
+    Folder now, synced;        // entries as programs see them, and as guaranteed on the disk
+    std::vector<Entry> later;  // the changes between the two
     for (const FileCall& call : calls.first(cut.calls)) {
         switch (call.kind) {
             case FileCall::Kind::create:
@@ -82,7 +82,7 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
             case FileCall::Kind::note: break;
         }
     }
-    const auto share = random() % 3;  // of entries that are lost: some, none, all
+    const auto share = random() % 3;  // lost entries: some, none, all
     for (const Entry& entry : later)
         if (share == 1 || (share == 0 && random() % 2 == 0)) apply_entry(synced, *entry.call, entry.created);
     Disk disk;

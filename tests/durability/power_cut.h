@@ -1,7 +1,7 @@
 #pragma once
-// What a disk may hold after the power was cut: of the data of a file, what was synced, and of what came later any
-// part, in pieces of 512 bytes, in any order; of a folder's entries, those that were synced, and any of the later ones.
-// After SQLite's crash tests: what a file system promises, and no more.
+// Possible contents of a disk after a power cut: all synced data of a file, and any part of the later writes, in pieces
+// of 512 bytes, in any order; all synced entries of a folder, and any of the later ones. Modelled on SQLite's crash
+// tests: only what file systems guarantee.
 
 #include <map>
 #include <random>
@@ -16,8 +16,8 @@ namespace shvr::test {
 using Disk = std::map<std::string, std::string>;
 
 struct PowerCut {
-    size_t calls = 0;         ///< that were made before
-    bool syncs_count = true;  ///< false: a disk that lies about syncing, to see a proof fail
+    size_t calls = 0;         ///< made before the power cut
+    bool syncs_count = true;  ///< false: a disk that ignores syncs, to make a proof fail
 };
 Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt19937& random);
 

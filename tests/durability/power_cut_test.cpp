@@ -1,5 +1,5 @@
-// The power is cut at any moment of work and saving: no state is unreadable or mixed, and nothing that was acknowledged
-// is gone. The same proof on a disk that lies about syncing must fail.
+// Cuts the power at any moment of work and saving: no state is unreadable or mixed, and no acknowledged step is lost.
+// The same proof must fail on a disk that ignores syncs.
 
 #include <algorithm>
 #include <fstream>
@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What was done, and the states it went through.
+/// The calls made, and the states in between.
 struct Record {
     std::vector<FileCall> calls;
     std::vector<uint64_t> states;              ///< after 0, 1, ... steps
-    std::set<uint64_t> masks, traces, fields;  ///< that were saved, and nothing
+    std::set<uint64_t> masks, traces, fields;  ///< saved ones, and the empty one
 };
 
-/// Notes in the calls are the number of steps that have been acknowledged.
+/// Notes among the calls hold the number of steps acknowledged so far.
 Record work_of_a_day(const fs::path& folder)
 {
     Record record;
@@ -58,7 +58,7 @@ Record work_of_a_day(const fs::path& folder)
     return record;
 }
 
-/// Why a disk is not what was promised; empty where it is.
+/// Why a disk breaks the guarantee; empty if it does not.
 std::string fault_of(const fs::path& folder, const Disk& disk, const Record& record, size_t acknowledged)
 {
     fs::remove_all(folder);
@@ -76,7 +76,7 @@ std::string fault_of(const fs::path& folder, const Disk& disk, const Record& rec
         if (steps >= record.states.size()) return sentence("found ", steps, " steps that nobody made");
         if (hash_of(work->document()) != record.states[steps]) return sentence("step ", steps, " is of another state");
         if (contains(said, "were changed")) return said;
-        // The files alone, each as one save left it.
+        // The files without the journal, each as one save left it.
         files.journal.clear();
         const auto saved = open_work(files, said);
         if (!record.masks.contains(hash_of(saved->document().mask))) return "the mask is of no save";

@@ -1,5 +1,5 @@
-// Every call with which a save, or the journal, changes files fails once, in every way a disk has: the files are the
-// old or the new ones, whole; work is still there; and the next try succeeds.
+// Makes each call with which a save or the journal changes files fail once, in every way a disk can fail: the files are
+// whole, old or new; no work is lost; and the next try succeeds.
 
 #include <cerrno>
 #include <chrono>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files whose names do not tell that they are the journal's.
+/// All files except the journal's, by name.
 std::map<std::string, std::string> saved_files(const fs::path& folder)
 {
     std::map<std::string, std::string> files;
@@ -76,7 +76,7 @@ TEST_CASE("every call of a save fails once: each file is the old or the new one,
             for (const auto& [name, content] : between)
                 CHECK_MESSAGE(((before.contains(name) && before.at(name) == content) || after.at(name) == content),
                               name);
-            // Interrupted and short calls go on.
+            // Interrupted and short calls are continued.
             if (error == EINTR || error == SHORT_WRITE) CHECK(refused.empty());
             work.reset();
             work = open_work(files_in(desk), said);
@@ -102,7 +102,7 @@ TEST_CASE("a full disk stops nobody: work goes on in memory, it is said, and the
         for (int i = 0; i < 20; ++i) random_step(*work, random);
         work->flush();
         const size_t steps_before = steps_in(files_in(folder.path).journal);
-        // Half of a record gets through; or none can be synced.
+        // Half of a record is written, or no record can be synced.
         int writes = 0;
         refuse_calls(folder.path, [&](const FileCall& call) {
             if (call.kind == FileCall::Kind::write && error == ENOSPC) return writes++ == 0 ? SHORT_WRITE : error;
@@ -113,7 +113,7 @@ TEST_CASE("a full disk stops nobody: work goes on in memory, it is said, and the
         CHECK(contains(refused, error == ENOSPC ? "a.journal: cannot be written: No space left on device"
                                                 : "a.journal: cannot be synced: Input/output error"));
         CHECK(work->journal().failure == refused);
-        // Who looks meanwhile finds what was durable, at least.
+        // Another reader meanwhile finds at least the durable steps.
         CHECK(steps_in(files_in(folder.path).journal) >= steps_before);
         const uint64_t hash = hash_of(work->document());
         refuse_calls(folder.path, {});

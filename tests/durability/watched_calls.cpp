@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A call in flight sees these whole.
+// Guards these against calls in flight.
 std::mutex mutex;
 std::string watched_folder, refused_folder;
 std::vector<FileCall> calls;
@@ -48,7 +48,7 @@ std::string absolute(const char* path)
     return fs::absolute(path, error).lexically_normal().string();
 }
 
-/// Refuses the call or makes it, and keeps it where it was made.
+/// Refuses the call, or makes and records it.
 template <class Make>
 auto made(FileCall call, const Make& make) -> decltype(make(0))
 {
@@ -71,7 +71,7 @@ FileCall write_call(int file, const void* bytes, size_t count, uint64_t at)
     return {FileCall::Kind::write, path_of(file), {}, at, {begin, begin + count}};
 }
 
-/// Nothing is synced: these tests do not depend on the disk under them, and a machine syncs a few hundred times a
+/// Does not really sync: these tests do not depend on the real disk, and a machine manages only a few hundred syncs a
 /// second.
 int sync_call(int file)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Every call with which this program changes files, seen and, where a test wants it, refused. The linker puts these in
-// the place of the system's (-Wl,--wrap=...), so the product knows nothing of them and has no way around.
+// Records, and on demand refuses, every call with which the program changes files. The linker substitutes these for the
+// system's (-Wl,--wrap=...), so the program is unaware of them and cannot bypass them.
 //
 // One test at a time; calls may come from any thread.
 
@@ -16,21 +16,21 @@ namespace shvr::test {
 struct FileCall {
     enum class Kind { create, write, truncate, sync, sync_folder, rename, unlink, note };
     Kind kind = Kind::note;
-    std::string path, to;          ///< absolute; `to` of rename alone
-    uint64_t at = 0;               ///< of write: where; of truncate: the new size; of note: its number
-    std::vector<std::byte> bytes;  ///< of write
+    std::string path, to;          ///< absolute; `to` for rename only
+    uint64_t at = 0;               ///< write: the offset; truncate: the new size; note: its number
+    std::vector<std::byte> bytes;  ///< for write
 };
 
-/// From now on calls about files below `folder` are kept.
+/// From now on records calls on files below `folder`.
 void watch(const std::filesystem::path& folder);
-/// An entry of the test's own among them.
+/// Adds a test's own entry to the record.
 void note(uint64_t number);
 std::vector<FileCall> stop_watching();
 
-/// What happens to a call: 0, or the number of the error that it fails with. SHORT_WRITE: writes half of the bytes.
+/// The fate of a call: 0 to make it, or the errno that it fails with. SHORT_WRITE: writes half of the bytes.
 constexpr int SHORT_WRITE = -1;
 using Refusal = std::function<int(const FileCall&)>;
-/// For calls about files below `folder`. An empty one refuses nothing.
+/// For calls on files below `folder`. An empty function refuses nothing.
 void refuse_calls(const std::filesystem::path& folder, Refusal refusal);
 
 }  // namespace shvr::test

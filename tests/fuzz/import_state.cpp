@@ -1,4 +1,4 @@
-// What an import that was stopped left to go on from: such a file, or behind a "w" what is to be kept in one.
+// The state from which an interrupted import resumes: such a file or, after a "w", the content of one to be written.
 
 #include "engine/projects/import_state.h"
 #include "tests/fuzz/support/attempt.h"

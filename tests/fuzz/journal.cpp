@@ -1,5 +1,5 @@
-// A journal. The first byte says what the rest is: 0, the file's bytes; 1, records (kind 1, about 1, length 2, content)
-// that get the frames and checksums they need, so that what is inside them is reached, too.
+// A journal. The first byte gives the form of the rest: 0, the file's bytes; 1, records (kind 1, about 1, length 2,
+// content) that get valid frames and checksums, so that their contents are parsed, too.
 
 #include "engine/annotation/work/work.h"
 #include "tests/fuzz/support/attempt.h"

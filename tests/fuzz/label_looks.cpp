@@ -1,4 +1,4 @@
-// The .zattrs of a label image: what it says of its labels.
+// The .zattrs of a label image, which describes its labels.
 
 #include "engine/session/label_looks.h"
 
@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             if (group.color)
                 for (int i = 0; i < 3; ++i) expect(is_share((*group.color)[i]), "a colour that is no light");
         }
-        // What the groups look like is written as it was read.
+        // The groups' looks are written as they were read.
         for (const LabelImage::Color& look : label_looks(groups, Mask(Size3(1))))
             for (const LabelLook& label : read.looks)
                 if (label.value == look.value && label.rgba)

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Writes tests/fuzz/seeds:  SHVR=build/dev/shvr tests/fuzz/make_seeds.py
 
-Needs Debian's libtiff-tools (tiffcp) for TIFFs that are compressed, and the built program for a project. Seeds that are
-not made here, regressions above all, are kept: they have names of their own. "claims_" begins the name of a seed that
-says it is far larger than it is.
+Needs Debian's libtiff-tools (tiffcp) for TIFFs that are compressed, and the built program for a project. Seeds not made
+here, mostly regressions, are kept: they have other names. A seed named "claims_..." claims to be far larger than it is.
 """
 import json
 import os
@@ -388,7 +387,7 @@ def make_zarr():
                  "image_axes_xzy", "image_floor", "image_group_scale", "image_mixed_units", "image_tczyx", "series"]:
         seed("zarr", name, *packed(ZARR / name))
     blosc = {"id": "blosc", "cname": "lz4", "clevel": 5, "shuffle": 1, "blocksize": 0}
-    # A header that says two gigabytes come out of this chunk.
+    # The header claims that this chunk unpacks to two gigabytes.
     header = struct.pack("<BBBBIII", 2, 1, 0x21, 1, 0x7fffffff, 0x7fffffff, 64) + bytes(48)
     seed("zarr", "claims_blosc", (".zarray", zarray(compressor=blosc, shape=[1 << 20, 1 << 20, 1 << 20],
                                                     chunks=[1 << 20, 1 << 20, 1 << 20])), ("0.0.0", header))
@@ -403,7 +402,7 @@ def make_zarr():
 
 
 def frame_of(claimed_bytes):
-    """The beginning of a zstd frame, which says how much comes out of it."""
+    """The beginning of a zstd frame, which states the unpacked size."""
     return b"\x28\xb5\x2f\xfd\xe0" + struct.pack("<Q", claimed_bytes)
 
 
@@ -412,7 +411,7 @@ def make_states():
     seed("import_state", "empty", b"w")
     for name, claimed in {"claims_state": 1 << 39, "claims_memory": 1 << 30}.items():
         seed("import_state", name, b"SHVRIMP1" + struct.pack("<QQ", claimed, 0) + frame_of(claimed))
-    # The ranges of all bricks of this volume take two gigabytes.
+    # The table of brick ranges of this volume takes two gigabytes.
     side = 1 << 15
     table = (b"SHVRTAB1" + b"ranges\0\0" + struct.pack("<iI3qQQ", 0, 2, *[side // 32] * 3, 13, 0) + frame_of(1 << 31))
     record = {"shvr_volume": 1, "source": "", "preparation": "", "size": [side] * 3, "type": "uint8",

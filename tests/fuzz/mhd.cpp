@@ -1,4 +1,4 @@
-// MetaImage: one header, beside it files that it may name.
+// MetaImage: one header, with files beside it that it may name.
 
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

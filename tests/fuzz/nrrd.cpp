@@ -1,4 +1,4 @@
-// NRRD: one header, beside it files that it may name.
+// NRRD: one header, with files beside it that it may name.
 
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

@@ -1,4 +1,4 @@
-// Pictures that are compared.
+// Input pictures of a comparison.
 
 #include "engine/base/image_file.h"
 #include "tests/fuzz/support/attempt.h"

@@ -1,4 +1,4 @@
-// The name of a file of bare voxels, which may say their size and type, and the layout that --raw takes.
+// The name of a file of bare voxels, which may give their size and type, and the layout argument of --raw.
 
 #include <algorithm>
 

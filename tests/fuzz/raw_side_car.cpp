@@ -1,4 +1,4 @@
-// What lies beside bare voxels: our JSON, or the text or XML of scanners.
+// Side-car files of bare voxels: our JSON, or the text or XML of scanners.
 
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

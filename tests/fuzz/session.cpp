@@ -1,5 +1,5 @@
-// Session files: what is read is written, and that says the same again. The volume is opened where it is procedural or
-// beside the session.
+// Session files: a session that is read, written and read again stays the same. The volume is opened if it is
+// procedural or beside the session.
 
 #include "engine/session/session.h"
 #include "tests/fuzz/support/attempt.h"

@@ -1,4 +1,4 @@
-// What --set takes, a setting a line; and the last line as what --camera takes.
+// Arguments of --set, one per line; the last line also as the argument of --camera.
 
 #include <algorithm>
 
@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     const std::string base =
         R"({"shvr_session": 1, "volume": {"procedural": "ramp"}, "transfer_function": {"points": []}})";
     std::vector<std::string> settings;
-    // Settings come from a person's own command line and are quoted as they are: only of such a length, and printable.
+    // Settings come from the user's own command line and are quoted verbatim: only printable ones up to this length are
+    // tried.
     constexpr size_t LONGEST = 300;
     std::string_view rest = text_of({data, size});
     while (!rest.empty() && settings.size() < 32) {

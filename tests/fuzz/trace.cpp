@@ -1,4 +1,4 @@
-// A trace: the first byte says which form the rest is. What opens is written in every form and read again.
+// A trace: the first byte gives the format of the rest. A trace that opens is written in every format and read again.
 
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/trace/trace_file.h"

@@ -1,5 +1,5 @@
-// A Zarr array or OME-Zarr image, packed, and projects with what their shvr/ holds besides. A bare input is the .zarray
-// of a flat array.
+// A Zarr array or OME-Zarr image, packed, or a project with its shvr/ folder. A bare input is the .zarray of a flat
+// array.
 
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"

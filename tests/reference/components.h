@@ -1,8 +1,8 @@
 #pragma once
-// What brushes select in a region, by breadth-first search: one voxel at a time, nothing clever. Tests compare the
-// device's words with these, bit for bit.
+// The voxels that brushes select in a region, by simple breadth-first search. Tests compare the device's words with
+// these, bit for bit.
 //
-// `open(voxel)` says whether a voxel of the volume is at or above the threshold; it is asked about the region's voxels
+// `open(voxel)` says whether a voxel of the volume is at or above the threshold; it is called for the region's voxels
 // only. Words are laid out as BrushRegion says; bits outside the region's spans are 0. `connectivity` is 6 or 26.
 
 #include <cstdint>
@@ -26,8 +26,8 @@ std::vector<uint32_t> flood_words(const BrushRegion& region, const OpenVoxel& op
 /// not belong to the region (no voxel outside the volume does). A neighbour that belongs but is not open makes no edge.
 std::vector<uint32_t> speckle_words(const BrushRegion& region, const OpenVoxel& open, int connectivity);
 
-/// Of every voxel of a whole volume, x fastest: 0 where it is not open, else the number of its component, which count
-/// from 1 in the order of their first voxels.
+/// A label for each voxel of a whole volume, x fastest: 0 if it is not open, else the number of its component, counted
+/// from 1 in the order of first voxels.
 std::vector<uint32_t> component_labels(const Size3& size, const OpenVoxel& open, int connectivity);
 
 }  // namespace shvr::reference

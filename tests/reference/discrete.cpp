@@ -17,7 +17,7 @@ DiscreteModel::DiscreteModel(const Scene& scene, const DiscreteOptions& options)
     if (options.table_entries == 0 || transfer_.knots().empty()) return;
     const double first = transfer_.knots().front(), last = transfer_.knots().back();
     for (uint32_t k = 0; k < options.table_entries; ++k) {
-        // The last entry stands at `last` itself, which the product below could miss by a bit.
+        // The last entry is exactly at `last`, which the product below could miss by one bit.
         const bool is_last = k + 1 == options.table_entries;
         glm::dvec4 entry = transfer_.at(is_last ? last : first + k * (last - first) / (options.table_entries - 1));
         entry.a = opacity_of_length(entry.a, options.step);

@@ -1,6 +1,6 @@
 #pragma once
-// The picture a stepped renderer aims at: the same samples, composited in double. Against the device it shows rounding;
-// against exact.h it shows the error of the method.
+// The ideal picture of a stepped renderer: the same samples, composited in double. Compared with the device it shows
+// rounding; compared with exact.h it shows the error of the method.
 //
 // With S the length of the ray inside the volume, in reference voxels, and n = floor(S / step): sample i = 0 ... n-1
 // stands for [i step, (i+1) step]; where r = S - n step > 0, one more stands for the rest. A sample is taken at the

@@ -67,7 +67,7 @@ double extinction_of(double opacity)
     return -std::log1p(-std::min(opacity, 1.0 - 0x1p-53));
 }
 
-// One ray on its way from front to back.
+// Walks one ray from front to back.
 class Walk {
 public:
     Walk(const Scene& scene, const Transfer& transfer, const Span& span, double tolerance)
@@ -141,7 +141,7 @@ private:
             const unsigned clamped = (color.r > 1.0 ? 1u : 0u) | (color.g > 1.0 ? 2u : 0u) | (color.b > 1.0 ? 4u : 0u);
             return Medium{sigma, glm::min(color, 1.0), clamped};
         };
-        // What lies behind thick matter reaches the pixel weakened, and so does its error.
+        // Dense matter in front attenuates light on its way to the pixel, and its error with it.
         const double tolerance = tolerance_ * std::exp(std::min(so_far_.depth, 300.0));
         so_far_ = joined(so_far_, reference::integrate(medium, lower, upper, tolerance));
     }

@@ -3,8 +3,8 @@
 // being smooth (cell borders, voxel borders, transfer-function knots) and integrated adaptively in between. No early
 // termination. Measured error: below 1e-12 (tests/unit/reference/reference_test.cpp).
 //
-// A control point of opacity 1 between points of less ends the ray too, though a stepped renderer, whose samples miss
-// that single density, sees through it.
+// A control point of opacity 1 between points of lower opacity also ends the ray, though a stepped renderer, whose
+// samples miss that single density, sees through it.
 
 #include "tests/reference/scene.h"
 #include "tests/reference/span.h"

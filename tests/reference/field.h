@@ -1,5 +1,5 @@
 #pragma once
-// The density as a continuous field: trilinear between voxel centres, continued by the edge voxels outside.
+// The density as a continuous field: trilinear between voxel centres, clamped to the edge voxels outside.
 
 #include "tests/reference/scene.h"
 
@@ -13,7 +13,7 @@ struct Cell {
 
 Cell cell_at(const Scene& scene, const glm::dvec3& voxel);
 
-/// Exact at the corners, and exactly constant where the corners agree. Positions outside the cell are moved into it.
+/// Exact at the corners, and exactly constant where the corners agree. Positions outside the cell are clamped to it.
 double value_in(const Cell& cell, const glm::dvec3& voxel);
 
 double density_at(const Scene& scene, const glm::dvec3& voxel);
@@ -24,7 +24,7 @@ glm::dvec3 difference_at(const Scene& scene, const glm::dvec3& voxel);
 /// The same in physical space, per reference voxel: divided by the spacing, times the reference length.
 glm::dvec3 gradient_at(const Scene& scene, const glm::dvec3& voxel);
 
-/// Label of the voxel that holds the position; 0 where the scene has no labels.
+/// Label of the voxel at the position; 0 if the scene has no labels.
 uint8_t label_at(const Scene& scene, const glm::dvec3& voxel);
 
 double reference_length(const Scene& scene);

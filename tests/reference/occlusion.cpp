@@ -13,7 +13,7 @@ glm::dvec3 turned(const glm::dvec3& direction, const OcclusionSide& side)
     return glm::dot(direction, side.normal) < side.surface - 1.0 ? -direction : direction;
 }
 
-/// The opacity that 8 bits keep.
+/// The opacity, rounded to 8 bits.
 double kept(double opacity)
 {
     const double code = std::floor(255.0 * std::sqrt(opacity) + 0.5);
@@ -25,7 +25,7 @@ double opacity_of(double one, double stretch)
     return 1.0 - std::pow(1.0 - one, stretch);
 }
 
-/// Of the stretch of a tap in the cell that holds a voxel.
+/// Opacity over the stretch of a tap in the cell that holds a voxel.
 double cell_opacity(const VoxelOpacity& opacity, const glm::ivec3& voxel, int side, double exponent)
 {
     const glm::ivec3 first = glm::ivec3(glm::floor(glm::dvec3(voxel) / double(side))) * side;
@@ -36,7 +36,7 @@ double cell_opacity(const VoxelOpacity& opacity, const glm::ivec3& voxel, int si
     return kept(opacity_of(kept(sum / (side * side * side)), exponent));
 }
 
-/// Of the stretch of a near tap: in sevenths of the voxel's greatest.
+/// Opacity over the stretch of a near tap: in sevenths of the voxel's maximum.
 double near_opacity(const HalfOpacity& halves, const glm::ivec3& half_voxel, double stretch)
 {
     const glm::ivec3 voxel(glm::floor(glm::dvec3(half_voxel) / 2.0)), half = half_voxel - 2 * voxel;

@@ -1,6 +1,6 @@
 #pragma once
-// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines what the device makes, cell by cell, and
-// as the sum over equal steps that it stands for. Lengths are in voxels of the finest axis.
+// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines the device's computation, cell by cell,
+// and as the sum over equal steps that it approximates. Lengths are in voxels of the finest axis.
 
 #include <functional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace shvr::reference {
 
-/// What rays do at a place: where a surface is (0 ... 1), they start above it and none comes from behind.
+/// Treatment of rays at a surface (0 ... 1): they start above it, and none comes from behind.
 struct OcclusionSide {
     glm::dvec3 normal{0.0};
     double surface = 0.0;
@@ -17,26 +17,26 @@ struct OcclusionSide {
 
 struct OcclusionTap {
     double distance, lift, stretch;
-    int side;  ///< of the cell that tells, in voxels; 0: half a voxel
+    int side;  ///< of the cell that is sampled, in voxels; 0: half a voxel
 };
 struct OcclusionRays {
     double radius = 16.0, first = 0.5;
     std::vector<OcclusionTap> taps;
     std::vector<glm::dvec3> directions;
-    double exponent = 1.0;  ///< from the way through a cell to the stretch of its taps
+    double exponent = 1.0;  ///< from the path through a cell to the stretch of its taps
     glm::dvec3 voxels_per_unit{1.0};
 };
 
 /// Unit vectors spread evenly over the sphere (spherical Fibonacci points, Gonzalez 2010), as the kernel takes them.
 std::vector<glm::dvec3> occlusion_directions(uint32_t count);
 
-/// Opacity of one unit for every voxel there may be; 0 outside the volume.
+/// Opacity of one unit for any voxel; 0 outside the volume.
 using VoxelOpacity = std::function<double(const glm::ivec3&)>;
 /// Opacity of one unit for every half of a voxel: the voxel, and 0 or 1 along each axis.
 using HalfOpacity = std::function<double(const glm::ivec3&, const glm::ivec3&)>;
 double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves, const OcclusionRays& rays,
                          const glm::ivec3& voxel, const OcclusionSide& side);
-/// Where all halves of a voxel are alike.
+/// For volumes in which all halves of a voxel are equal.
 double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side);
 

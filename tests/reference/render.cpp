@@ -17,7 +17,7 @@ template <class Model>
 std::vector<glm::dvec4> render_with(const Model& model, std::span<const Ray> rays, int threads)
 {
     std::vector<glm::dvec4> light(rays.size());
-    // Every n-th ray: neighbours cost alike, so the threads end together.
+    // Every n-th ray: neighbours cost about the same, so the threads finish together.
     const auto every_nth = [&](size_t first) {
         for (size_t i = first; i < rays.size(); i += size_t(threads)) light[i] = model.integrate(rays[i]);
     };

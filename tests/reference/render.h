@@ -1,6 +1,6 @@
 #pragma once
-// The double-precision reference renderer: the truth tests measure the device against. It shares no code with what it
-// judges. Include this header; fill in a `Scene`; then
+// The double-precision reference renderer, which tests compare the device with. It shares no code with the program.
+// Include this header; fill in a `Scene`; then
 //
 //     const glm::dvec4 pixel = over_background(integrate_exact(scene, ray), scene);
 //     const std::vector<glm::dvec4> image = render(scene, rays, DiscreteOptions{.step = 0.25});
@@ -21,14 +21,14 @@ namespace shvr::reference {
 using Mode = std::variant<ExactOptions, DiscreteOptions>;
 
 /// C and A of each ray, C not yet over the background. The result does not depend on the number of threads.
-/// Throws std::invalid_argument where `check` does.
+/// Throws std::invalid_argument if `check` does.
 std::vector<glm::dvec4> render(const Scene& scene, std::span<const Ray> rays, const Mode& mode, int threads = 2);
 
-/// C + (1 - A) background, linear RGB, and A. Where A is 0 the background comes back bit for bit.
+/// C + (1 - A) background, linear RGB, and A. If A is 0 the result is the background, bit for bit.
 glm::dvec4 over_background(const glm::dvec4& light, const Scene& scene);
 
-/// Throws std::invalid_argument, with a sentence, where counts of voxels do not match `size`, or a spacing is not above
-/// 0, or an opacity lies outside [0, 1].
+/// Throws std::invalid_argument with a message if voxel counts do not match `size`, a spacing is not above 0, or an
+/// opacity lies outside [0, 1].
 void check(const Scene& scene);
 
 }  // namespace shvr::reference

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes and rays to try the renderers with. Equal seeds give equal bits on every machine.
+// Scenes and rays for tests of the renderers. Equal seeds give equal bits on every machine.
 
 #include <functional>
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace shvr::reference {
 
-/// `density` is asked at every voxel centre.
+/// `density` is evaluated at every voxel centre.
 Scene scene_of(const glm::ivec3& size, const std::function<double(glm::dvec3 voxel)>& density);
 
 /// Independent densities, uniform in [0, 1]: the roughest field a grid holds.

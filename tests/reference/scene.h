@@ -1,11 +1,11 @@
 #pragma once
-// What the reference renderer draws, and along which rays. Plain data, owned by the test; every function of this folder
-// borrows it as const, so any number of threads may share one scene.
+// The scenes that the reference renderer draws, and the rays. Plain data, owned by the test; every function of this
+// folder borrows it as const, so any number of threads may share one scene.
 //
 // Spaces. voxel: the centre of voxel i lies at i + 0.5. physical: voxel * spacing. Lengths along a ray are counted in
 // reference voxels: physical length / min(spacing).
 //
-// Picture. With u(s) the density, c and alpha the colour and opacity the transfer function or a colour group gives,
+// Picture. With u(s) the density, c and alpha the colour and opacity from the transfer function or a colour group,
 //     sigma = -ln(1 - alpha)                     extinction per reference voxel
 //     T(s)  = exp(-integral_0^s sigma)           transparency
 //     C     = integral c sigma T ds,  A = 1 - T(end),  pixel = C + (1 - A) background
@@ -61,14 +61,14 @@ struct DistanceBlend {
 
 struct Scene {
     glm::ivec3 size{0};             ///< voxels
-    std::vector<double> density{};  ///< x fastest; continued by the edge voxels outside
+    std::vector<double> density{};  ///< x fastest; clamped to the edge voxels outside
     glm::dvec3 spacing{1.0};        ///< physical units per voxel
     std::vector<ControlPoint> points{};
     std::vector<uint8_t> labels{};  ///< empty, or one per voxel; 0 = transfer function, else index of a group
     std::array<Group, 256> groups{};
     std::optional<Shading> shading{};
-    std::optional<DistanceBlend> blend{};  ///< in integrate_discrete alone
-    glm::dvec3 cut_min{0.0};               ///< voxel space; what lies outside the cut box or the volume is not drawn
+    std::optional<DistanceBlend> blend{};  ///< in integrate_discrete only
+    glm::dvec3 cut_min{0.0};               ///< voxel space; nothing outside the cut box or the volume is drawn
     glm::dvec3 cut_max{std::numeric_limits<double>::infinity()};
     glm::dvec3 background{0.0};  ///< linear light
 };
@@ -76,7 +76,7 @@ struct Scene {
 /// The points origin + t * direction, t_min <= t <= t_max, in voxel space. The eye is at the side of t_min.
 struct Ray {
     glm::dvec3 origin{0.0};
-    glm::dvec3 direction{0.0, 0.0, 1.0};  ///< need not be unit; zero: nothing is seen
+    glm::dvec3 direction{0.0, 0.0, 1.0};  ///< need not be unit; zero: nothing is visible
     double t_min = 0.0;
     double t_max = std::numeric_limits<double>::infinity();
 };

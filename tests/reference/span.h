@@ -10,8 +10,8 @@ struct Interval {
     double upper = 0.0;
 };
 
-/// t where the ray is inside the closed box; nothing where it misses. A ray that runs in a face is inside: axes along
-/// which it does not move (+0 and -0 alike) are decided by where it is, not by a division.
+/// The interval of t in which the ray is inside the closed box; nothing if it misses. A ray in a face is inside: for
+/// axes along which it does not move (+0 or -0) its position decides, not a division.
 std::optional<Interval> clip_to_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper);
 
 /// Points entry + s * step, 0 <= s <= length.
@@ -23,7 +23,7 @@ struct Span {
     glm::dvec3 at(double s) const { return entry + s * step; }
 };
 
-/// The ray inside both the volume and the cut box; nothing where it misses or has no direction.
+/// The ray inside both the volume and the cut box; nothing if it misses or has no direction.
 std::optional<Span> span_of(const Scene& scene, const Ray& ray);
 
 }  // namespace shvr::reference

@@ -1,5 +1,5 @@
 #pragma once
-// The transfer function as the exact piecewise-linear function it is; no table.
+// The transfer function as an exact piecewise-linear function, without a table.
 
 #include <span>
 
@@ -12,7 +12,7 @@ struct TransferPiece {
     double x0 = 0.0, x1 = 0.0;
     glm::dvec4 value0{0.0}, value1{0.0};
     bool is_empty() const { return value0.a == 0.0 && value1.a == 0.0; }
-    /// Densities outside [x0, x1] are moved into it.
+    /// Densities outside [x0, x1] are clamped to it.
     glm::dvec4 at(double density) const;
 };
 
@@ -24,7 +24,7 @@ public:
     TransferPiece piece_at(double density) const;
     glm::dvec4 at(double density) const { return piece_at(density).at(density); }
 
-    /// Where the pieces meet: ascending, each once; empty where nothing is drawn.
+    /// The boundaries of the pieces: ascending, each once; empty if nothing is drawn.
     std::span<const double> knots() const { return knots_; }
     /// The knot closer than 1e-14, or the density itself: undoes the rounding of a root.
     double snapped(double density) const;

@@ -12,7 +12,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Enough for any machine, and no product with 2^20 leaves 64 bits.
+/// Enough for any machine, and products with 2^20 fit into 64 bits.
 constexpr int64_t MOST_MIB = int64_t{1} << 24;
 
 CLI::Validator whole_mib()
@@ -53,12 +53,12 @@ void add_input_options(CLI::App& command, Common& common)
         .add_option_function<std::string>(
             "--raw",
             [&common](const std::string& value) {
-                parse_raw_layout(value);  // what is wrong here is wrong usage, not a wrong file
+                parse_raw_layout(value);  // an error here is wrong usage, not a bad file
                 common.settings.push_back("volume.raw=" + value);
             },
             "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
-    // Text, also where it looks like a number.
+    // Always text, even if it looks like a number.
     const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
         command
             .add_option_function<std::string>(

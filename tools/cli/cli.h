@@ -1,6 +1,6 @@
 #pragma once
-// What the sub-commands of `shvr` share: common options, opening a session with its renderer, and printing results.
-// Each command is one file with one function that adds it to the program; main.cpp lists them.
+// Shared by the sub-commands of `shvr`: common options, opening a session with its renderer, and printing results. Each
+// command is one file with one function that adds it to the program; main.cpp lists them.
 
 #include <functional>
 #include <memory>
@@ -29,7 +29,7 @@ struct Common {
 
 /// --set, --raw, --spacing, --unit
 void add_input_options(CLI::App& command, Common& common);
-/// Those, and --device, --budget-device, --budget-host, --threads.
+/// The input options, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
@@ -39,13 +39,13 @@ void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
 /// One object on standard output.
 void print(const Json& result);
-/// Before any work: a name that ends in none of `extensions` is wrong usage, a folder that is not there or may not be
-/// written to is an error. Nothing is checked where `path` is empty: it was not asked for.
+/// Call before any work: a name with none of `extensions` is wrong usage; a folder that is missing or not writable is
+/// an error. An empty `path` means that no output was requested and passes.
 void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 
-/// A session opened with its volume on the device and its mask and its trace, where there are any, loaded.
+/// An open session, with its volume on the device and its mask and trace, if any, loaded.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -57,12 +57,12 @@ Opened open(const std::string& path, const Common& common, Work::Start start = W
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);
-/// What came and went, where bricks do; null otherwise.
+/// Numbers of bricks loaded and evicted if the volume is paged; null otherwise.
 Json bricks_of(const Renderer& renderer);
 /// Work counters by name, summed over the passes.
 Json counters_of(const std::vector<gpu::PassReport>& passes);
 
-/// With SHVR_VALIDATION=1 the Khronos layer watches: fails, quoting the first, where it had anything to say.
+/// With SHVR_VALIDATION=1 the Khronos validation layer is on: fails if it reported anything, quoting its first message.
 void check_validation(Opened& opened);
 
 void add_info(CLI::App& program);

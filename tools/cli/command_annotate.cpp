@@ -29,7 +29,7 @@ public:
 private:
     const TraceGraph& trace() const { return opened.annotator->document().trace; }
 
-    /// What `act` returns; what it cannot do is said with the line.
+    /// Returns the result of `act`; its errors name the line.
     template <class Act>
     auto in_words(const Act& act) const
     {

@@ -45,7 +45,7 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
     return mask;
 }
 
-/// Of --volume; else of the first trace or mask that states it.
+/// The space of --volume; else of the first trace or mask that states one.
 std::optional<TraceSpace> find_space(const EvaluateCommandOptions& options)
 {
     if (!options.volume.empty()) return space_of(open_session(options.volume, options.common.settings).source->info());
@@ -63,7 +63,7 @@ Json number_or_null(const std::optional<double>& value)
     return value ? Json(*value) : Json(nullptr);
 }
 
-/// Of two bare masks, which need not say what shape they have.
+/// Dice of two bare masks, whose shape may be unknown.
 Dice dice_of_files(const std::string& a, const std::string& b)
 {
     std::ifstream files[2];

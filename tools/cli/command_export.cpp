@@ -1,4 +1,4 @@
-// shvr export: what was annotated, in forms that other programs read, and what can be measured in it. Needs no device.
+// shvr export: annotations in formats of other programs, and their measures. Needs no device.
 
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
@@ -28,7 +28,7 @@ void check_mask_name(const std::string& path)
                                   ".tiff, .zarr, or PROJECT/labels/NAME"));
 }
 
-/// PROJECT/labels/mask; nothing where it is not asked for.
+/// PROJECT/labels/mask; empty if not requested.
 std::string project_labels(const ExportCommandOptions& options)
 {
     if (!options.labels) return {};
@@ -38,7 +38,7 @@ std::string project_labels(const ExportCommandOptions& options)
     return (project / "labels" / "mask").string();
 }
 
-/// Fails where a trace is asked for, and there is none.
+/// Fails if there is neither a trace nor a file of one.
 void expect_trace(const Session& session, const TraceGraph& trace)
 {
     if (!trace.nodes().empty() || std::filesystem::exists(session.trace_path)) return;
@@ -47,7 +47,7 @@ void expect_trace(const Session& session, const TraceGraph& trace)
                                     : ": does not exist; expected the trace that shvr annotate saves");
 }
 
-/// Of all that is painted (-1), and of each group.
+/// The topology of all painted voxels (-1), and of each group.
 std::map<int, Topology> topology_by_group(const Mask& mask)
 {
     std::map<int, Topology> topology{{-1, topology_of(mask)}};

@@ -30,7 +30,7 @@ struct ImportCommandOptions {
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
 
-/// "1,2,3"; nothing where one of them is no number.
+/// "1,2,3"; nothing if one of them is not a number.
 template <class Value>
 std::vector<Value> numbers_of(const std::string& text)
 {
@@ -86,9 +86,9 @@ std::optional<glm::dvec3> parse_spacing(const std::string& text)
     return glm::dvec3(sides[0], sides[1], sides[2]);
 }
 
-// ---- What the person says of the volume -----------------------------------------------------------------------------
+// ---- The user's statements on the volume ----------------------------------------------------------------------------
 
-/// The source with the spacing and unit that were given, if any.
+/// The source with the given spacing and unit, if any.
 class Restated final : public VolumeSource {
 public:
     Restated(std::unique_ptr<VolumeSource> source, VolumeInfo info)
@@ -114,7 +114,7 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
     std::unique_ptr<VolumeSource> source = open_volume(options.volume, options.choice);
     if (!spacing && options.unit.empty()) return source;
     VolumeInfo info = source->info();
-    // What was missing in the file is known now.
+    // The options supply what the file lacked.
     std::erase_if(info.warnings,
                   [](const std::string& warning) { return warning.find("spacing") != std::string::npos; });
     if (spacing) info.spacing = *spacing;
@@ -137,7 +137,7 @@ void handle_signals()
     static_assert(std::atomic<bool>::is_always_lock_free);
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
 }
 
 std::string time_text(double seconds)
@@ -148,7 +148,7 @@ std::string time_text(double seconds)
     return sentence(whole / 3600, " h ", whole / 60 % 60, " min");
 }
 
-/// One line that is written over on a terminal; elsewhere a line every 10 %.
+/// On a terminal one line, updated in place; elsewhere a line every 10 %.
 class ProgressLine {
 public:
     ProgressLine(const Common& common, size_t voxel_bytes)

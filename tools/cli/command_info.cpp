@@ -29,7 +29,7 @@ Described describe(const InfoCommandOptions& options)
     const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
     const bool is_bare = std::filesystem::exists(path, ignored) && !is_project && path.extension() != ".json";
     OpenedSession opened;
-    // A session would make a transfer function for a bare volume, and say so: nobody asked.
+    // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare && options.common.settings.empty()) {
         opened.source = open_volume(path);
         opened.statistics = measure(*opened.source);
@@ -81,7 +81,7 @@ Json to_json(const Described& described, const std::string& input)
             {"warnings", described.warnings}};
 }
 
-/// "1 024 000": long numbers are read in groups of three.
+/// "1 024 000": in groups of three digits.
 std::string grouped(int64_t number)
 {
     std::string digits = std::to_string(number);

@@ -37,7 +37,7 @@ std::string form_of(const std::filesystem::path& path)
     return is_in_project ? ".zarr" : lower_case(plain.extension().string());
 }
 
-/// Where a name would be made; with "labels" of a project it may not be there yet.
+/// The folder of an output; a project's "labels" may not exist yet.
 std::filesystem::path folder_of(const std::filesystem::path& path)
 {
     std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
@@ -57,7 +57,7 @@ void check_usage(const LabelCommandOptions& options)
                                   "PROJECT/labels/NAME"));
 }
 
-/// One byte a voxel, as masks are.
+/// One byte per voxel, as in masks.
 void write_mask(const std::string& path, const VolumeSource& labels)
 {
     const VolumeInfo& info = labels.info();
@@ -88,7 +88,7 @@ void write_labels(const LabelCommandOptions& options, const VolumeSource& labels
     static_cast<void>(export_label_image(labels, options.output, {}, wanted));
 }
 
-/// A line every tenth.
+/// Prints a line every 10 %.
 std::function<void(double)> progress_of(const Common& common, const char* what)
 {
     return [&common, what, last = 0](double fraction) mutable {

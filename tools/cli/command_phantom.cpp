@@ -13,7 +13,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Voxels are made and written in slabs of at most this, or of one row.
+/// Voxels are computed and written in slabs of at most this size, or of one row.
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 
 struct PhantomCommandOptions {
@@ -82,8 +82,8 @@ void run_phantom(const PhantomCommandOptions& options)
     const std::filesystem::path header = folder / (options.kind + ".nhdr");
     const std::filesystem::path voxels = folder / (options.kind + ".raw");
     const std::string text = nrrd_header(source->info(), voxels.filename().string());
-    // Begun first, so that a name that cannot be written is refused before the long work; there last, so that no header
-    // speaks of voxels that are still to come.
+    // Opened first, so that an unwritable name fails before the long work; committed last, so that no header describes
+    // voxels not yet written.
     AtomicWriter header_writer(header);
     header_writer.append(std::as_bytes(std::span(text)));
     write_voxels(voxels, *source);

@@ -12,13 +12,13 @@ namespace shvr::cli {
 namespace {
 
 constexpr int64_t LARGEST_PROFILE = int64_t(64) << 20;
-constexpr int DEEPEST_PROFILE = 16;  // ours have 4; every level costs memory many times its two characters
+constexpr int DEEPEST_PROFILE = 16;  // ours have 4 levels; each costs far more memory than its two characters
 
 struct ProfileCommandOptions {
     Common common;
     std::string input, size, camera, trace, csv, graph;
     int frames = 20;
-    int warmup = 3;  ///< kernels are compiled, and the device wakes up, in the first frames
+    int warmup = 3;  ///< the first frames compile kernels and wake up the device
     bool serialize = false;
     std::string a, b;  ///< of diff
 };
@@ -67,7 +67,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened)
         profile.graph = std::move(picture.graph);
     }
     profile.bytes = bytes_of(renderer);
-    // Counting costs time, so it has a frame of its own.
+    // Counting costs time, so it gets its own frame.
     profile.counted = renderer.render(opened.session, camera, {.probe = probe, .count_work = true}).passes;
     return profile;
 }

@@ -16,7 +16,7 @@ struct RenderCommandOptions {
     bool allows_incomplete = false;
 };
 
-/// Why a picture is not what was asked for.
+/// Why a picture is incomplete.
 std::string why_incomplete(const Picture& picture)
 {
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();

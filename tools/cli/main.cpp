@@ -1,4 +1,4 @@
-// shvr: one binary, a sub-command for each thing it does.
+// shvr: one binary with a sub-command for each task.
 
 #include <algorithm>
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace {
 
 enum Exit { done = 0, world = 1, usage = 2, gate = 3 };
 
-/// One line, however CLI11 spells it.
+/// CLI11's message on one line.
 std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
 {
     std::string command = "shvr", text = error.what();

@@ -7,7 +7,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// One pass (or the frame) as one run measured it.
+/// One run's measurement of a pass or of the frame.
 struct Measured {
     double median = 0.0;
     double noise = 0.0;  ///< half of minimum ... p95
@@ -21,7 +21,7 @@ double number_at(const Json& object, const char* key, const std::string& file)
     return found->get<double>();
 }
 
-/// Nothing where the run had no times.
+/// Nothing if the run had no times.
 std::optional<Measured> measured(const Json& object, const std::string& prefix, const std::string& file)
 {
     const auto median = object.find(prefix + "median_ms");
@@ -72,7 +72,7 @@ Json counters_compared(const Json& a, const Json& b)
     for (const auto& [name, value] : a["counters"].items()) {
         const auto other = b["counters"].find(name);
         if (other == b["counters"].end() || !value.is_number_integer() || !other->is_number_integer()) continue;
-        // Unsigned, because a stranger's numbers may lie farther apart than an int64_t reaches.
+        // Unsigned, because the difference of arbitrary numbers may exceed int64_t.
         const auto delta = static_cast<int64_t>(other->get<uint64_t>() - value.get<uint64_t>());
         rows.push_back({{"name", name}, {"a", value}, {"b", *other}, {"delta", delta}});
     }

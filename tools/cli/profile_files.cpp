@@ -45,7 +45,7 @@ Json span_event(const std::string& name, int process, size_t thread, double begi
             {"args", std::move(args)}};
 }
 
-/// Passes of a frame that ran side by side stand on lanes of their own: spans of one lane must not cross.
+/// Passes of a frame that overlap get separate lanes: spans in one lane must not cross.
 class Lanes {
 public:
     size_t take(double begin_ms, double end_ms)
@@ -65,7 +65,7 @@ private:
 
 void add_passes(Json& events, const ProfiledFrame& frame, size_t index, Lanes& lanes)
 {
-    // The clocks of host and device are not tied to each other, so the passes are drawn to end with their frame.
+    // The clocks of host and device are independent, so the passes are drawn to end with their frame.
     const double origin = std::max({lanes.end(), frame.begin_ms, frame.end_ms - frame.wall_ms});
     bool first = true;
     for (const gpu::PassReport& pass : frame.passes) {
@@ -116,7 +116,7 @@ void add_frame(Json& events, const ProfiledFrame& frame, size_t index)
                       {"args", {{"bytes", frame.device_bytes}}}});
 }
 
-/// A field of a CSV table, quoted where RFC 4180 asks for it.
+/// A field of a CSV table, quoted where RFC 4180 requires it.
 std::string field(const std::string& text)
 {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -139,7 +139,7 @@ struct TemporaryFolder {
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     ~TemporaryFolder()
     {
-        std::error_code ignored;  // what cannot be removed stays in the temporary folder
+        std::error_code ignored;  // files that cannot be removed stay in the temporary folder
         std::filesystem::remove_all(path, ignored);
     }
 };

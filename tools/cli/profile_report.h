@@ -1,5 +1,5 @@
 #pragma once
-// What `shvr profile` measures, and the forms it is written in: a summary, a trace for Perfetto, a table, a graph.
+// The measurements of `shvr profile` and their output forms: a summary, a trace for Perfetto, a table, a graph.
 
 #include <filesystem>
 #include <optional>
@@ -24,20 +24,20 @@ struct Profile {
     bool serialize = false;
     std::vector<gpu::PassReport> first_frame;  ///< the frame that also prepares: uploads, leap grid
     std::vector<ProfiledFrame> frames;         ///< after the warm-up
-    std::vector<gpu::PassReport> counted;      ///< of one more frame, which counted its work
+    std::vector<gpu::PassReport> counted;      ///< one more frame, with work counters
     Json bytes;
     FrameGraph graph;  ///< of the last frame
     std::vector<std::string> warnings;
 };
 
-/// Of equal work done several times. p95: at least 95 % are at or below.
+/// Statistics of repeated equal work. p95: at least 95 % of the values are at or below.
 struct Spread {
     double minimum = 0.0, median = 0.0, p95 = 0.0, maximum = 0.0;
 };
-/// Nothing where there is no value.
+/// Nothing if there are no values.
 std::optional<Spread> spread_of(std::vector<double> values);
 
-/// The keys of README.md.
+/// README.md lists the keys.
 Json summary_of(const Profile& profile);
 std::string text_of(const Json& summary);
 

@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Every report of the pass of one name, over the frames. A frame that did not run it has none.
+/// All reports of the pass of one name, over the frames. A frame that did not run it has none.
 struct PassHistory {
     std::vector<double> times;
     size_t count = 0;

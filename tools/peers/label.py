@@ -4,7 +4,7 @@ threshold, joined over faces. Prints one JSON line.
 
 tools/peers/label.py FILE SIDE THRESHOLD [--with scipy|cc3d] [-o LABELS.raw]
 
-Needs Debian's python3-scipy; cc3d is not in Debian, and used by who has it.
+Needs Debian's python3-scipy; cc3d is optional and not in Debian.
 """
 import argparse
 import json

@@ -15,13 +15,13 @@ import time
 from array import array
 from pathlib import Path
 
-# Of a session that says nothing else (engine/session/README.md).
+# Defaults of a session (engine/session/README.md).
 LIGHT = {"shaded": True, "ambient": 0.3, "diffuse": 0.7, "specular": 0.2, "shininess": 32, "direction": [0, 0, 0]}
 RENDER = {"size": [512, 512], "step_voxels": 0.5, "background": "#ffffff"}
 
 
 def linear_color(text):
-    """"#rrggbb" to linear light: VTK knows no colour curve, so it is given light and gives light back."""
+    """"#rrggbb" to linear light: VTK has no colour curve, so its input and output are linear light."""
     encoded = [int(text[i:i + 2], 16) / 255 for i in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in encoded]
 
@@ -35,7 +35,7 @@ def read_header(path):
 
 
 def open_volume(vtk, path):
-    """A reader whose world is SHVR's volume space, in which the centre of voxel i lies at (i + 0.5) * spacing."""
+    """A reader that places voxels as SHVR does: the centre of voxel i lies at (i + 0.5) * spacing."""
     fields = read_header(path)
     sizes = [int(n) for n in fields["sizes"].split()]
     spacing = [float(n) for n in fields["spacings"].split()]
@@ -93,7 +93,7 @@ def make_property(vtk, points, light, unit):
 
 
 def aim(vtk, renderer, camera, direction, ambient):
-    """`direction` leads towards the light along the camera's right, up and back."""
+    """`direction` points towards the light, in the camera's right, up and back."""
     view = renderer.GetActiveCamera()
     view.SetPosition(camera["eye"])
     view.SetFocalPoint(camera["target"])
@@ -111,7 +111,7 @@ def aim(vtk, renderer, camera, direction, ambient):
 
 
 def save(vtk, window, path):
-    """A portable float map, with rows from the bottom as in VTK. What was drawn has 8 bits a channel."""
+    """A portable float map, with rows from the bottom as in VTK. The rendered image has 8 bits per channel."""
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)
     grab.SetInputBufferTypeToRGB()
@@ -136,7 +136,7 @@ def renderer_name(window):
 
 
 def import_vtk():
-    """Only what is used: all of VTK takes a second to load, and memory."""
+    """Only the modules in use: all of VTK takes a second to load, and memory."""
     import types
 
     try:
@@ -175,8 +175,8 @@ def draw(options):
     window.SetMultiSamples(0)
     window.SetSize(settings["size"])
     window.AddRenderer(renderer)
-    # The OpenGL mapper adds ambient light without the volume's colour, so the light brings that of a volume of one
-    # colour. The fixed-point mapper multiplies.
+    # The OpenGL mapper adds ambient light without the volume's colour, so the light carries the colour of a volume of
+    # one colour. The fixed-point mapper multiplies by it.
     ambient = linear_color(points[0]["color"]) if options.mapper == "gpu" else [1.0, 1.0, 1.0]
     aim(vtk, renderer, session["cameras"][options.camera], light["direction"], ambient)
 
@@ -187,7 +187,7 @@ def draw(options):
         window.Render()
         window.WaitForCompletion()
         say(frame=frame, ms=(time.monotonic() - started) * 1e3)
-    # Asking for the driver's name takes memory and time.
+    # Querying the driver's name costs memory and time.
     peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     if options.output:
         save(vtk, window, Path(options.output))

@@ -30,8 +30,7 @@ struct Row {
     int depth = 0;  ///< below the groups without a parent
 };
 
-/// Those with a key, those that the session describes, those that were painted, and the one that is chosen; groups
-/// below the one they belong to.
+/// Groups that have a key, are described by the session, are painted or are chosen; each below its parent.
 std::vector<Row> listed_groups(const Model& model)
 {
     std::set<uint8_t> groups{model.brush.group};
@@ -50,7 +49,7 @@ std::vector<Row> listed_groups(const Model& model)
     return rows;
 }
 
-// ---- The cells of a row. Each tells whether it changed what is set; `look` is what comes of it.
+// ---- The cells of a row. Each returns whether it changed a setting, and writes the result to `look`.
 
 bool color_cell(const ColorGroup& look, GroupSettings& settings)
 {
@@ -73,7 +72,7 @@ bool visible_cell(const ColorGroup& look, GroupSettings& settings)
     return changed;
 }
 
-/// Another group to belong to; one that is not below this one.
+/// Chooses another parent, which must not be below this group.
 bool parent_menu(uint8_t group, const Model& model, GroupSettings& settings)
 {
     int parent = settings.parent;
@@ -85,7 +84,7 @@ bool parent_menu(uint8_t group, const Model& model, GroupSettings& settings)
     return true;
 }
 
-/// The name chooses the group; a right click renames it and finds its place in the tree.
+/// A click on the name chooses the group; a right click opens its name and its parent for editing.
 bool name_cell(const Row& row, const Model& model, const ColorGroup& look, GroupSettings& settings, Actions& actions)
 {
     const uint8_t group = row.group;
@@ -173,7 +172,7 @@ void show_row(const Row& row, const Model& model, Actions& actions)
     ImGui::PopID();
 }
 
-/// Groups without a key and a row.
+/// Chooses a group that has neither a key nor a row.
 void other_group(const Model& model, Actions& actions)
 {
     int group = model.brush.group;

@@ -53,7 +53,7 @@ bool begin_list(const char* id)
     return true;
 }
 
-/// The bindings under headings; they stand in the table by group.
+/// The bindings under headings; the table is ordered by group.
 void key_list(std::span<const KeyBinding> bindings)
 {
     const char* group = "";
@@ -69,7 +69,7 @@ void mouse_list()
     for (const Gesture& gesture : GESTURES) row(gesture.what, gesture.meaning);
 }
 
-/// The first binding of a group, near the middle: both columns become about equally long.
+/// The first binding of a group near the middle, so that both columns are about equally long.
 size_t middle(std::span<const KeyBinding> bindings)
 {
     size_t at = bindings.size() / 2 + std::size(GESTURES) / 2;

@@ -34,7 +34,7 @@ struct ItemState {
     bool is_enabled = true;
 };
 
-/// The item of a key: what it is called, and what it does.
+/// The menu item of a key binding.
 void key_item(const char* name, const Model& model, Actions& actions, const ItemState& state = {})
 {
     const KeyBinding& binding = binding_named(name);
@@ -42,7 +42,7 @@ void key_item(const char* name, const Model& model, Actions& actions, const Item
         actions.push_back(binding.action(model, 1.0));
 }
 
-/// Keys that go on while they are held: buttons, since an item would close the menu at every step.
+/// Keys that act while held are buttons here, since an item would close the menu at every step.
 void key_buttons(const char* group, const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu(group)) return;
@@ -77,7 +77,7 @@ void file_menu(OpenDialog& dialog, const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
-/// Outside of the menu, which is closed while this is open.
+/// Call outside the menu, which is closed while this is open.
 void open_dialog(OpenDialog& dialog, Actions& actions)
 {
     if (dialog.is_asked_for) ImGui::OpenPopup(OPEN_TITLE);
@@ -110,7 +110,7 @@ void edit_menu(const Model& model, Actions& actions)
 
 // ---- View
 
-/// What is drawn along one axis, in voxels; both ends can be dragged.
+/// The visible range along one axis, in voxels; both ends can be dragged.
 void cut_range(int axis, const Model& model, Actions& actions)
 {
     const double size = std::max(double(model.volume.size[axis]), 1.0);

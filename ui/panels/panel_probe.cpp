@@ -15,7 +15,7 @@ namespace {
 
 constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
 
-/// Intensities of whole numbers need no decimals.
+/// Integer intensities need no decimals.
 const char* format_of(VoxelType type)
 {
     return is_float(type) ? "%.4g" : "%.0f";
@@ -91,7 +91,7 @@ bool connectivity(PaintOp& brush)
     return brush.connectivity != was;
 }
 
-/// Offsets that make faint structures as visible as bright ones.
+/// Settings of density painting, which makes faint structures as visible as bright ones.
 bool density(const Model& model, PaintOp& brush)
 {
     bool is_on = brush.density.has_value();
@@ -233,13 +233,13 @@ void touch(const Model& model, const ServoState& servo)
     }
 }
 
-/// Logarithmic, since one late tick in a million is to be seen.
+/// Logarithmic, so that one late tick in a million is visible.
 void lateness_plot(const TimeHistogram& lateness)
 {
     std::array<float, TimeHistogram::BINS> heights{};
     for (size_t bin = 0; bin < heights.size(); ++bin) heights[bin] = std::log1p(float(lateness.counts[bin]));
     const ImVec2 size{ImGui::GetContentRegionAvail().x, 2.2f * ImGui::GetFontSize()};
-    // Disabled plots have no tooltip of their own, which would tell the logarithms.
+    // A disabled plot does not show its own tooltip, which would give the logarithms.
     ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
     ImGui::BeginDisabled();
     ImGui::PlotHistogram("##lateness", heights.data(), int(heights.size()), 0, nullptr, 0.0f, FLT_MAX, size);

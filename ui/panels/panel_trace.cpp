@@ -1,4 +1,4 @@
-// Tracing: which tool the right button is, what there is of the trace, and what is selected.
+// Tracing: the tool of the right button, the size of the trace, and the selection.
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ void group_of_selected(const Model& model, uint8_t group)
     ImGui::Text("%d, %s", int(group), look.name.c_str());
 }
 
-/// Applied when the field is left or the mouse let go: one step of the history each.
+/// Applied when the field loses focus or the mouse is released: one step of the history each.
 void radius(const Model& model, double radius_units, Actions& actions)
 {
     static double edited = 0.0;
@@ -155,7 +155,7 @@ void buttons(const Model& model, Actions& actions)
     ImGui::EndDisabled();
 }
 
-/// The internodes of the chosen group taper from node to node, or have a size of their own.
+/// Whether the internodes of the chosen group taper from node to node or have their own radius.
 void tapering(const Model& model, Actions& actions)
 {
     if (model.trace.internodes().empty() || model.brush.group == 0) return;

@@ -18,9 +18,9 @@ using Points = std::vector<ControlPoint>;
 
 constexpr float HEIGHT = 150.0f / 14.0f;  ///< of the curve, in font sizes
 constexpr float POINT_RADIUS = 0.36f;     ///< in font sizes
-constexpr float MARGIN = 0.65f;           ///< around the axes, for whole circles at the rim
-constexpr float REACH = 0.65f;            ///< so near the mouse takes hold of something, in font sizes
-constexpr float COLUMN = 2.0f;            ///< pixels of the coloured area with one colour
+constexpr float MARGIN = 0.65f;           ///< around the axes, so that circles at the edge are whole
+constexpr float REACH = 0.65f;            ///< the mouse grabs things within this distance, in font sizes
+constexpr float COLUMN = 2.0f;            ///< width of one colour in the coloured area, in pixels
 constexpr float STROKE = 0.11f;           ///< in font sizes
 
 constexpr ImU32 BACKGROUND = IM_COL32(26, 26, 26, 255);
@@ -29,16 +29,16 @@ constexpr ImU32 LINE = IM_COL32(225, 225, 225, 255);
 constexpr ImU32 PAINT_LINE = IM_COL32(240, 184, 90, 255);
 constexpr ImU32 FELT_LINE = IM_COL32(120, 200, 150, 255);
 
-/// What the mouse holds.
+/// What the mouse is dragging.
 enum class Grip { nothing, point, all_points, paint_threshold, haptic_threshold };
 
-/// Of the widget, between frames. Everything else is the session's.
+/// The widget's state between frames. Everything else belongs to the session.
 struct WidgetState {
     Grip grip = Grip::nothing;
     size_t selected = 0;
-    double lower = 0.0, upper = 1.0;  ///< of the horizontal axis; stays while something is held
-    double grabbed_at = 0.0;          ///< intensity under the mouse when all points were last moved
-    ImVec2 offset;                    ///< from the mouse to the middle of what it took hold of
+    double lower = 0.0, upper = 1.0;  ///< of the horizontal axis; fixed while dragging
+    double grabbed_at = 0.0;          ///< intensity under the mouse when it last moved all points
+    ImVec2 offset;                    ///< from the mouse to the centre of the grabbed item
 };
 
 /// The widget's rectangle: intensities from left to right, the square root of the opacity upwards.
@@ -65,7 +65,7 @@ struct Canvas {
     ImVec2 place_of(const ControlPoint& point) const { return {x_of(point.intensity), y_of(point.opacity)}; }
 };
 
-/// As Dear ImGui shows and edits it: sRGB.
+/// sRGB, as Dear ImGui shows and edits colours.
 ImVec4 encoded(const glm::dvec3& linear, float alpha)
 {
     const auto encode = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
@@ -78,7 +78,7 @@ Points points_of(const Model& model)
     return {points.begin(), points.end()};
 }
 
-/// A transfer function refuses what lies outside its limits.
+/// Clamps points first: a transfer function refuses values outside its limits.
 void send(Points points, Actions& actions)
 {
     for (ControlPoint& point : points) {
@@ -89,7 +89,7 @@ void send(Points points, Actions& actions)
     actions.push_back(SetTransferFunction{TransferFunction(std::move(points))});
 }
 
-/// Both the volume's intensities and the function's are seen.
+/// The axis covers both the volume's and the function's intensities.
 void choose_axis(const Model& model, WidgetState& state)
 {
     const TransferFunction& function = model.session.transfer_function;
@@ -115,7 +115,7 @@ void draw_histogram(const Canvas& canvas, const VolumeStatistics& statistics, Im
     }
 }
 
-/// The area below the function in its colours.
+/// The area below the curve, in the function's colours.
 void draw_area(const Canvas& canvas, const TransferFunction& function, ImDrawList& list)
 {
     for (float x = canvas.begin.x; x < canvas.end.x; x += COLUMN) {
@@ -126,7 +126,7 @@ void draw_area(const Canvas& canvas, const TransferFunction& function, ImDrawLis
     }
 }
 
-/// Straight in opacity, and so curved on this axis.
+/// Segments are linear in opacity, and so curved on this axis.
 void draw_line(const Canvas& canvas, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
@@ -153,7 +153,7 @@ void draw_points(const Canvas& canvas, const Points& points, size_t selected, Im
     }
 }
 
-/// Its word stands beside the line, on the side with room; `row` 0 is the topmost.
+/// The label is beside the line, on the side with room; `row` 0 is the topmost.
 void draw_threshold(const Canvas& canvas, double intensity, const char* word, float row, ImU32 color, ImDrawList& list)
 {
     const float x = canvas.x_of(intensity);
@@ -183,7 +183,7 @@ void draw(const Canvas& canvas, const Model& model, size_t selected)
     draw_points(canvas, points, selected, list);
 }
 
-// ---- Taking hold, and moving
+// ---- Grabbing and dragging
 
 struct Found {
     Grip grip = Grip::nothing;
@@ -205,7 +205,7 @@ Found under_mouse(const Canvas& canvas, const Model& model, const ImVec2& mouse)
     const float to_paint = std::abs(canvas.x_of(model.brush.threshold) - mouse.x);
     const float to_felt = std::abs(canvas.x_of(model.haptic_threshold) - mouse.x);
     if (std::min(to_paint, to_felt) > 0.6f * reach) return found;
-    // Where both lie on each other, the one whose word is hit.
+    // If both lines coincide, the one whose label is hit.
     const bool is_felt_row = mouse.y > canvas.begin.y + 1.25f * ImGui::GetFontSize();
     const bool is_paint = to_paint == to_felt ? !is_felt_row : to_paint < to_felt;
     return {is_paint ? Grip::paint_threshold : Grip::haptic_threshold, 0};
@@ -216,7 +216,7 @@ void add_point(const Canvas& canvas, const ImVec2& mouse, Points points, WidgetS
     const double intensity = canvas.intensity_at(mouse.x);
     const TransferFunction function(points);
     ControlPoint added{.intensity = intensity, .opacity = canvas.opacity_at(mouse.y)};
-    // Outside there is no colour; the end's goes on.
+    // The function has no colour outside its points, so the end's colour continues.
     added.color = glm::dvec3(function.at(std::clamp(intensity, function.lower(), function.upper())));
     const auto after = std::upper_bound(points.begin(), points.end(), intensity,
                                         [](double value, const ControlPoint& p) { return value < p.intensity; });
@@ -233,7 +233,7 @@ void remove_point(size_t point, Points points, WidgetState& state, Actions& acti
     send(std::move(points), actions);
 }
 
-/// Between its neighbours, so that its index stays.
+/// Clamped between its neighbours, so that its index stays the same.
 double held_between_neighbors(const Points& points, size_t index, double intensity)
 {
     const double lower = index > 0 ? points[index - 1].intensity : -double(FLT_MAX);
@@ -249,7 +249,7 @@ void move_point(const Canvas& canvas, const ImVec2& mouse, Points points, size_t
     if (!(points[index] == was)) send(std::move(points), actions);
 }
 
-/// Some of the function stays over the volume's intensities.
+/// Keeps part of the function within the volume's intensities.
 void move_all(const Model& model, double shift, Actions& actions)
 {
     Points points = points_of(model);
@@ -351,7 +351,7 @@ void shading_and_help(const Model& model, Actions& actions)
         "moves all points. The lines \"paint\" and \"feel\" are the thresholds; drag them too.");
 }
 
-/// Numbers of the point that was touched last.
+/// Number fields of the point last touched.
 void edit_point(const Model& model, size_t index, Actions& actions)
 {
     Points points = points_of(model);
@@ -377,7 +377,7 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     if (changed) send(std::move(points), actions);
 }
 
-/// Replaces the whole function by one that is made for the volume.
+/// Replaces the whole function by a preset fitted to the volume.
 void preset_list(const Model& model, Actions& actions)
 {
     ImGui::SetNextItemWidth(-1.0f);
@@ -404,7 +404,7 @@ void transfer_function_panel(const Model& model, Actions& actions)
         ImGui::TextWrapped("There is no transfer function, so nothing is visible.");
     } else {
         state.selected = std::min(state.selected, count - 1);
-        const size_t edited = state.selected;  // of the points as they are in this frame
+        const size_t edited = state.selected;  // an index into this frame's points
         curve(model, state, actions);
         shading_and_help(model, actions);
         edit_point(model, edited, actions);

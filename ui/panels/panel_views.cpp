@@ -1,4 +1,4 @@
-// The panes of the window, and what there is to choose about them.
+// The window's panes and their settings.
 
 #include <algorithm>
 

@@ -10,7 +10,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The first that is there; otherwise the font that Dear ImGui brings.
+/// The first that exists; otherwise Dear ImGui's own font.
 constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
                                  "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
@@ -81,7 +81,7 @@ void set_colors(ImVec4* colors)
     colors[ImGuiCol_ResizeGripHovered] = colors[ImGuiCol_ResizeGripActive] = accent(0.9f);
 }
 
-/// Where the atlas is on the device already, a font added to it would never be seen.
+/// Once the atlas is on the device, a font added to it would have no effect.
 void load_font(double content_scale)
 {
     ImGuiIO& io = ImGui::GetIO();
@@ -118,7 +118,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
                                    ImGuiWindowFlags_AlwaysVerticalScrollbar;
     ImGui::Begin("Side panel", nullptr, flags);
     section("Probe and painting", true, probe_panel, model, actions);
-    // While painting, the transfer function needs the room; while tracing the section is open, even if it was folded.
+    // While painting, the transfer function needs the space; while tracing, this section opens even if it was folded.
     if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
     section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);

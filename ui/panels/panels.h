@@ -1,25 +1,25 @@
 #pragma once
-// What is drawn beside and around the graphics window. Each function draws state and returns what the person asked for;
-// none changes anything but its own widgets. Called between Window::begin_ui and Window::present, main thread.
+// The panels around the graphics window. Each function draws state and returns the user's actions; none changes
+// anything but its own widgets. Call between Window::begin_ui and Window::present, main thread.
 
 #include "ui/action.h"
 #include "ui/model.h"
 
 namespace shvr::ui {
 
-/// Where the graphics window is left free, in pixels of the frame buffer.
+/// The area left for the graphics window, in pixels of the frame buffer.
 struct Layout {
     glm::uvec2 begin{0}, end{0};
 };
 
-/// The dark, even look of all panels, and a readable font. Once, before the window is attached: that takes the font
-/// along.
+/// The dark, even look of all panels, and a readable font. Call once, before the window is attached, since that uploads
+/// the font.
 void set_style(double content_scale);
 
-/// Menu bar, side panel, status bar and, when asked for, the help window; adds to `actions`. Returns what is left.
+/// Draws the menu bar, side panel, status bar and, if open, the help window; adds to `actions`. Returns the area left.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// The parts of the side panel, each in a file of its own.
+// The parts of the side panel, each in its own file.
 void probe_panel(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);

@@ -10,15 +10,15 @@ namespace shvr::ui {
 /// A tooltip for the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
 
-/// Labels stand at the left in one column, what belongs to them beside: text, or something with a frame.
+/// Labels form one column at the left, with their text or framed widget beside them.
 void text_label(const char* text);
 void label(const char* text);
 
-/// A slider in the width of a panel, of a value that stays within its ends.
+/// A slider as wide as the panel, for a value within its limits.
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
 
-/// A unit as a person writes it.
+/// A unit in its usual notation.
 const char* spelled(const std::string& unit);
 
 }  // namespace shvr::ui

@@ -16,7 +16,7 @@ namespace shvr {
 bool is_mask_export(const std::filesystem::path& path);
 
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
-/// is what a label image states besides.
+/// holds the further metadata of a label image.
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                  const LabelImage& image = {});
 

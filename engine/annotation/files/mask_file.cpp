@@ -36,7 +36,7 @@ std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const 
     const FileDescriptor file = open_voxels(path, size, 1, ".mask");
     const glm::i64vec3 counts = (size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE);
     std::vector<MaskBrickChange> changes;
-    std::vector<std::vector<MaskRun>> layer(size_t(counts.x * counts.y));  // of bricks; their runs so far
+    std::vector<std::vector<MaskRun>> layer(size_t(counts.x * counts.y));  // the runs of each brick so far
     std::vector<uint8_t> bytes;
     for_each_strip(size, [&](const VoxelStrip& strip) {
         bytes.resize(strip.voxels());

@@ -10,7 +10,7 @@ namespace shvr {
 /// Written to a temporary file beside `path`, synced and renamed, row by row: a failed save leaves the old file.
 void save_mask(const std::filesystem::path& path, const Mask& mask);
 
-/// Fails, naming both sizes, where the file does not hold exactly one byte per voxel of `size`.
+/// Fails, naming both sizes, if the file does not hold exactly one byte per voxel of `size`.
 /// Returns records, so that loading is a command like any other.
 std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const Size3& size);
 

@@ -16,7 +16,7 @@ std::filesystem::path mask_image_path(const std::filesystem::path& mask);
 /// folders, which state the hash themselves.
 void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash);
 
-/// Fails where the mask was painted on an image with another hash, or MASK.json is malformed. Accepts an empty hash,
+/// Fails if the mask was painted on an image with another hash, or MASK.json is malformed. Accepts an empty hash,
 /// and a mask without MASK.json.
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash);
 

@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// The records that turn an unpainted mask into this one. Fails where its size or stated spacing differs (naming both),
+/// The records that turn an unpainted mask into this one. Fails if its size or stated spacing differs (naming both),
 /// and where its voxels are not unsigned bytes.
 std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);
 /// Saves in the form that the path names: raw bytes where `export_mask` does not know it. Fails for forms that can only

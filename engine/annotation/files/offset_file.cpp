@@ -81,7 +81,7 @@ DensityField load_offsets(const std::filesystem::path& path, const Size3& size, 
     const FileDescriptor file = open_voxels(path, size, bytes, ".offset");
     DensityField field(size, type);
     const glm::i64vec3 counts = field.brick_counts();
-    std::map<int64_t, OffsetBrick> layer;  // of bricks, so far
+    std::map<int64_t, OffsetBrick> layer;  // bricks read so far
     std::vector<std::byte> content;
     for_each_strip(size, [&](const VoxelStrip& strip) {
         content.resize(strip.voxels() * size_t(bytes));

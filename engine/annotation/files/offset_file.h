@@ -11,8 +11,8 @@ namespace shvr {
 /// Written to a temporary file beside `path`, synced and renamed, row by row: a failed save leaves the old file.
 void save_offsets(const std::filesystem::path& path, const DensityField& field);
 
-/// Fails where the file's size is not that of such a volume's offsets (naming both), and where an offset is not finite
-/// or beyond `offset_limit`.
+/// Fails if the file's size is not that of such a volume's offsets (naming both), or if an offset is not finite or
+/// beyond `offset_limit`.
 DensityField load_offsets(const std::filesystem::path& path, const Size3& size, VoxelType type);
 
 }  // namespace shvr

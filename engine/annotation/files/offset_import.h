@@ -10,9 +10,9 @@
 
 namespace shvr {
 
-/// The offsets for a volume of `type`; what `export_offsets` writes comes back bit for bit. Fails where size or stated
-/// spacing differ (naming both), where an offset is not finite or beyond `offset_limit`, and where an offset for a
-/// volume of integers is not a whole number.
+/// The offsets for a volume of `type`; files of `export_offsets` are restored bit for bit. Fails if the size or stated
+/// spacing differs (naming both), if an offset is not finite or beyond `offset_limit`, or if an offset for a volume of
+/// integers is not a whole number.
 DensityField import_offsets(const std::filesystem::path& path, const TraceSpace& space, VoxelType type);
 
 /// Saves in the form that the path names: raw numbers where `export_offsets` does not know it. Fails for forms that can

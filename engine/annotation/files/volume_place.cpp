@@ -32,7 +32,7 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
         fail(path.string(), ": is ", what, " of ", digits_of(found.size), " voxels; expected ", digits_of(space.size),
              ", the size of this volume");
     const std::string unit = plain_unit(found.unit);
-    // What is not stated cannot be wrong.
+    // A unit that is not stated cannot disagree.
     if (unit == "voxel" || space.unit == "voxel") return;
     const std::optional<double> from = micrometres_in(unit), to = micrometres_in(space.unit);
     const double factor = from && to ? *from / *to : 1.0;

@@ -11,10 +11,10 @@ namespace shvr {
 /// do not.
 bool states_its_size(const std::filesystem::path& path);
 
-/// Fails, naming both, where the size or stated spacing of `found` differs. `what`: "a mask".
+/// Fails, naming both, if the size or stated spacing of `found` differs. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
-/// What describes a volume of annotation, "mask" or "offsets", beside the annotated one: the same place, other voxels.
+/// Describes a volume of annotation, "mask" or "offsets", in the same place as the annotated one.
 VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type);
 
 }  // namespace shvr

@@ -13,7 +13,7 @@ namespace shvr {
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind)
 {
-    // Without O_NONBLOCK, opening a FIFO waits for a writer before we can see that it is one.
+    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

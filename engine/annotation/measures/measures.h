@@ -21,7 +21,7 @@ struct SegmentMeasures {
     size_t internodes = 0;
     double length = 0.0;
     double chord = 0.0;                ///< distance of its two ends; 0 for a loop
-    std::optional<double> tortuosity;  ///< length / chord, 1 where straight; nothing where the chord is 0
+    std::optional<double> tortuosity;  ///< length / chord, 1 where straight; nothing if the chord is 0
     double radius_mean = 0.0;          ///< along its length
     double radius_least = 0.0, radius_most = 0.0;
 };
@@ -54,9 +54,9 @@ TraceMeasures measure(const TraceGraph& trace);
 Topology topology_of(const TraceGraph& trace);
 
 /// Of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners (26), unpainted
-/// ones over faces (6); what lies outside the volume is unpainted. b1 comes from the Euler characteristic of the union
-/// of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
-/// and memory in proportion to the box of bricks that the voxels lie in; fails where that has more than 2^36 voxels.
+/// ones over faces (6); voxels outside the volume are unpainted. b1 comes from the Euler characteristic of the union of
+/// the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
+/// and memory in proportion to the box of bricks that the voxels lie in; fails if that has more than 2^36 voxels.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).

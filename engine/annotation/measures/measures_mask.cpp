@@ -1,6 +1,5 @@
-// The topology of a mask, slice by slice, over rows of bits. Runs of equal voxels are what union-find joins (Rosenfeld
-// and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays); the Euler characteristic counts cells by population
-// counts.
+// The topology of a mask, slice by slice, over rows of bits. Union-find joins runs of equal voxels (Rosenfeld and
+// Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays); the Euler characteristic counts cells by population counts.
 
 #include <algorithm>
 #include <bit>
@@ -55,7 +54,7 @@ struct Run {
     uint32_t set;
 };
 
-/// Where the next bit that is `value` is, from `at` on; `width` where there is none.
+/// Position of the next bit equal to `value`, from `at` on; `width` if there is none.
 int64_t find(const uint64_t* row, int64_t at, int64_t width, bool value)
 {
     while (at < width) {
@@ -66,7 +65,7 @@ int64_t find(const uint64_t* row, int64_t at, int64_t width, bool value)
     return width;
 }
 
-/// Joins runs of two neighbouring rows that meet; `reach` 1 lets them meet over an edge or a corner, too.
+/// Joins runs of two neighbouring rows that touch; with `reach` 1 edges and corners count, too.
 void join_rows(const std::vector<Run>& a, const std::vector<Run>& b, int64_t reach, Sets& sets)
 {
     for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
@@ -75,7 +74,7 @@ void join_rows(const std::vector<Run>& a, const std::vector<Run>& b, int64_t rea
     }
 }
 
-/// The rows of one slice, of one row more than the mask's box on each side.
+/// The rows of one slice, with one extra row on each side of the mask's box.
 struct Slice {
     Words bits;                                        ///< painted
     std::vector<std::vector<Run>> painted, unpainted;  ///< by row
@@ -151,8 +150,8 @@ private:
         return slice;
     }
 
-    /// Cells between `last` and `next`, and those of `next` that lie within the slice. A cell is there where a cube
-    /// that it bounds is. Bit x of a shifted word stands for the plane between x - 1 and x.
+    /// Cells between `last` and `next`, and those of `next` that lie within the slice. A cell counts if any cube that
+    /// it bounds does. Bit x of a shifted word stands for the plane between x - 1 and x.
     void count_cells(const Slice& last, const Slice& next)
     {
         for (int64_t y = 1; y < size_.y; ++y) {
@@ -179,8 +178,8 @@ private:
 
     const Mask& mask_;
     std::optional<uint8_t> group_;
-    Size3 lower_, upper_;  ///< the box that holds what is painted
-    Size3 size_;           ///< with a layer around it
+    Size3 lower_, upper_;  ///< the bounding box of the painted voxels
+    Size3 size_;           ///< of that box, with one layer around it
     Sets parts_, gaps_;
     int64_t euler_ = 0;
 };

@@ -1,4 +1,4 @@
-// Comparison of two traces as graphs. trace_score.h says what is counted.
+// Comparison of two traces as graphs. trace_score.h defines the counts.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ size_t degree(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size();
 }
 
-/// Which kind of place a node is: branches pair with branches first, ends with ends.
+/// The kind of a node: branches pair with branches first, ends with ends.
 int kind_of(const TraceGraph& trace, uint32_t node)
 {
     return int(std::min<size_t>(degree(trace, node), 3));
@@ -47,19 +47,19 @@ public:
     }
 
 private:
-    /// How far apart samples are: half of what is still near, about.
+    /// Distance between samples: about half of what still counts as near.
     double step_of(const TraceInternode& internode) const
     {
         const double radius = std::min(trace_.radius_of(internode, 0.0), trace_.radius_of(internode, 1.0));
         return std::max({(radius + slack_) / 2.0, trace_.length_of(internode) / 64.0, 1e-300});
     }
 
-    /// Each branch or end of the truth with one node of the trace, and no node with two.
+    /// Pairs each branch or end of the truth with at most one node of the trace, and no node twice.
     void pair_nodes()
     {
         TraceIndex index;
         for (const auto& [number, node] : trace_.nodes()) index.set(number, node.position);
-        std::vector<std::tuple<bool, double, uint32_t, uint32_t>> pairs;  // other kind, distance, truth, trace
+        std::vector<std::tuple<bool, double, uint32_t, uint32_t>> pairs;  // kinds differ, distance, truth, trace
         for (const auto& [key, node] : truth_.nodes()) {
             if (degree(truth_, key) == 2 || degree(truth_, key) == 0) continue;
             for (const uint32_t near : index.within(node.position, node.radius + largest_radius_ + slack_)) {
@@ -76,7 +76,7 @@ private:
         }
     }
 
-    /// For each segment of the truth the internodes of the trace that stay near it.
+    /// Finds, for each segment of the truth, the internodes of the trace that stay near it.
     void find_near()
     {
         near_.resize(course_.segments().size());
@@ -105,8 +105,8 @@ private:
         return covers(s, ways_between(near_[s], from->second, to->second));
     }
 
-    /// The internodes of all ways from one node to the other that stay among `internodes` and pass no other paired
-    /// node; empty where there is none.
+    /// The internodes of all paths between two nodes that use only `internodes` and pass no other paired node; empty if
+    /// there is no such path.
     std::vector<uint32_t> ways_between(const std::vector<uint32_t>& internodes, uint32_t from, uint32_t to) const
     {
         std::set<uint32_t> reached{from}, passed;
@@ -126,7 +126,7 @@ private:
         return core_of({passed.begin(), passed.end()}, {from, to});
     }
 
-    /// What is left once everything with a loose end, but for `kept` ends, is taken away, again and again.
+    /// The internodes left after removing loose ends, except `kept` ones, repeatedly.
     std::vector<uint32_t> core_of(const std::vector<uint32_t>& internodes, const std::set<uint32_t>& kept = {}) const
     {
         std::map<uint32_t, std::set<uint32_t>> ends;
@@ -152,7 +152,7 @@ private:
         return {core.begin(), core.end()};
     }
 
-    /// Whether these internodes come near every place of a segment.
+    /// Whether these internodes come near every point of a segment.
     bool covers(size_t s, const std::vector<uint32_t>& internodes) const
     {
         if (internodes.empty()) return false;
@@ -175,15 +175,15 @@ private:
         return true;
     }
 
-    /// A part of a truth's segment that a segment of the trace goes along.
+    /// A part of a segment of the truth that a segment of the trace follows.
     struct Stretch {
         size_t trace_segment;
         uint32_t low_end, high_end;  ///< of the trace's segment
         double from, to, tolerance;
     };
 
-    /// Which truth's segment each place of a segment belongs to: of all that change segments only where the truth does,
-    /// the one with the least sum of squared distances (Viterbi 1967). Empty where there is none.
+    /// Assigns each sample of a segment to a segment of the truth: among all assignments that change segments only
+    /// where the truth does, the one with the smallest sum of squared distances (Viterbi 1967). Empty if there is none.
     std::vector<TraceCourse::Near> follow(const std::vector<TraceSample>& samples) const
     {
         struct State {
@@ -218,7 +218,7 @@ private:
         return followed;
     }
 
-    /// The same segment, or another one that meets it in a node near the sample.
+    /// Whether `b` is the same segment as `a`, or meets it in a node near the sample.
     bool goes_over(size_t a, size_t b, const TraceSample& sample) const
     {
         if (a == b) return true;
@@ -226,7 +226,7 @@ private:
         for (const uint32_t end : {from.nodes.front(), from.nodes.back()}) {
             if (end != to.nodes.front() && end != to.nodes.back()) continue;
             const TraceNode& node = truth_.node(end);
-            // A step on either side belongs to the place where they meet.
+            // A step on either side belongs to the meeting point.
             const double reach = sample.radius + node.radius + slack_ + (sample.radius + slack_) / 2.0;
             if (glm::length(node.position - sample.position) <= reach) return true;
         }
@@ -265,7 +265,7 @@ private:
         for (auto& [segment, along] : stretches) result.doubled += count_doubled(along);
     }
 
-    /// Stretches that share more than what belongs to the places where they end, or that join the same two nodes.
+    /// Counts stretches that overlap beyond the surroundings of their ends, or that join the same two nodes.
     static int64_t count_doubled(std::vector<Stretch>& along)
     {
         std::ranges::sort(along, {}, &Stretch::from);
@@ -299,7 +299,7 @@ private:
             for (const uint32_t key : keys.within(node.position, node.radius + largest + slack_)) {
                 const TraceNode& truth = truth_.node(key);
                 if (glm::length(truth.position - node.position) > node.radius + truth.radius + slack_) continue;
-                if (other == paired_.at(key)) continue;  // just begun there
+                if (other == paired_.at(key)) continue;  // it only begins there
                 ++gaps;
                 break;
             }
@@ -309,7 +309,7 @@ private:
 
     void measure_distance(TraceComparison& result) const
     {
-        constexpr int PARTS = 16;  // of each internode: their middles
+        constexpr int PARTS = 16;  // samples of each internode, at the middle of each part
         double sum = 0.0, length_sum = 0.0, most = 0.0;
         for (const auto& [number, internode] : trace_.internodes()) {
             const glm::dvec3 a = trace_.node(internode.a).position, b = trace_.node(internode.b).position;

@@ -33,7 +33,7 @@ public:
     };
     /// The segments within `slack` of touching a ball, each at its nearest position; ascending.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
-    /// Distance to the nearest position of any segment; infinite where there is none.
+    /// Distance to the nearest position of any segment; infinite if there is none.
     double distance_to(const glm::dvec3& position) const;
 
 private:

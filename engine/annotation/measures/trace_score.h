@@ -32,7 +32,7 @@ private:
 Dice dice_of(const Mask& a, const Mask& b);
 
 struct BallScores {
-    std::optional<double> mean;  ///< of the shares; nothing where there is no ball
+    std::optional<double> mean;  ///< of the shares; nothing if there is no ball
     int64_t out = 0;             ///< balls with less than half of their voxels in the mask
     int64_t total = 0;
 };
@@ -47,13 +47,13 @@ BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const gl
 /// A position of a trace is *near* one of the truth where their balls are within `slack` of touching.
 struct TraceComparison {
     /// Of the truth's segments. Found: both ends have a node of the trace near them (each end its own, the nearest
-    /// first, branches before others), and the ways between these two that stay near the segment and pass no other such
-    /// node pass all of it. A segment that is traced in part is not found.
+    /// first, branches before others), and the paths between these two that stay near the segment and pass no other
+    /// such node pass all of it. A segment that is traced in part is not found.
     int64_t segments_found = 0, segments_total = 0;
     /// Segments of the trace (cut at those nodes) that leave the truth or go over to a segment that does not begin
     /// there.
     int64_t wrong = 0;
-    /// Segments that go along a part of the truth which another one goes along, too.
+    /// Segments that follow a part of the truth that another segment follows, too.
     int64_t doubled = 0;
     /// Ends of the trace near a branch of the truth that is traced, but not joined to it.
     int64_t gaps = 0;

@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// For what an operation does not state.
+/// Defaults for values that an operation does not state.
 struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< of the volume
     double radius_voxels = 6.0;  ///< the probe's
@@ -23,7 +23,7 @@ struct TraceEffect {
     std::optional<TraceSelection> selection;  ///< the new selection
 };
 
-/// Fails where the operation cannot be carried out, or its target is farther away than it allows.
+/// Fails if the operation cannot be carried out, or its target is farther away than it allows.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
 }  // namespace shvr

@@ -21,7 +21,7 @@ std::vector<TraceChange> move_selected(const TraceGraph& trace, const glm::dvec3
 /// that are not branches.
 std::vector<TraceChange> delete_selected(const TraceGraph& trace);
 std::vector<TraceChange> set_group_of_selected(const TraceGraph& trace, uint8_t group);
-/// Of the selected node, or of the nodes of the segment. A single internode has no radius of its own.
+/// Of the selected node, or of the nodes of the segment. A single internode does not have its own radius.
 std::vector<TraceChange> set_radius_of_selected(const TraceGraph& trace, double radius);
 
 /// Of all nodes of a group.
@@ -29,11 +29,11 @@ std::vector<TraceChange> set_node_radii(const TraceGraph& trace, uint8_t group, 
 /// Of all internodes of a group; without a radius they taper from node to node.
 std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t group, std::optional<double> radius);
 
-/// What `TraceGraph::select` takes.
+/// The argument of `TraceGraph::select`.
 TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// The nearest of the selected node's internodes, since among many close ones a person means one of this node.
+/// The nearest of the selected node's internodes, since among many close ones the user means one of this node.
 TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// The segment of the selected internode, or of the selected node where it lies on one only.
+/// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);
 
 }  // namespace shvr

@@ -44,7 +44,7 @@ struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< where the file states all of this
 };
-/// At most 256 MiB and 4 million nodes. Fails where a stated size, spacing or unit (RSML: no length) is not
+/// At most 256 MiB and 4 million nodes. Fails if a stated size, spacing or unit (RSML: no length) is not
 /// `expected`'s.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 

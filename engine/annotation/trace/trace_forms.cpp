@@ -24,7 +24,7 @@ std::optional<double> finite_of(std::string_view word)
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// Sets of nodes that are joined (union by linking roots, halving paths).
+/// Union-find over nodes (linking roots, path halving).
 class Joined {
 public:
     uint32_t root_of(uint32_t node)
@@ -37,7 +37,7 @@ public:
         }
         return at->first;
     }
-    /// False where the two were joined already.
+    /// False if the two were joined already.
     bool join(uint32_t a, uint32_t b)
     {
         const uint32_t low = std::min(root_of(a), root_of(b)), high = std::max(root_of(a), root_of(b));

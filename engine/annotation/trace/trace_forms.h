@@ -1,5 +1,5 @@
 #pragma once
-// The forms behind trace_file.h, one pair of functions each, and what they share. Text in, text out: no files.
+// The formats behind trace_file.h, one pair of functions each, and their shared helpers. Text in, text out: no files.
 // Any thread may call these.
 
 #include <string>
@@ -17,7 +17,7 @@ std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space
 std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, Loops loops,
                              std::vector<std::string>& notes);
 
-/// What a file states of its volume; each may be missing.
+/// A file's statements on its volume; each may be missing.
 struct StatedSpace {
     std::optional<Size3> size;
     std::optional<glm::dvec3> spacing;
@@ -62,7 +62,7 @@ struct TraceTrees {
     std::vector<Place> places;         ///< depth first, roots (smallest numbers first) without an internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
-/// Fails where there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
+/// Fails if there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 // GraphML (Brandes et al. 2002; http://graphml.graphdrawing.org): nodes with x, y, z, radius and group, edges with a
-// group, and data of the graph for what else a trace holds. Numbers are in the ids: node "n7", edge "e3".
+// group, and data of the graph for everything else in a trace. Numbers are in the ids: node "n7", edge "e3".
 
 #include <charconv>
 #include <map>
@@ -21,7 +21,7 @@ void add_data(pugi::xml_node parent, const char* key, const std::string& value)
     data.text().set(value.c_str());
 }
 
-/// "n7" -> 7, where there is one way to write it.
+/// "n7" -> 7; accepts only the canonical spelling.
 std::optional<uint32_t> number_in(std::string_view id, char letter)
 {
     uint32_t number = 0;

@@ -82,7 +82,7 @@ void TraceIndex::search(const glm::dvec3& position, const double& most_squared, 
         const double beyond = position[axes_[middle]] - point.position[axes_[middle]];
         const Range left{range.begin, middle, beyond > 0.0 ? beyond * beyond : 0.0};
         const Range right{middle + 1, range.end, beyond < 0.0 ? beyond * beyond : 0.0};
-        // The nearer side is searched first, so that it shrinks what the other must reach.
+        // The nearer side is searched first, so that it shrinks the search radius for the other.
         ranges.push_back(beyond > 0.0 ? left : right);
         ranges.push_back(beyond > 0.0 ? right : left);
     }

@@ -3,7 +3,7 @@
 // built, and a list of those changed since, which is searched linearly and stays below a 32nd of the tree. So queries
 // between edits take microseconds, and rebuilding costs little per edit.
 //
-// One thread changes it; any number of threads may query while nobody does.
+// One thread changes it; any number of threads may query while none changes it.
 
 #include <cstdint>
 #include <map>

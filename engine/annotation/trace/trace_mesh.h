@@ -20,9 +20,9 @@ struct TracePart {
     std::vector<glm::dvec3> vertices;
     std::vector<glm::uvec3> triangles;
 };
-/// Empty where the radius is 0.
+/// Empty if the radius is 0.
 TracePart mesh_of(const TraceNode& node);
-/// Empty where the internode has no length or no radius.
+/// Empty if the internode has no length or no radius.
 TracePart mesh_of(const TraceGraph& trace, const TraceInternode& internode);
 
 /// Writes as AtomicWriter does, group by group.

@@ -1,7 +1,7 @@
 // RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io):
-// every tree is a plant; its first axis follows the longest way from the root, and what branches off is a root of its
-// own below the one it branches off from, beginning at the branch. Geometry is in pixels: voxels along x, on all three
-// axes, with `resolution` pixels to the unit.
+// every tree is a plant; its first axis follows the longest path from the root, and each side branch is a root nested
+// in the root it leaves, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
+// `resolution` pixels to the unit.
 
 #include <algorithm>
 #include <map>
@@ -14,16 +14,16 @@ namespace {
 
 struct Branch {
     uint32_t node;
-    double reach;  ///< length of the longest way on from here, with the way to here
+    double reach;  ///< length of the longest path onwards, including the internode to here
 };
 
-/// The children of each node, the one with the longest way on first.
+/// The children of each node, the one with the longest path onwards first.
 std::map<uint32_t, std::vector<Branch>> branches_of(const TraceGraph& trace, const TraceTrees& trees)
 {
     std::map<uint32_t, std::vector<Branch>> branches;
     for (auto place = trees.places.rbegin(); place != trees.places.rend(); ++place) {  // children come before parents
         std::vector<Branch>& children = branches[place->node];
-        std::reverse(children.begin(), children.end());  // as drawn
+        std::reverse(children.begin(), children.end());  // in drawing order
         std::stable_sort(children.begin(), children.end(),
                          [](const Branch& a, const Branch& b) { return a.reach > b.reach; });
         if (!place->internode) continue;
@@ -39,7 +39,7 @@ void add_text(pugi::xml_node parent, const char* name, const std::string& text)
     parent.append_child(name).text().set(text.c_str());
 }
 
-/// Along an axis, from the branch (or root) it begins at.
+/// Adds an axis, from the branch (or root) where it begins.
 void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<uint32_t>& nodes, double pixel)
 {
     pugi::xml_node properties = root.append_child("properties");

@@ -1,10 +1,10 @@
 // Reading RSML (trace_rsml.cpp writes it): metadata's unit and resolution, and of each root its polyline, its functions
-// "diameter" and "group" along the polyline, and its roots. Elements and attributes beyond these are passed over, as
-// other programs have many. A root below another one begins at the parent's node where its first point lies, or is
-// joined to the nearest one of them. All numbers are pixels (https://rootsystemml.github.io/format/metadata):
-// `resolution` of them make one `unit`. A unit that is "pixel" is a voxel along x, and so it is where neither is
-// stated; one that is left out is the volume's, and a resolution that is left out is 1. Lengths come out in the
-// volume's unit. Where no diameter is stated, a radius is one pixel.
+// "diameter" and "group" along the polyline, and its roots. Other elements and attributes are ignored, since other
+// programs write many. A nested root begins at the parent's node where its first point lies; otherwise it is joined to
+// the nearest node of the parent. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution`
+// of them make one `unit`. If the unit is "pixel", or neither is stated, a pixel is a voxel along x. A missing unit is
+// the volume's, and a missing resolution is 1. Lengths are converted to the volume's unit. Without a diameter the
+// radius is one pixel.
 
 #include <memory>
 #include "engine/annotation/trace/trace_forms.h"
@@ -24,7 +24,7 @@ pugi::xml_node child_named(const pugi::xml_node& parent, std::string_view name)
     return {};
 }
 
-/// An attribute "value", or the text.
+/// The attribute "value", or else the text.
 std::string value_of(const pugi::xml_node& node)
 {
     const pugi::xml_attribute value = node.attribute("value");
@@ -55,7 +55,7 @@ private:
     struct Axis {
         std::optional<uint32_t> last;
         bool is_parent = false;
-        TraceIndex index;  ///< of all, where roots begin at them
+        TraceIndex index;  ///< of all nodes, if nested roots need it
     };
     struct Waiting {
         pugi::xml_node root;
@@ -76,7 +76,7 @@ private:
         pixels_per_unit_ = *resolution;
     }
 
-    /// A unit that cannot be converted stays stated, which is refused where it is not the volume's.
+    /// A unit that cannot be converted is kept; it is refused later if it differs from the volume's.
     void take_unit(const std::string& unit)
     {
         const std::string lower = lower_case(unit);
@@ -95,7 +95,7 @@ private:
 
     double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }
 
-    /// In document's order, without recursion: nesting may be deep.
+    /// In document order, without recursion: nesting may be deep.
     void read_plant(const pugi::xml_node& plant)
     {
         std::vector<Waiting> waiting;
@@ -119,7 +119,7 @@ private:
     {
         for (const pugi::xml_node& function : child_named(root, "functions").children()) {
             if (name_of(function) != "function" || function.attribute("name").value() != name) continue;
-            // Along the length, or at equal distances: no sample is of a point.
+            // Functions over the length, or at equal distances, have no sample per point.
             if (std::string_view(function.attribute("domain").value()) != "polyline") continue;
             std::vector<std::string> samples;
             for (const pugi::xml_node& sample : function.children())

@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// Goes on from `internode` through `node` to where the segment ends, or to the internode it began with.
+/// Follows the segment from `internode` through `node` to its end, or to the internode it began with.
 void extend(const TraceGraph& trace, const std::set<uint32_t>& stops, TraceSegment& segment)
 {
     const uint32_t first = segment.internodes.front();
@@ -16,7 +16,7 @@ void extend(const TraceGraph& trace, const std::set<uint32_t>& stops, TraceSegme
         const std::span<const uint32_t> links = trace.internodes_of(node);
         if (links.size() != 2 || stops.contains(node)) return;
         const uint32_t next = links[0] == segment.internodes.back() ? links[1] : links[0];
-        if (next == first) return;  // a loop, of which `node` is where it began
+        if (next == first) return;  // a loop, which began at `node`
         segment.internodes.push_back(next);
         segment.nodes.push_back(trace.internode(next).other(node));
     }

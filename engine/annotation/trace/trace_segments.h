@@ -21,7 +21,7 @@ TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const 
 /// All of them, by their smallest internode. Nodes without internodes belong to none.
 std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
 
-/// What edits of the segment apply to: its internodes, and its nodes except branches, which other segments share.
+/// The targets of edits of the segment: its internodes, and its nodes except branches, which other segments share.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
 /// The distance of a point from an internode.

@@ -1,6 +1,6 @@
 // SWC (Cannon et al. 1998, "An on-line archive of reconstructed hippocampal neurons"): a sample a line,
-// "n type x y z radius parent", parents before children, parent -1 for a root. Written as the SWC+ and standardised
-// forms ask: numbers from 1 without gaps. The type is the colour group, since no code for neurites fits plants.
+// "n type x y z radius parent", parents before children, parent -1 for a root. Written as SWC+ and the standardised
+// form require: numbers from 1 without gaps. The type holds the colour group, since no neurite type fits plants.
 
 #include <map>
 
@@ -91,7 +91,7 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
         if (parent == nodes.end()) fail(where, ": parent is ", *sample.parent, "; expected -1 or a sample of the file");
         reader.add_internode(where, {parent->second, sample.node, reader.trace.node(sample.node).group});
     }
-    // Every sample has one parent at most, so that a loop is a sample that is its own ancestor.
+    // Every sample has at most one parent, so a loop is a sample that is its own ancestor.
     std::vector<std::string> notes;
     try {
         trees_of(reader.trace, Loops::refuse, "SWC", notes);

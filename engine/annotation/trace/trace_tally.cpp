@@ -14,7 +14,7 @@ bool is_inner(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size() == 2;
 }
 
-/// Goes along a segment, from an inner node over one of its internodes.
+/// Walks along a segment, from an inner node over one of its internodes.
 class Walker {
 public:
     Walker(const TraceGraph& trace, uint32_t node, uint32_t internode)
@@ -37,11 +37,11 @@ private:
 };
 
 struct Closed {
-    bool is_closed = false;  ///< the node lies on a loop of inner nodes alone
+    bool is_closed = false;  ///< the node lies on a loop of inner nodes only
     bool has_other = false;  ///< and so does the other node
 };
 
-/// Walks both ways at once, so that it ends after as many steps as the nearer end of the segment is away.
+/// Walks both ways at once, so the number of steps is the distance to the nearer end of the segment.
 Closed closed_segment_at(const TraceGraph& trace, uint32_t node, uint32_t other)
 {
     if (!is_inner(trace, node)) return {};
@@ -73,7 +73,7 @@ size_t inner_nodes_of(const TraceGraph& trace, const TraceInternode& internode)
 
 void TraceTally::LongSum::add(double value)
 {
-    // Knuth's TwoSum: `low` takes what rounding took from `high`.
+    // Knuth's TwoSum: `low` collects the rounding errors of `high`.
     const double sum = high + value, part = sum - high;
     low += (high - (sum - part)) + (value - part);
     high = sum;

@@ -1,5 +1,5 @@
 #pragma once
-// What a trace adds up to, kept while it changes: lengths by group, and how many segments there are. A change costs as
+// Running totals of a trace, updated as it changes: lengths by group, and the number of segments. A change costs as
 // much as the internodes of its nodes; one that splits or joins segments, about as much as the shorter of the two.
 //
 // Not thread safe: part of a TraceGraph.
@@ -14,7 +14,7 @@ struct TraceNode;
 struct TraceInternode;
 class TraceGraph;
 
-/// What a panel shows of a trace.
+/// Summary of a trace for a panel.
 struct TraceSummary {
     size_t nodes = 0, internodes = 0;
     size_t segments = 0;                     ///< as many as segments_of finds
@@ -35,7 +35,7 @@ public:
     TraceSummary summary_of(const TraceGraph& trace) const;
 
 private:
-    /// A sum with twice the digits of a double, so that what is added and taken away again leaves nothing behind.
+    /// A sum with twice the digits of a double, so that adding and then subtracting a value leaves no remainder.
     struct LongSum {
         double high = 0.0, low = 0.0;
         void add(double value);
@@ -50,7 +50,7 @@ private:
 
     std::map<uint8_t, Group> groups_;  ///< those that have internodes
     size_t inner_nodes_ = 0;           ///< with exactly two internodes: a segment goes through them
-    size_t closed_segments_ = 0;       ///< loops of such nodes alone
+    size_t closed_segments_ = 0;       ///< loops of such nodes only
 };
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// What the forms in XML share.
+// Shared by the XML formats.
 
 #include <string>
 #include <string_view>

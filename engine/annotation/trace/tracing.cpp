@@ -73,7 +73,7 @@ std::span<const uint32_t> TraceGraph::internodes_of(uint32_t node) const
 
 std::optional<uint32_t> TraceGraph::internode_between(uint32_t a, uint32_t b) const
 {
-    // Of a node that many internodes meet, the other one's few are searched.
+    // Searches the node with fewer internodes.
     const uint32_t from = internodes_of(a).size() <= internodes_of(b).size() ? a : b;
     for (const uint32_t number : internodes_of(from))
         if (internode(number).other(from) == (from == a ? b : a)) return number;

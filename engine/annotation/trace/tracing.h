@@ -81,7 +81,7 @@ public:
     const std::map<uint8_t, double>& internode_radii() const { return internode_radii_; }
     const TraceNode& node(uint32_t number) const;
     const TraceInternode& internode(uint32_t number) const;
-    /// Ascending; empty for a node that stands alone.
+    /// Ascending; empty for an isolated node.
     std::span<const uint32_t> internodes_of(uint32_t node) const;
     std::optional<uint32_t> internode_between(uint32_t a, uint32_t b) const;
     double length_of(const TraceInternode& internode) const;
@@ -94,7 +94,7 @@ public:
     /// Never uses numbers below these, which a file states because of nodes that were deleted.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
-    /// The node nearest to a position, the smallest number of several; nothing where there are no nodes.
+    /// The node nearest to a position, the smallest number of several; nothing if there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
     /// Numbers, lengths and segments; kept up to date, so it costs little at any size.

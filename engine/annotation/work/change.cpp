@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// The part of the document that a kind of change is about.
+/// The part of the document that a kind of change applies to.
 Mask& part_for(Document& document, const MaskBrickChange&)
 {
     return document.mask;

@@ -18,7 +18,7 @@
 
 namespace shvr {
 
-/// Nothing but `apply` changes what is annotated.
+/// Only `apply` changes the annotation.
 struct Document {
     Mask mask;
     TraceGraph trace;
@@ -42,13 +42,13 @@ std::vector<Change> as_changes(std::vector<Record> records)
 }
 
 struct Command {
-    std::string label;  ///< what the status bar says: "flood fill, group 3"
+    std::string label;  ///< text for the status bar: "flood fill, group 3"
     std::vector<Change> changes;
 };
 
 /// A record that does not fit is our mistake (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// All of them in order, or in reverse order backwards. For records from files: fails with the reason where one does
+/// All of them in order, or in reverse order backwards. For records from files: fails with the reason if one does
 /// not fit, and then the document is as it was.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
 /// About how much memory they take.

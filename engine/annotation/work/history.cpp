@@ -101,7 +101,7 @@ void History::bring(Entry& entry)
 
 void History::shrink(uint64_t most_bytes, RecordNumber durable)
 {
-    // The last command may be extended, and its caller may still read it.
+    // Keeps the last command: it may be extended, and the caller may still read it.
     for (; memory_ > most_bytes && dropped_ + 1 < done_; ++dropped_) {
         Entry& entry = commands_[dropped_];
         if (entry.records.back() == 0 || entry.records.back() > durable) return;

@@ -1,5 +1,5 @@
 #pragma once
-// One history for everything a person does. Undo and redo are one loop over the records of a command and know nothing
+// One history for everything the user does. Undo and redo are one loop over the records of a command and know nothing
 // of tools: a new tool makes new command contents, never new undo code.
 //
 // Commands that the journal holds can be dropped from memory, the oldest first; undoing one fetches it again.
@@ -17,15 +17,15 @@ using RecordNumber = uint64_t;
 
 class History {
 public:
-    /// What the journal holds of a record; fails where it cannot be read.
+    /// The journal's content of a record; fails if it cannot be read.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
     /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the
-    /// history changes; null where it has no changes and is not recorded. `record`: where the journal has it.
+    /// history changes; null if it has no changes and is not recorded. `record`: where the journal has it.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
     /// Applies `changes` and adds them to the last command, after which nothing was undone: a stroke continues.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
-    /// The command undone or redone, or null where there is none. Fails, changing nothing, where it was dropped and
+    /// The command undone or redone, or null if there is none. Fails, changing nothing, if it was dropped and
     /// cannot be fetched or does not fit.
     const Command* undo(Document& document);
     const Command* redo(Document& document);

@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds SYNC_INTERVAL{100};
 constexpr std::chrono::seconds RETRY_INTERVAL{1};
 
-/// 0, or the error's number.
+/// 0, or errno.
 int write_all(int file, uint64_t at, std::span<const std::byte> bytes)
 {
     while (!bytes.empty()) {
@@ -52,7 +52,7 @@ FileDescriptor opened(const fs::path& path)
     return file;
 }
 
-/// The first of .rest1, .rest2, ... that is not there.
+/// The first of .rest1, .rest2, ... that does not exist.
 fs::path free_rest(const fs::path& path)
 {
     for (int number = 1;; ++number) {
@@ -205,8 +205,8 @@ std::string Journal::write_from(uint64_t at, const std::deque<Waiting>& waiting,
 
 void Journal::write()
 {
-    std::deque<Waiting> waiting;  // not synced
-    size_t written = 0;           // of them
+    std::deque<Waiting> waiting;  // not yet synced
+    size_t written = 0;           // how many of these are written
     uint64_t written_bytes = 0;
     Clock::time_point next_sync = Clock::now(), next_try = next_sync;
     std::unique_lock lock(mutex_);
@@ -236,7 +236,7 @@ void Journal::write()
             }
         }
         if (!failure.empty()) {
-            // Half a record would stop readers, and what could not be synced may be missing.
+            // Readers would stop at half a record, and unsynced data may be missing.
             static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
             written = 0;
             written_bytes = 0;

@@ -1,12 +1,12 @@
 #pragma once
-// The journal: every command of a person, appended to a file as it happens. The journal's thread writes at once (a
+// The journal: every command of the user, appended to a file as it happens. The journal's thread writes at once (a
 // killed program loses the last milliseconds) and syncs at most every 100 ms (a power cut loses no more than that and
 // the time the disk takes).
 //
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
-// While the disk refuses, nothing is lost and nobody waits: records stay in memory, `failure` says why, and writing is
-// retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
+// While the disk refuses, nothing is lost and no caller waits: records stay in memory, `failure` says why, and writing
+// is retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
 //
 // One thread appends; any thread may query.
 
@@ -30,23 +30,23 @@ public:
 class Journal {
 public:
     /// Continues after the prefix that `before` found; what follows it is kept as JOURNAL.rest1, .rest2 and so on.
-    /// Fails where the file cannot be created or written, with JournalTaken where another process has it.
+    /// Fails if the file cannot be created or written, with JournalTaken if another process holds it.
     Journal(const std::filesystem::path& path, JournalScan before);
-    /// Tries to write what is still queued.
+    /// Tries to write the queue.
     ~Journal();
     Journal(const Journal&) = delete;
 
-    /// Fails where the content is larger than MOST_RECORD_BYTES.
+    /// Fails if the content is larger than MOST_RECORD_BYTES.
     RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
     /// The number of the last record appended.
     RecordNumber last() const;
-    /// Waits until everything appended is on disk; fails with the reason where that is not possible.
+    /// Waits until everything appended is on disk; fails with the reason if that is not possible.
     void flush();
     /// All records up to this one are on disk.
     RecordNumber durable() const;
-    /// Why nothing can be written at present; empty where it can.
+    /// Why nothing can be written at present; empty if it can.
     std::string failure() const;
-    /// Size of the file, including what is queued (uncompressed).
+    /// Size of the file, including the queue (uncompressed).
     uint64_t bytes() const;
 
     /// The content of a durable record.
@@ -61,7 +61,7 @@ private:
     void write();
     /// Frames the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
-    /// Returns why it failed; empty where it did not.
+    /// Returns why it failed; empty if it did not.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
 

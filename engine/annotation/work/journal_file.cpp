@@ -65,7 +65,7 @@ uint64_t checksum_of(uint64_t before, const Header& header, std::span<const std:
     return checksum.value();
 }
 
-/// As many bytes as there are; fewer at the file's end.
+/// Returns the number of bytes read; fewer at the end of the file.
 size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, std::span<std::byte> into)
 {
     size_t done = 0;

@@ -45,14 +45,14 @@ struct JournalRecord {
     uint64_t checksum = 0;
 };
 
-/// What could be read of a journal: nothing where there is no file.
+/// The readable part of a journal: empty if there is no file.
 struct JournalScan {
     std::vector<JournalRecord> records;
     uint64_t end = 0;         ///< of the valid prefix
-    uint64_t file_bytes = 0;  ///< including what follows
+    uint64_t file_bytes = 0;  ///< including unreadable data at the end
     uint64_t inode = 0;       ///< 0: there is no file
 
-    /// Of the last record; 0 where there is none.
+    /// Of the last record; 0 if there is none.
     uint64_t checksum() const { return records.empty() ? 0 : records.back().checksum; }
     /// Keeps only the first records.
     void cut(size_t count);
@@ -61,10 +61,10 @@ struct JournalScan {
 /// More than any single command paints; larger claims are refused before memory is allocated.
 constexpr uint64_t MOST_RECORD_BYTES = uint64_t{1} << 30;
 
-/// Fails where the file is not a journal, is from a newer program, or cannot be read.
+/// Fails if the file is not a journal, is from a newer program, or cannot be read.
 JournalScan scan_journal(const std::filesystem::path& path);
 
-/// The content of a record. Fails where the file no longer holds it.
+/// The content of a record. Fails if the file no longer holds it.
 std::vector<std::byte> content_of(const JournalRecord& record, const FileDescriptor& file,
                                   const std::filesystem::path& path);
 
@@ -73,7 +73,7 @@ std::vector<std::byte> journal_header();
 /// A record's bytes. `checksum`: of the record before; becomes this record's. Completes `record`.
 std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> content, uint64_t& checksum);
 
-/// XXH3-64 of a file's bytes, or of all files of a folder with their names; nothing where there is none.
+/// XXH3-64 of a file's bytes, or of all files of a folder with their names; nothing if there is none.
 std::optional<uint64_t> file_digest(const std::filesystem::path& path);
 
 }  // namespace shvr

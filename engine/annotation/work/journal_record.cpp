@@ -66,7 +66,7 @@ public:
         if (value > most) fail("a number is ", value, "; expected at most ", most);
         return value;
     }
-    /// How many of something follow, each of at least so many bytes.
+    /// The number of items that follow, each of at least `bytes_each` bytes.
     size_t count(size_t bytes_each)
     {
         const uint64_t value = whole();
@@ -98,7 +98,7 @@ private:
     std::span<const std::byte> bytes_;
 };
 
-// ---- Bricks: each run by its distance from the one before it ----
+// ---- Bricks: each run as its distance from the previous one -----
 
 void write(Writer& out, const MaskRun& run)
 {
@@ -312,7 +312,7 @@ Change read_change(Reader& in)
     fail("a change is of kind ", int(tag), "; expected 1 to 6");
 }
 
-/// The records that paint all that is there.
+/// The records that recreate all bricks.
 template <class Value>
 void write_bricks(const ChangeWriter& change, const SparseBricks<Value>& bricks)
 {

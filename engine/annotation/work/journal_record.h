@@ -1,5 +1,5 @@
 #pragma once
-// What the journal holds, as bytes: numbers little-endian, whole ones in groups of 7 bits with the lowest first
+// The journal's contents as bytes: numbers little-endian, whole ones in groups of 7 bits with the lowest first
 // (LEB128), doubles as their bits. Any thread may call these.
 //
 // Reading trusts nothing: lengths are checked against the bytes present before memory is allocated, and the result may
@@ -21,7 +21,7 @@ namespace shvr {
 struct JournalSubject {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    std::string image{};  ///< the volume's content hash; empty where it was never computed
+    std::string image{};  ///< the volume's content hash; empty if it was never computed
     bool operator==(const JournalSubject&) const = default;
 };
 

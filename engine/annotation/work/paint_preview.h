@@ -11,7 +11,7 @@
 namespace shvr {
 
 struct PaintPreview {
-    VoxelBox box;  ///< the smallest around the voxels; empty where there are none
+    VoxelBox box;  ///< the smallest around the voxels; empty if there are none
     std::vector<uint32_t>
         words;           ///< rows of words_per_row(), y next, z last; bit b of word w is x = lower.x + 32 w + b
     int64_t voxels = 0;  ///< how many there are; at most 256^3, as in a brush's region

@@ -35,7 +35,7 @@ void allow(const JsonNode& line, std::vector<std::string_view> keys)
     line.allow(keys);
 }
 
-/// The one of `keys` that is there.
+/// The one of `keys` that is present.
 std::string_view one_of(const JsonNode& line, std::initializer_list<std::string_view> keys)
 {
     std::string_view found;
@@ -62,7 +62,7 @@ std::vector<glm::dvec3> read_path(const JsonNode& node)
     return points;
 }
 
-/// The keys that say which voxels are meant.
+/// The keys that select voxels.
 PaintOp read_brush(const JsonNode& line)
 {
     PaintOp op;
@@ -84,7 +84,7 @@ NodeOp read_node(const JsonNode& line)
     return op;
 }
 
-/// How far what is near may be; `key` is the one that says where it is.
+/// The search distance of a key such as "near"; `key` gives the place.
 std::optional<double> read_within(const JsonNode& line, std::string_view key)
 {
     const JsonNode within = line["within"];
@@ -138,7 +138,7 @@ RadiusOp read_radius(const JsonNode& line)
     } else if (of.exists()) {
         line.refuse_because("key of is given without group; expected both, or neither for what is selected");
     }
-    // Without a size of its own an internode tapers from node to node.
+    // An internode without its own radius tapers from node to node.
     const bool tapers = op.of == RadiusOp::Of::internodes && line["radius"].is_null();
     if (!tapers) op.radius_voxels = line["radius"].number(LENGTH);
     return op;
@@ -173,7 +173,7 @@ int read_count(const JsonNode& line)
     return int(line["count"].whole(1, 1, 1000000000));
 }
 
-/// The group that a key such as "3" names; nothing where it names none.
+/// The group that a key such as "3" names; nothing if it names none.
 std::optional<uint8_t> group_of(const std::string& key)
 {
     uint8_t group = 0;
@@ -224,7 +224,7 @@ GroupOp read_group_op(const JsonNode& line)
     return {read_group(line["group"])};
 }
 
-/// An operation and how it is read. Those that are more common stand first in messages.
+/// An operation and its reader. The more common ones come first in messages.
 struct OpReader {
     std::string_view name;
     ScriptOp (*read)(const JsonNode& line);

@@ -41,7 +41,7 @@ bool is_there(const fs::path& path)
     return !path.empty() && fs::exists(path, ignored);
 }
 
-/// `path` with ".old", or where that is taken and must stay, with ".old2", ".old3" and so on.
+/// `path` with ".old" or, if that exists and must stay, with ".old2", ".old3" and so on.
 fs::path old_of(const fs::path& path, bool replaces)
 {
     fs::path old = path;
@@ -99,7 +99,7 @@ std::vector<std::string> Work::open(const WorkFiles& files, Start start)
     std::vector<std::string> messages;
     const std::string name = files.journal.string();
     is_to_set_aside_ = is_fresh_ && scan_.inode != 0;
-    touched_.trace = touched_.density = is_fresh_;  // files of earlier work are not what is here
+    touched_.trace = touched_.density = is_fresh_;  // existing files belong to earlier work
     if (is_fresh_) return messages;
     if (!scan_.records.empty()) {
         check_subject();
@@ -170,7 +170,7 @@ SavedFiles Work::digests() const
 void Work::load_files()
 {
     if (is_there(files_.mask)) {
-        // A mask of another size is of another image too, and the size is the better message.
+        // A mask of another size is also of another image, and the size makes the better message.
         const std::vector<MaskBrickChange> changes = import_mask(files_.mask, space_of(files_.volume));
         check_mask_image(files_.mask, files_.volume_hash);
         for (const MaskBrickChange& change : changes) document_.mask.apply(change, Direction::forwards);
@@ -228,7 +228,7 @@ void Work::replay_records()
                 else if (!history_.redo(document_))
                     fail("more is done again than was undone");
                 break;
-            default: break;  // states, saves, and what this program does not know
+            default: break;  // states, saves, and kinds unknown to this version
         }
     };
     try {
@@ -261,7 +261,7 @@ void Work::begin_journal()
     scanned_.reset();
     if (!is_new) return;
     journal_->append(RecordKind::subject, {}, bytes_of(JournalSubject{size_, type_, files_.volume_hash}));
-    // So that the journal can be read without the files.
+    // Makes the journal readable without the files.
     std::vector<std::byte> state = bytes_of(document_);
     state_bytes_ = state.size();
     journal_->append(RecordKind::state, {}, std::move(state), 1);
@@ -294,7 +294,7 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
 void Work::touch(std::span<const Change> changes)
 {
     const ByKind touch{
-        [](const MaskBrickChange&) {},  // the mask is written at every save
+        [](const MaskBrickChange&) {},  // every save writes the mask
         [&](const TraceChange&) { touched_.trace = true; },
         [&](const DensityBrickChange&) { touched_.density = true; },
     };
@@ -357,7 +357,7 @@ void Work::keep_state()
         if (state_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         std::vector<std::byte> state = state_.get();
         state_bytes_ = state.size();
-        // The journal does without larger ones.
+        // Larger states are not journalled.
         if (state.size() <= MOST_RECORD_BYTES) journal_->append(RecordKind::state, {}, std::move(state), state_about_);
         return;
     }
@@ -400,7 +400,7 @@ std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
         save_mask_image(files_.mask, files_.volume_hash);
         written.push_back(files_.mask);
     }
-    // A trace that has become empty is saved as such; one that was never there makes no file.
+    // A trace that has become empty is saved as empty; if there never was one, no file is written.
     const auto is_to_write = [](bool is_touched, bool has_any, const fs::path& path) {
         return is_there(path) ? is_touched : has_any;
     };

@@ -1,5 +1,5 @@
 #pragma once
-// A person's work: the document, its history, the journal that keeps both, and the files it is saved to.
+// The user's work: the document, its history, the journal that keeps both, and the files it is saved to.
 //
 // The journal is the truth between sessions. Opening replays it from its last complete state, so the history continues
 // where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs; they are
@@ -25,7 +25,7 @@ struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
-    VolumeInfo volume{};                               ///< what is annotated
+    VolumeInfo volume{};                               ///< the annotated volume
 };
 
 class Work {
@@ -36,17 +36,17 @@ public:
     Work(const Work&) = delete;  // its history holds a pointer to it
 
     enum class Start {
-        as_left,  ///< with what the journal, or the saved files, hold
+        as_left,  ///< with the contents of the journal or of the saved files
         fresh,    ///< empty; an existing journal is set aside at the first command
     };
     /// For a Work without commands. Returns messages for the user: unsaved work, a damaged end of the journal, files
-    /// that other programs have changed. Fails, loading nothing, where a file is of another volume or malformed.
+    /// that other programs have changed. Fails, loading nothing, if a file is of another volume or malformed.
     std::vector<std::string> open(const WorkFiles& files, Start start = Start::as_left);
 
     const Document& document() const { return document_; }
     const History& history() const { return history_; }
 
-    /// As History's, but written to the journal first. Fail, with nothing done, where the journal cannot be started, is
+    /// As History's, but written to the journal first. Fail, with nothing done, if the journal cannot be started, is
     /// locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
@@ -56,8 +56,8 @@ public:
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
     /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
-    /// and offsets are written only if they have changed. Fails where one cannot be written (a retry may succeed), and
-    /// where there is something to save and no file named for it. Returns the files it wrote.
+    /// and offsets are written only if they have changed. Fails if one cannot be written (a retry may succeed), or if
+    /// there is something to save and no file named for it. Returns the files it wrote.
     std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {});
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
@@ -65,7 +65,7 @@ public:
     size_t unsaved() const { return unsaved_; }
     /// No command since has changed the trace.
     bool trace_is_saved() const { return !touched_.trace; }
-    /// Waits until the journal is on disk; fails with the reason where that is not possible.
+    /// Waits until the journal is on disk; fails with the reason if that is not possible.
     void flush();
 
     struct JournalState {
@@ -87,7 +87,7 @@ public:
 private:
     Document empty_document() const;
     void check_subject() const;
-    /// Returns why it stopped early, and then drops the remaining records from the scan; empty where it took all.
+    /// Returns why it stopped early, and then drops the remaining records from the scan; empty if it took all.
     std::string replay();
     void replay_records();
     std::vector<std::byte> content_of(RecordNumber number) const;

@@ -1,5 +1,5 @@
 #pragma once
-// A volume with a person's density offsets, for callers without a device: value + offset, clamped to the type
+// A volume with the user's density offsets, for callers without a device: value + offset, clamped to the type
 // (engine/volume/offset_source.h).
 
 #include "engine/annotation/work/work.h"

@@ -8,7 +8,7 @@ namespace shvr::fuzz {
 namespace {
 
 constexpr size_t LONGEST_INPUT = size_t{1} << 18;
-/// Most formats say what is important at their beginning.
+/// Most formats have their important fields at the beginning.
 constexpr size_t HEAD_BYTES = 400;
 
 constexpr uint64_t NUMBERS[] = {0,
@@ -142,7 +142,7 @@ private:
     void take_out()
     {
         const size_t at = place();
-        // A whole line where that is text.
+        // A whole line, if the seed is text.
         if (below(2) == 0) {
             const size_t end = std::min(bytes_.size(), bytes_.find('\n', at));
             bytes_.erase(at, std::min(end - at + 1, size_t{200}));

@@ -1,8 +1,8 @@
 // Runs one target on each of its seeds, on each seed cut short, and on a fixed number of changed seeds, under
 // AddressSanitizer and UndefinedBehaviorSanitizer:  shvr_fuzz_replay TARGET [FILE...]
 //
-// Files: only these, as they are. A seed whose name begins with "claims_" says it is far larger than it is: it must be
-// refused before more than MOST_BYTES_OF_A_CLAIM are taken. --prove KIND shows that the replay finds what it is for.
+// FILE...: only these, unchanged. A seed named "claims_..." claims to be far larger than it is: it must be refused
+// before more than MOST_BYTES_OF_A_CLAIM are allocated. --prove KIND proves that the replay finds such faults.
 
 #include <algorithm>
 #include <cstdio>
@@ -27,7 +27,7 @@ constexpr size_t MOST_CUTS = 4000;  ///< of all seeds together
 constexpr size_t MOST_NESTED = 48;
 constexpr size_t CHANGED_INPUTS = 3000;
 constexpr int64_t MOST_BYTES_OF_A_CLAIM = int64_t{8} << 20;
-/// A hundredth of a second is what it takes; sanitizers and busy machines are slow.
+/// It takes a hundredth of a second; sanitizers and busy machines are slow.
 constexpr double MOST_SECONDS_OF_A_CLAIM = 10.0;
 
 struct Seed {
@@ -62,7 +62,7 @@ std::vector<fs::path> files_of(const fs::path& folder)
 
 Watched run(const Target& target, const std::string& name, const std::string& input, Totals& totals)
 {
-    // On the heap without a byte behind it, so that reading on is seen.
+    // On the heap without spare bytes, so that reads past the end are detected.
     const std::vector<uint8_t> bytes(input.begin(), input.end());
     last_outcome() = {};
     begin_watch(target.name, name, bytes, {});
@@ -128,7 +128,7 @@ bool replay(const Target& target, const std::vector<Seed>& seeds)
     return accepted_seeds > 0 && claims_hold;
 }
 
-/// What the sanitizers and limits are to catch, done on purpose.
+/// Commits a fault on purpose that sanitizers and limits must catch.
 int prove(const std::string& kind)
 {
     static const std::string what = kind;

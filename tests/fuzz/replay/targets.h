@@ -1,5 +1,5 @@
 #pragma once
-// The targets of tests/fuzz that the replay program holds: CMake makes the table from the names of their files.
+// The targets of tests/fuzz in the replay program: CMake generates the table from their file names.
 
 #include <cstddef>
 #include <cstdint>

@@ -14,12 +14,12 @@
 
 #include <atomic>
 
-/// From allocator_interface.h of the sanitizers, which g++ has the functions of, but not the header.
+/// From the sanitizers' allocator_interface.h: g++ ships the functions, but not the header.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, size_t),
                                                          void (*free_hook)(const volatile void*));
 extern "C" size_t __sanitizer_get_allocated_size(const volatile void* memory);
 
-/// SHVR_CHECK and uncaught exceptions end in abort; then the sanitizer prints where, and calls back.
+/// SHVR_CHECK and uncaught exceptions abort; the sanitizer then prints the stack and calls back.
 extern "C" const char* __asan_default_options()
 {
     return "handle_abort=1:detect_leaks=1:allocator_may_return_null=0:max_allocation_size_mb=4096";

@@ -34,7 +34,7 @@ std::map<std::string, std::string> unpacked(std::span<const uint8_t> input)
     std::map<std::string, std::string> files;
     std::string_view rest = text_of(input);
     std::string name;
-    // The mark may stand at the very beginning, where no line end comes before it.
+    // The mark may be at the very beginning, without a line end before it.
     bool is_first = true;
     while (files.size() < MOST_FILES) {
         size_t end = std::min(rest.size(), rest.find(FILE_MARK));
@@ -80,7 +80,7 @@ fs::path InputFolder::write(const std::string& name, std::string_view content) c
 {
     std::error_code ignored;
     fs::create_directories((path_ / name).parent_path(), ignored);
-    // One packed file may be named like the folder of another: then it is not written.
+    // A packed file may have the same name as the folder of another: then it is not written.
     std::ofstream file(path_ / name, std::ios::binary);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));
     return path_ / name;

@@ -13,7 +13,7 @@ namespace shvr::fuzz {
 namespace {
 
 constexpr int64_t MOST_SIDE = int64_t{1} << 20;
-/// A volume with more is read in a few places only.
+/// Larger volumes are read in a few places only.
 constexpr int64_t MOST_VOXELS_READ = int64_t{1} << 16;
 constexpr int MOST_LEVELS_READ = 4;
 constexpr int64_t BOX_SIDE = 8;
@@ -58,7 +58,7 @@ std::vector<std::byte> read(const VolumeSource& source, int level, const VoxelBo
     return voxels;
 }
 
-/// A box is the part of the whole that it names.
+/// Checks that reading a box gives that part of the whole.
 void check_part(const VolumeSource& source, const std::vector<std::byte>& whole, const VoxelBox& box)
 {
     const Size3 size = source.info().size;
@@ -102,8 +102,8 @@ void try_source(const VolumeSource& source)
     check_info(source.info());
     expect(source.levels() >= 1 && source.levels() <= 32, sentence(source.levels(), " levels"));
     expect(glm::all(glm::greaterThan(source.block(), Size3(0))), "a block without voxels");
-    // What opens can be imported, and the project's record is read again.
-    // Statistics of a volume without finite voxels are all 0, as here.
+    // A volume that opens can be imported, and the project's record is read again. Statistics of a volume without
+    // finite voxels are all 0, as here.
     ProjectRecord kept{.info = source.info(), .content_hash = "0", .source = "a"};
     kept.statistics.histogram.assign(256, 0);
     const std::string record = to_text(kept);
@@ -119,7 +119,7 @@ void try_volume(const std::filesystem::path& path)
 {
     std::unique_ptr<VolumeSource> source;
     if (!accepts([&] { source = open_volume(path); })) {
-        // More than one volume in the file: the first.
+        // With more than one volume in the file, take the first.
         if (last_outcome().refusal.find("hoose ") == std::string::npos) return;
         passes([&] { source = open_volume(path, {.channel = "1"}); });
         if (!source) passes([&] { source = open_volume(path, {.channel = "1", .frame = "1"}); });

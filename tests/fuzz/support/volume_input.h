@@ -1,6 +1,6 @@
 #pragma once
-// What every target of a volume reader does with a file: open it as a user would, hold what it says of itself against
-// what volume.h promises, read a few boxes of every level, and go through all of it where that is little.
+// Shared by all targets of volume readers: opens a file as a user would, checks its information against the guarantees
+// of volume.h, reads a few boxes of every level, and reads all of a small volume.
 
 #include <filesystem>
 
@@ -9,7 +9,7 @@
 namespace shvr::fuzz {
 
 void try_volume(const std::filesystem::path& path);
-/// The same of a volume that is open.
+/// The same for an open volume.
 void try_source(const VolumeSource& source);
 
 }  // namespace shvr::fuzz

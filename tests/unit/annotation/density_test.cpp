@@ -71,7 +71,7 @@ void apply_all(DensityField& field, const std::vector<Change>& changes, Directio
             field.apply(std::get<DensityBrickChange>(*change), direction);
 }
 
-/// What a volume of that type keeps of an offset.
+/// An offset as a volume of that type stores it.
 double kept(VoxelType type, double offset)
 {
     const double limit = type == VoxelType::uint8    ? 255.0
@@ -119,7 +119,7 @@ int64_t differing(const DensityField& field, const Offsets& offsets)
     return wrong;
 }
 
-/// Every bit of it.
+/// The complete content.
 std::map<int64_t, OffsetBrick> content_of(const DensityField& field)
 {
     std::map<int64_t, OffsetBrick> bricks;
@@ -147,7 +147,7 @@ TEST_CASE("strokes of offsets equal the rule applied voxel by voxel in double, a
             states.push_back(content_of(field));
             REQUIRE(differing(field, expected) == 0);
             CHECK(field.voxels() == std::count_if(expected.begin(), expected.end(), [](double o) { return o != 0.0; }));
-            CHECK(changes_of(stroke, field).empty());  // the same again changes nothing
+            CHECK(changes_of(stroke, field).empty());  // repeating it changes nothing
         }
         REQUIRE(field.voxels() > 1000);
         for (size_t i = history.size(); i-- > 0;) {

@@ -27,7 +27,7 @@ void for_each_voxel(const Size3& size, const Visit& visit)
             for (int64_t x = 0; x < size.x; ++x) visit(Size3(x, y, z));
 }
 
-/// The definition, in the words of region.h.
+/// The definition of region.h.
 bool belongs(RegionShape shape, const Size3& voxel, const glm::dvec3& centre, double radius, const glm::dvec3& spacing)
 {
     const glm::dvec3 away = (glm::dvec3(voxel) + 0.5 - centre) * spacing;
@@ -78,7 +78,7 @@ struct Sample {
     std::vector<uint32_t> words;
 };
 
-/// A region with bits everywhere, also where the region has no voxels.
+/// A region with random bits everywhere, even where it has no voxels.
 Sample random_sample(std::mt19937& random, const Size3& size)
 {
     const auto shape = random() % 2 == 0 ? RegionShape::ball : RegionShape::box;

@@ -12,7 +12,7 @@ namespace {
 void* allocate(size_t bytes, size_t alignment)
 {
     if (counts_allocations) ++allocations;
-    // aligned_alloc wants whole multiples.
+    // aligned_alloc requires multiples of the alignment.
     void* memory = alignment == 0 ? std::malloc(std::max<size_t>(bytes, 1))
                                   : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
     if (!memory) throw std::bad_alloc();
@@ -29,7 +29,7 @@ void* operator new(size_t bytes, std::align_val_t alignment)
 {
     return allocate(bytes, size_t(alignment));
 }
-// Sanitizers bring a version of this one that does not go through the others.
+// Sanitizers replace this operator with one that bypasses the others.
 void* operator new(size_t bytes, const std::nothrow_t&) noexcept
 {
     if (counts_allocations) ++allocations;

@@ -26,7 +26,7 @@ struct Bench {
     ForceMemory memory;
     DeviceState state;
     uint64_t now_ns = 1'000'000'000, tick_ns = MILLISECOND;
-    bool is_patch_renewed = true;  ///< as if the compute pass kept up
+    bool is_patch_renewed = true;  ///< as if the compute pass kept pace
 
     Bench()
     {
@@ -98,7 +98,7 @@ TEST_CASE("the force is turned into the device's frame and does not depend on th
     }
     CHECK(glm::distance(rotation * now.force_n, straight.force_n) < 1e-6);
 
-    // The same scene ten times as large, moved ten times as far for the same way of the hand.
+    // The same scene ten times as large, moving ten times as far for the same motion of the hand.
     Bench large;
     large.patch.spacing *= 10.0;
     large.settings.probe_radius *= 10.0;
@@ -207,7 +207,7 @@ TEST_CASE("a lost device has no force the same tick, and engages anew when it is
     CHECK(now.flags == FORCE_NO_DEVICE);
     CHECK(bench.tick(ReadResult::stale).force_n == glm::dvec3(0.0));
     CHECK((bench.memory.flags & FORCE_NO_DEVICE) != 0);
-    bench.state.position_m.y = 0.03;  // no glitch: the hand moved meanwhile
+    bench.state.position_m.y = 0.03;  // no glitch: the hand had time to move
     bench.tick();
     CHECK(bench.memory.has_last);
     CHECK(bench.memory.engagement < 0.01);
@@ -334,7 +334,7 @@ TEST_CASE("old relevance fades out over a tenth of a second, fades in at the sam
     Bench bench;
     const double full = glm::length(bench.settle(0.001).force_n);
     bench.is_patch_renewed = false;
-    CHECK(glm::length(bench.run(10).force_n) == doctest::Approx(full));  // up to 10 ms nothing is felt
+    CHECK(glm::length(bench.run(10).force_n) == doctest::Approx(full));  // no effect for up to 10 ms
     CHECK(glm::length(bench.run(39).force_n) == doctest::Approx(full));
     double last = full;
     for (int i = 0; i < 102; ++i) {
@@ -361,7 +361,7 @@ TEST_CASE("relevance that is unknown or does not cover the ball fades out as wel
         if (is_unknown)
             bench.patch.sequence = 0;
         else
-            bench.settings.probe_radius = 7.5;  // from y = 9 - 7.5 on is covered; to 16.5 is not
+            bench.settings.probe_radius = 7.5;  // y from 9 - 7.5 is covered; up to 16.5 is not
         double last = full;
         for (int i = 0; i < 110; ++i) {
             const double force = glm::length(bench.tick().force_n);
@@ -436,7 +436,7 @@ TEST_CASE("60,000 ticks of nonsense: every force is a number, within the peak an
         }
         const ForceStep now = bench.tick(result);
         const double length = glm::length(now.force_n);
-        REQUIRE(length <= bench.caps.peak_force_n * (1.0 + 1e-12));  // false of what is not a number
+        REQUIRE(length <= bench.caps.peak_force_n * (1.0 + 1e-12));  // false for NaN
         const bool may_stop = (now.flags & (FORCE_FAULT | FORCE_NO_DEVICE)) != 0 && length == 0.0;
         if (!may_stop) REQUIRE(glm::distance(now.force_n, last) <= SLEW_N + 1e-12);
         last = now.force_n;

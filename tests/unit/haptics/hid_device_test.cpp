@@ -23,7 +23,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Bytes = std::vector<uint8_t>;
 
-/// The device behind a fake port. All of it under one lock; the servo's side never meets it.
+/// The device behind a fake port. One lock guards all of it; the servo's side never takes it.
 struct World {
     std::mutex mutex;
     std::condition_variable changed;
@@ -128,7 +128,7 @@ bool is_enabled(const Bytes& report)
     return report.at(1) & 1u;
 }
 
-/// Until the claim holds; false after two seconds, which no test should take.
+/// Waits until the claim holds; false after two seconds, which no test should need.
 template <class Claim>
 bool comes_true(const Claim& claim)
 {
@@ -225,7 +225,7 @@ TEST_CASE("write returns while the device blocks, and the newest force is what g
         return !written.empty() && force_x_mn(written.back()) == 1000;
     }));
     const std::vector<Bytes> written = world.all_written();
-    CHECK(written.size() <= 2);  // at most the one that was under way, and the newest
+    CHECK(written.size() <= 2);  // at most the one in progress and the newest
     CHECK(is_enabled(written.back()));
     CHECK(written.back()[2] == 20);
 }
@@ -272,7 +272,7 @@ TEST_CASE("an unplugged device is lost, and is there again after it was plugged 
     const auto device = make_link(world, reference(), true);
     DeviceState state;
     for (int round = 0; round < 3; ++round) {
-        // A report that nobody fetched before the loss is not news afterwards.
+        // A report not fetched before the loss is not fresh afterwards.
         world.change([&] { world.incoming.push_back(report_of(1000, 1)); });
         std::this_thread::sleep_for(milliseconds(5));
         world.change([&] { world.is_plugged = false; });

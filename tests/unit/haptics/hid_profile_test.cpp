@@ -19,7 +19,7 @@ nlohmann::json reference()
     return nlohmann::json::parse(read_text(FOLDER + "/shvr_reference.json", 1 << 20));
 }
 
-/// The error of a profile; empty where it is taken.
+/// The error of a profile; empty if it is accepted.
 std::string error_of_text(const std::string& text)
 {
     try {
@@ -33,7 +33,7 @@ std::string error_of(const nlohmann::json& document)
 {
     return error_of_text(document.dump());
 }
-/// The error of the reference after `changed` has put `value` to the JSON pointer.
+/// The error of the reference with `value` at the JSON pointer.
 std::string error_with(const char* pointer, const nlohmann::json& value)
 {
     nlohmann::json document = reference();

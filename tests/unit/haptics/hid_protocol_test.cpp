@@ -156,7 +156,7 @@ TEST_CASE("what is encoded and sent back is what was meant, for fields at odd bi
 TEST_CASE("the axis map turns places in and forces out, so that work stays work")
 {
     HidProfile profile = reference();
-    // x right, y towards the user, z down, as a SpaceMouse has them.
+    // x right, y towards the user, z down, as on a SpaceMouse.
     profile.axes = glm::transpose(glm::dmat3(1, 0, 0, 0, 0, -1, 0, 1, 0));
     std::vector<uint8_t> report = example_report();
     const std::optional<HidInput> input = decode(profile, report);

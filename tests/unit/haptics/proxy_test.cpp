@@ -28,7 +28,7 @@ glm::dvec3 random_direction(std::mt19937& random)
     return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
 }
 
-/// Somewhere near the patch's middle, in a cube of that half side.
+/// A random point near the patch's middle, in a cube of that half side.
 glm::dvec3 random_offset(std::mt19937& random, double half_side)
 {
     std::uniform_real_distribution<double> uniform(-half_side, half_side);
@@ -139,14 +139,14 @@ TEST_CASE("integrals are those of 40 random fields cut by slow lines through the
     std::mt19937 random(11);
     RelevancePatch patch;
     for (int field = 0; field < 40; ++field) {
-        // Densities from sparse to nearly full; 33, 63 and 64 voxels end rows at every kind of word border.
+        // Densities from sparse to nearly full; 33, 63 and 64 voxels cover every kind of row end within a word.
         const auto threshold = random() % 17;
         const glm::ivec3 size(field % 3 == 0 ? 33 : field % 3 == 1 ? 63 : 64, 31, 37);
         fill_patch(patch, {-7, 3, 40}, size, {1.0, 0.8, 1.3},
                    [&](const glm::dvec3&) { return random() % 16 < threshold; });
         const glm::dvec3 middle = (glm::dvec3(patch.origin) + 0.5 * glm::dvec3(size)) * patch.spacing;
         const glm::dvec3 centre = middle + random_offset(random, 15.0);
-        const double radius = 20.0;  // so large that one line a row is used; partly outside the patch
+        const double radius = 20.0;  // large enough for one line per row; partly outside the patch
         const BallIntegrals ball = integrate(patch, centre, radius);
         const BallIntegrals truth = integrate_slowly(patch, centre, radius, 1);
         CHECK(ball.volume == doctest::Approx(truth.volume).epsilon(1e-10));
@@ -200,7 +200,7 @@ TEST_CASE("the potential law does no work around closed loops")
     RelevancePatch patch;
     double worst = 0.0, worst_mean = 0.0;
     for (int loop = 0; loop < 12; ++loop) {
-        // Rods in noise: there the thesis's mean law is at its worst. Spacing and radius reach both row rules.
+        // Rods in noise, the worst case of the thesis's mean law. Spacing and radius exercise both row rules.
         const glm::dvec3 spacing = loop % 2 == 0 ? glm::dvec3(1) : glm::dvec3(1, 0.7, 1.4);
         const double radius = loop % 4 < 2 ? 8.0 : 18.0;
         const Rod rod = random_rod(random, glm::dvec3(32) * spacing, radius);
@@ -227,7 +227,7 @@ TEST_CASE("the potential law does no work around closed loops")
     }
     MESSAGE("worst work of a loop, in its length times the largest force: ", worst, "; mean law: ", worst_mean);
     CHECK(worst <= 1e-4);
-    CHECK(worst_mean > 1e-3);  // so the loops do tell the laws apart
+    CHECK(worst_mean > 1e-3);  // so the loops do distinguish the laws
 }
 
 TEST_CASE("under the potential law a speck that enters the ball pulls from nothing on; under the mean law at once")

@@ -22,15 +22,15 @@ namespace {
 
 constexpr uint64_t MILLISECOND = 1'000'000;
 
-/// What a test and a servo's pacing share.
+/// Shared by a test and its servo's pacing.
 struct Clock {
     std::atomic<bool> may_begin{false}, is_done{false}, may_end{false};
     uint64_t ticks = 0;                  ///< to run
     std::vector<uint64_t> oversleep_ns;  ///< by tick; 0 beyond its end
-    std::vector<uint64_t> deadlines_ns;  ///< as asked for; as many as there is room for
+    std::vector<uint64_t> deadlines_ns;  ///< as requested; up to the capacity
     uint64_t allocations_seen = 0;
 
-    /// Runs the ticks; all that was published before is seen by the first.
+    /// Runs the ticks; the first one sees everything published before.
     void run()
     {
         may_begin = true;
@@ -38,8 +38,8 @@ struct Clock {
     }
 };
 
-/// Time that passes only by waiting: as many ticks as asked for, as fast as they go; then it stands still until the
-/// test lets go.
+/// Time that advances only by waiting: runs the requested ticks as fast as possible, then stops until the test releases
+/// it.
 class VirtualPacing : public Pacing {
 public:
     explicit VirtualPacing(Clock& clock) : clock_(clock) {}
@@ -65,7 +65,7 @@ private:
     uint64_t tick_ = 0;
 };
 
-/// Plays a script: lost from one tick to another; otherwise at rest at one place. Keeps the forces written.
+/// Plays a script: lost between two ticks, otherwise at rest. Records the forces written.
 class ScriptedDevice : public HapticDevice {
 public:
     struct Script {
@@ -231,7 +231,7 @@ TEST_CASE("a fault stays until the settings ask for a reset")
     clock.run();
     REQUIRE(servo.state().take());
     CHECK((servo.state().value().step.flags & FORCE_FAULT) != 0);
-    // The servo stands in wait_until: it does not touch the script.
+    // The servo is blocked in wait_until and does not touch the script.
     script.position_m = glm::dvec3(0.0);
     clock.may_end = true;
     const auto flags_after = [&](uint64_t more) {
@@ -284,7 +284,7 @@ TEST_CASE("a servo on the real clock ticks, and says how long its ticks take")
     Servo servo(std::move(device), real_pacing(), {.rate_hz = 1000, .realtime = true});
     servo.settings().publish(settings_beside_rod());
     publish_rod(servo.relevance());
-    // A slow machine may tick late or skip ticks; it does tick.
+    // A slow machine may tick late or skip ticks, but it does tick.
     while (!servo.state().take() || servo.state().value().ticks < 300)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     const ServoState& state = servo.state().value();

@@ -55,7 +55,7 @@ struct Following {
     double largest_n = 0.0;  ///< force
 };
 
-/// A hand follows the vessel at 20 mm/s and wanders off as hands do.
+/// A hand follows the vessel at 20 mm/s and strays as real hands do.
 Following follow(const HandModel& hand, bool assistance, uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -125,14 +125,14 @@ Following follow_often(const HandModel& hand, bool assistance)
     return all;
 }
 
-/// Swing of the position over the last half second of two, after a push, against an ideal two-sided spring.
+/// Oscillation of the position over the last half of two seconds, after a push, against an ideal two-sided spring.
 double swing_against_spring(double stiffness, double damping)
 {
     SimulatedDevice device(MODELLED_HAND);
     glm::dvec3 before(0.0);
     double lowest = 1e9, highest = -1e9, velocity = 0.0;
     for (int tick = 0; tick < 2000; ++tick) {
-        // A push: the hand wants to be 5 mm away at once, later back at the spring's middle.
+        // A push: the wish jumps 5 mm away, later back to the spring's middle.
         device.wish().publish({.position_m = {tick < 1000 ? 0.005 : 0.0, 0.0, 0.0}});
         const DeviceState state = read(device);
         // As in force.cpp: low-pass of 100 Hz.
@@ -234,7 +234,7 @@ TEST_CASE("the modelled hand is stable against springs to 400 N/m with 1 N s/m a
         CAPTURE(stiffness);
         CHECK(swing_against_spring(stiffness, 1.0) <= 0.00011);  // two counts of a Touch
     }
-    // The scan can fail: far above the limit the hand does oscillate.
+    // The check can fail: far above the limit the hand does oscillate.
     CHECK(swing_against_spring(8000.0, 0.0) > 0.00011);
 }
 

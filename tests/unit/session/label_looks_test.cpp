@@ -12,7 +12,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// A label image of which only that is there.
+/// A label image with nothing but these attributes.
 class Store {
 public:
     explicit Store(const std::string& image_label)
@@ -66,7 +66,7 @@ TEST_CASE("groups that a session does not define take what the label image says,
                        {"label-value": 2, "area": 4}, {"label-value": 4, "name": "theirs"}]})");
     Groups groups{{4, look("mine")}};
     CHECK(take_label_looks(store.folder.path, groups).empty());
-    REQUIRE(groups.size() == 4);  // 1 looks as it does anyway
+    REQUIRE(groups.size() == 4);  // 1 has the default look
     CHECK(groups.at(2) == look("", {}, 128 / 255.0));
     CHECK(groups.at(3) == look("", glm::dvec3(0.0, 1.0, 0.0)));
     CHECK(groups.at(4) == look("mine"));
@@ -124,7 +124,7 @@ TEST_CASE("entries that are none are left out with one sentence for each list")
     CHECK(contains(names.warnings[1], "image-label.properties.0 is "));
     REQUIRE(names.looks.size() == 1);
     CHECK((names.looks[0].value == 2 && names.looks[0].name == "b" && !names.looks[0].rgba));
-    // A colour that is left to the reader.
+    // A label without a colour.
     CHECK(Store(R"({"colors": [{"label-value": 3}]})").looks().looks.empty());
     CHECK(Store(R"({"colors": [{"label-value": 3}]})").looks().warnings.empty());
 }

@@ -1,4 +1,4 @@
-// The table of keys: what is written, what README.md says of it, and what --set takes.
+// The table of keys: written files, README.md, and --set.
 
 #include "engine/session/session_keys.h"
 
@@ -22,7 +22,7 @@ Session parse(const std::string& text, const std::vector<std::string>& settings 
     return parse_session(text, "/data/scans", "s.json", settings);
 }
 
-/// Without the comma at the end, which a line has where another follows.
+/// Without the comma at the end of a line.
 std::vector<std::string> lines_of(const std::string& text)
 {
     std::vector<std::string> lines;
@@ -36,7 +36,7 @@ std::string row_of(const SessionKey& key)
 {
     std::string name = key.name;
     const std::string camera = "cameras.NAME.";
-    if (name.starts_with(camera)) name.erase(0, camera.size());  // README.md has a table of its own for them
+    if (name.starts_with(camera)) name.erase(0, camera.size());  // README.md lists them in a separate table
     return sentence("| `", name, "` | ", key.meaning, " | ", key.allowed, " | ", key.standard, " |");
 }
 
@@ -44,7 +44,7 @@ std::string row_of(const SessionKey& key)
 
 TEST_CASE("a session is written as version 1 has always been written, but for keys that are new")
 {
-    // Written by the program of commit 1462cd9, before keys were stated once.
+    // Written at commit 1462cd9, before the table of keys existed.
     for (const char* file :
          {"tests/unit/session/written_everything.json", "tests/unit/session/written_procedural.json"}) {
         CAPTURE(file);

@@ -18,7 +18,7 @@ namespace {
 
 const std::string SMALLEST = R"("shvr_session": 1, "volume": {"path": "a.nhdr"})";
 
-/// The smallest session with more keys.
+/// The smallest session, with extra keys.
 std::string with(const std::string& keys)
 {
     return "{" + SMALLEST + (keys.empty() ? "" : ", " + keys) + "}";
@@ -29,7 +29,7 @@ Session parse(const std::string& text, const std::vector<std::string>& settings 
     return parse_session(text, "/data/scans", "s.json", settings);
 }
 
-/// The sentence with which a text is refused.
+/// The message that refuses a text.
 std::string refusal(const std::string& text, const std::vector<std::string>& settings = {})
 {
     try {
@@ -92,7 +92,7 @@ const std::string EVERYTHING = R"({
   "annotation": {"mask": "shvr/labels.mask"}
 })";
 
-/// A folder of its own, removed at the end.
+/// A temporary folder, removed at the end.
 struct TemporaryFolder {
     fs::path path = fs::temp_directory_path() / sentence("shvr_session_test_", getpid());
     TemporaryFolder() { fs::create_directories(path); }
@@ -552,7 +552,7 @@ TEST_CASE("what is not set for a group comes from its parent, and a hidden paren
     groups[4] = {.parent = 9};
     CHECK(group_of(groups, 2) == ColorGroup{"leaf", blue, 0.5, true});
     CHECK(group_of(groups, 3) == ColorGroup{"group 3", blue, 0.25, true});
-    // A parent that has no entry itself looks as groups do.
+    // A parent without its own entry has the default look.
     CHECK(group_of(groups, 4) == ColorGroup{"group 4", default_group(9).color, 1.0, true});
     groups[1].visible = false;
     for (const int group : {1, 2, 3}) CHECK_FALSE(group_of(groups, uint8_t(group)).visible);

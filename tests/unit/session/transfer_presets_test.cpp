@@ -1,4 +1,4 @@
-// Presets of transfer functions: all that ship are sound, and fit volumes of any range.
+// Presets of transfer functions: all shipped ones are valid and fit volumes of any range.
 
 #include "engine/session/transfer_presets.h"
 
@@ -43,7 +43,7 @@ TEST_CASE("every preset that ships draws something of the tissue and nothing of 
         CHECK(function.at(2900.0).a > 0.0);
         CHECK(function.at(1000.0).a == 0.0);
         CHECK(transfer_preset_named(preset.name).points.size() == preset.points.size());
-        CHECK_FALSE(transfer_function_of(preset, {}).draws_nothing());  // a volume of which nothing is known
+        CHECK_FALSE(transfer_function_of(preset, {}).draws_nothing());  // a volume without statistics
     }
 }
 

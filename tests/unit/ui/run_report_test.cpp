@@ -1,4 +1,4 @@
-// What a run measures: times between what happened and the frame that shows it, and the median that panels show.
+// The measurements of a run: times from an event to the frame that shows it, and the median that panels show.
 
 #include "ui/run_report.h"
 

@@ -134,7 +134,7 @@ TEST_CASE("saving replaces the old file, whose permissions stay")
 TEST_CASE("a mask as a volume holds the same voxels, in any box, and makes the same records again")
 {
     const TemporaryFolder folder;
-    // The last one's slices are too large for a layer of bricks at once.
+    // In the last one, slices are too large to read a layer of bricks at once.
     for (const Size3& size :
          {Size3(1, 1, 1), Size3(32, 32, 32), Size3(70, 45, 40), Size3(31, 33, 1), Size3(2500, 900, 2)}) {
         CAPTURE(size.x);

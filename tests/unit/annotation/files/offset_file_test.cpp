@@ -14,7 +14,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// Mostly none.
+/// Mostly without offsets.
 template <class Offset>
 std::string random_offsets(const Size3& size, double most, uint32_t seed)
 {

@@ -1,4 +1,4 @@
-// Density offsets in other programs' forms, there and back.
+// Round trips of density offsets through other programs' formats.
 
 #include "engine/annotation/files/offset_import.h"
 
@@ -21,7 +21,8 @@ VolumeInfo volume_of(const Size3& size, VoxelType type)
     return {.name = "scan", .format = "test", .size = size, .type = type, .spacing = {0.5, 0.25, 1.5}, .unit = "um"};
 }
 
-/// Some bricks without any; the largest and the smallest ones, and none of the volume's last voxel but its first.
+/// Random offsets. One brick in three has none; the others begin with the largest, the most negative and the smallest
+/// positive offset.
 DensityField random_field(const Size3& size, VoxelType type, uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -50,7 +51,7 @@ bool is_same(const DensityField& a, const DensityField& b)
     return a.voxels() == b.voxels();
 }
 
-/// The words that refuse a file with these voxels, as offsets of a volume of `type`.
+/// The message that refuses a file with these voxels as offsets of a volume of `type`.
 template <class T>
 std::string refusal(VoxelType held, const std::vector<T>& voxels, VoxelType type)
 {
@@ -123,7 +124,7 @@ TEST_CASE("offsets that no stroke makes are refused in words")
     CHECK(contains(refusal<float>(float32, {0, 0, 0, INFINITY}, float32), "voxel 1, 1, 0 is inf; expected -3.4"));
     CHECK(contains(refusal<double>(float64, {0, 0, 0, -1e39}, float64), "voxel 1, 1, 0 is -1e+39; expected -3.4"));
     CHECK(contains(refusal<uint32_t>(uint32, {0, 4294967295u, 0, 0}, int32), "voxel 1, 0, 0 is 4.29497e+09"));
-    // Other types hold offsets as well; a -0 is none.
+    // Other types can hold offsets too; -0 is no offset.
     CHECK(refusal<int16_t>(int16, {-255, 3, 255, 0}, uint8).empty());
     CHECK(refusal<float>(float32, {-0.0f, 0.5f, 0, 0}, float64).empty());
 }

@@ -17,7 +17,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// A mask of the voxels where `group_at` says so.
+/// A mask with the groups of `group_at`.
 Mask mask_of(const Size3& size, const std::function<int(int64_t, int64_t, int64_t)>& group_at)
 {
     Mask mask(size);
@@ -38,7 +38,7 @@ Mask mask_of(const Size3& size, const std::function<int(int64_t, int64_t, int64_
 
 using Cells = std::set<std::array<int, 3>>;
 
-/// Connected parts of a set of places, over faces (6) or over faces, edges and corners (26).
+/// Number of connected parts of a set of cells, over faces (6) or over faces, edges and corners (26).
 int64_t parts_of(Cells rest, bool over_corners)
 {
     int64_t parts = 0;
@@ -59,7 +59,7 @@ int64_t parts_of(Cells rest, bool over_corners)
     return parts;
 }
 
-/// By its definition: all cells of all cubes in one set, parts by flooding.
+/// By the definition: all cells of all cubes in one set, parts by flooding.
 Topology slow_topology(const Mask& mask)
 {
     Cells painted, unpainted, cells;
@@ -118,7 +118,7 @@ TEST_CASE("the angles at a branch")
     CHECK(measures.branches[0].group == 3);
     REQUIRE(measures.branches[0].angles_degrees.size() == 3);
     CHECK(measures.branches[0].angles_degrees[0] == 90.0);
-    // So close to 180 that the arc cosine would say just that.
+    // So close to 180 that the arc cosine would return exactly 180.
     CHECK(180.0 - measures.branches[0].angles_degrees[1] ==
           doctest::Approx(1e-9 * 180.0 / std::numbers::pi).epsilon(1e-4));
     CHECK(measures.topology == Topology{2, 0, 0});
@@ -156,7 +156,7 @@ TEST_CASE("Betti numbers of a ball, a torus, a shell and what they make together
     // Two that touch are a figure of eight, and far apart two of one.
     CHECK(topology_of(mask_of(size, [&](auto... at) { return torus(20.0, at...) || torus(44.0, at...); })) ==
           Topology{1, 2, 0});
-    // A ball that fills the volume up to its border has no cavity, and neither has what is around it.
+    // A ball that fills the volume up to its border has no cavity, nor do its surroundings.
     CHECK(topology_of(mask_of({8, 8, 8}, [](auto...) { return 1; })) == Topology{1, 0, 0});
     const Mask two = mask_of(size, [&](auto... at) { return ball(at...) ? 1 : shell(at...) ? 2 : 0; });
     CHECK(topology_of(two, 1) == Topology{1, 0, 0});
@@ -169,7 +169,7 @@ TEST_CASE("painted voxels are connected over corners, unpainted ones over faces"
     const Size3 size(4, 4, 4);
     CHECK(topology_of(mask_of(size, [](int64_t x, int64_t y, int64_t z) { return x == y && y == z; })) ==
           Topology{1, 0, 0});
-    // Closed but for edges and corners: a cavity all the same.
+    // Open only at edges and corners: still a cavity.
     const Size3 three(3, 3, 3);
     CHECK(topology_of(mask_of(three, [](int64_t x, int64_t y, int64_t z) {
               return std::abs(x - 1) + std::abs(y - 1) + std::abs(z - 1) == 1;

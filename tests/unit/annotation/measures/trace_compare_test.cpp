@@ -1,5 +1,5 @@
-// What decides in a comparison of traces, case by case: which node stands for which branch or end, what stays near,
-// which ways there are, and what counts as an error. trace_score_test.cpp compares whole trees.
+// The rules of a comparison of traces, case by case: which node matches which branch or end, what counts as near, which
+// paths exist, and what is an error. trace_score_test.cpp compares whole trees.
 
 #include <cmath>
 #include <vector>
@@ -71,7 +71,7 @@ TEST_CASE("a branch stands for a branch, though another node is nearer")
     drawing.line({{0.3, 0, 0}, {15, 0, 0}, {30, 0, 0}}, 1.0, branch);
     drawing.line({{-15, 0, 0}, {-30, 0, 0}}, 1.0, branch);
     drawing.line({{0, 15, 0}, {0, 30, 0}}, 1.0, branch);
-    // A side branch that has just begun at the branch is no gap: the branch is what stands there.
+    // A side branch that just begins at the branch is no gap: it is the branch itself.
     drawing.line({{0, 0.8, 1.2}}, 1.0, branch);
     const TraceComparison found = compare(drawing.trace, truth.trace, 0.0);
     CHECK(found.segments_found == 3);
@@ -107,7 +107,7 @@ TEST_CASE("a node of the truth without internodes takes no node of the trace")
     truth.node({-0.5, 0, 0});
     const TraceComparison found = compare(line_of({{-10, 0, 0}, {-0.4, 0, 0}, {30, 0, 0}}), truth.trace, 0.0);
     CHECK(found.segments_found == 1);
-    CHECK(found.wrong == 1);  // what goes on beyond the end
+    CHECK(found.wrong == 1);  // the part beyond the end
 }
 
 TEST_CASE("balls that just touch are near, and a large ball elsewhere makes no other one larger")
@@ -156,7 +156,7 @@ TEST_CASE("a trace that goes along all of a segment and does not reach the node 
     Drawing drawing;
     const uint32_t almost = drawing.line(steps(0, 29.5, 29.5 / 15));
     const uint32_t other = drawing.line({{29.8, 0.5, 0}, {29.8, -0.5, 0}}, 1.0, almost);
-    drawing.link(other, almost);  // a small loop, so that nothing hangs loose
+    drawing.link(other, almost);  // a small loop, so that there is no loose end
     const uint32_t end = drawing.node({30, 0, 0});
     const TraceGraph truth = line_of(steps(0, 30, 2));
     CHECK(compare(drawing.trace, truth, 0.0).segments_found == 0);

@@ -41,7 +41,7 @@ private:
     double radius_, step_;
 };
 
-/// A tree of five segments with two branches, on which `draw` may do something else than what is there.
+/// A tree of five segments with two branches; `draw` may draw something different.
 struct Tree {
     uint32_t root, first, second, left, right, top;
 };
@@ -177,7 +177,7 @@ TEST_CASE("a trace moved sideways is found while balls touch, and its distance i
     draw_tree(far, {0, 4.0, 0});
     const TraceComparison found = compare(near.trace, true_tree(), 0.0);
     check_counts(found, 5, 0, 0, 0);
-    // All but the segment that rises along y keep 1.5 away, and that one less.
+    // All segments are 1.5 away, except that the one rising along y is nearer.
     CHECK(found.centreline_most.value() == doctest::Approx(1.5).epsilon(1e-9));
     CHECK(found.centreline_rms.value() < 1.5);
     CHECK(found.centreline_rms.value() > 1.4);

@@ -1,5 +1,5 @@
-// Operations on a trace as scripts and the window have them: voxels become the volume's unit, what is too far away is
-// refused, and what is marked and drawn again is what they are about.
+// Operations on a trace, as scripts and the window use them: voxels are converted to the volume's unit, distant targets
+// are refused, and exactly the affected parts are marked and redrawn.
 
 #include "engine/annotation/trace/trace_command.h"
 

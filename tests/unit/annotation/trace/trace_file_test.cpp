@@ -31,7 +31,7 @@ TraceGraph random_trace(uint32_t seed, bool loops)
                          std::abs(uniform(random)),
                          uint8_t(random() % 256)});
         const uint32_t first = i < 120 ? 0 : 120;
-        // As SWC has it: an internode has its outer node's group.
+        // As in SWC: an internode has its outer node's group.
         if (i > first) internodes.push_back({first + uint32_t(random()) % (i - first), i, nodes.back().group});
     }
     if (loops) internodes.push_back({119, 3, 7});
@@ -45,7 +45,7 @@ std::string content_of(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What it looks like without numbers: nodes and internodes, each in an order of their own.
+/// The trace without its numbers: sorted nodes and internodes.
 std::pair<std::multiset<std::string>, std::multiset<std::string>> shape_of(const TraceGraph& trace)
 {
     const auto text_of = [](const TraceNode& node) {
@@ -291,7 +291,7 @@ TEST_CASE("RSML in another unit of length is converted to the volume's, by its r
     const TraceSpace in_mm{{40, 30, 20}, {0.5, 0.25, 1.5}, "mm"};
     CHECK(is_scaled(read(unit("um") + resolution, in_mm), 0.25e-3));
     CHECK(is_scaled(read(unit("inch") + resolution, in_mm), 25.4 / 4.0));
-    // Pixels are voxels along x, and so are numbers of which nothing is said; a resolution without a unit has the
+    // Pixels are voxels along x, and so are numbers without a stated unit; a resolution without a unit uses the
     // volume's.
     for (const char* pixel : {"pixel", "Pixels", "px"}) CHECK(is_scaled(read(unit(pixel), SPACE), 0.5));
     CHECK(is_scaled(read("", SPACE), 0.5));
@@ -327,7 +327,7 @@ TEST_CASE("RSML that is none is refused in words")
         CHECK(contains(
             told("<rsml><metadata><resolution>" + std::string(resolution) + "</resolution></metadata><scene/></rsml>"),
             "metadata: resolution is \"" + std::string(resolution) + "\""));
-    // A unit that is no length, and a volume whose unit is none.
+    // A unit that is not a length, and a volume whose unit is not a length.
     auto path = folder.write("a.rsml", "<rsml><metadata><unit>furlong</unit></metadata><scene/></rsml>");
     CHECK(contains(error_of([&] { load_trace(path, SPACE); }), "is in the unit \"furlong\"; expected \"um\""));
     path = folder.write("a.rsml", "<rsml><metadata><unit>cm</unit></metadata><scene/></rsml>");
@@ -428,10 +428,10 @@ TEST_CASE("hostile GraphML is refused in one sentence")
     CHECK(contains(refusal("a.graphml", graph("<data key=\"size\">1 2 1048577</data>")), "graph: size is"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"internode_radii\">1=2 1=3</data>")), "group 1 twice"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"internode_radii\">1</data>")), "expected group=radius"));
-    // One id that is no number, and none is taken as one.
+    // If one id is not a number, no id is read as one.
     const TemporaryFolder folder;
     const auto mixed = folder.write("b.graphml", graph(node("n5") + node("b")));
     CHECK(load_trace(mixed, {}).trace.nodes().begin()->first == 0);
-    // The largest number there is leaves none for others.
+    // The largest possible number leaves none for new nodes.
     CHECK(refusal("a.graphml", graph(node("n4294967295"))).empty());
 }

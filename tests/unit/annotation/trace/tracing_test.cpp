@@ -16,7 +16,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// A document, its history, and the commands of a person's hand.
+/// A document, its history, and the user's commands.
 struct Desk {
     Document document{Mask({8, 8, 8}), {}};
     History history;
@@ -41,7 +41,7 @@ struct Desk {
     }
 };
 
-/// Every bit of what is annotated.
+/// The complete annotation, bit for bit.
 std::vector<uint64_t> bits_of(const TraceGraph& trace)
 {
     std::vector<uint64_t> bits;
@@ -122,7 +122,7 @@ TEST_CASE("a node is moved, and moved back")
     desk.add({1, 0, 0});
     desk.perform(move_selected(desk.trace(), {-5, 6, 7}));
     CHECK(desk.trace().node(1).position == glm::dvec3(-5, 6, 7));
-    CHECK(desk.trace().nearest_node({-5, 6, 6}) == 1u);  // where it was, the other one would be nearer
+    CHECK(desk.trace().nearest_node({-5, 6, 6}) == 1u);  // at its old position the other one would be nearer
     desk.history.undo(desk.document);
     CHECK(desk.trace().node(1).position == glm::dvec3(1, 0, 0));
     CHECK(desk.trace().nearest_node({-5, 6, 6}) == 0u);
@@ -251,7 +251,7 @@ TEST_CASE("deleting a segment leaves its branches")
     desk.perform(delete_selected(desk.trace()));
     CHECK(desk.trace().nodes().size() == 4);
     CHECK(desk.trace().nodes().contains(2));
-    CHECK(segments_of(desk.trace()).size() == 1);  // what was a branch is one no more
+    CHECK(segments_of(desk.trace()).size() == 1);  // the former branch is none any more
     desk.history.undo(desk.document);
     CHECK(segments_of(desk.trace()).size() == 3);
 }

@@ -1,4 +1,4 @@
-// The journal's file: that it holds what was appended, and nothing that damage made of it.
+// The journal's file: it returns what was appended, and never the results of damage.
 
 #include "engine/annotation/work/journal.h"
 
@@ -66,7 +66,7 @@ TEST_CASE("a journal holds the records it was given, in one go or in several")
             CHECK(journal.append(RecordKind::command, "label", content, 7) == contents.size() + 1);
             contents.push_back(std::move(content));
         }
-        if (round == 1) continue;  // ending is as good as flushing
+        if (round == 1) continue;  // closing also flushes
         journal.flush();
         CHECK(journal.durable() == contents.size());
         CHECK(journal.bytes() == fs::file_size(path));
@@ -171,7 +171,7 @@ TEST_CASE("a journal has one writer, who has read what it holds")
         CHECK_THROWS_AS(Journal(path, scan_journal(path)), JournalTaken);
         one.append(RecordKind::undo, "", {});
         one.flush();
-        CHECK(scan_journal(path).records.size() == 1);  // anybody may read
+        CHECK(scan_journal(path).records.size() == 1);  // reading needs no lock
     }
     const JournalScan early = scan_journal(path);
     Journal(path, early).append(RecordKind::redo, "", {});

@@ -200,7 +200,7 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {R"({"op":"save"} // done)", {"is not JSON"}},
         {"\xff\xfe", {"is not JSON"}},
         {"{\"op\":\"\xff\"}", {"is not JSON"}},
-        // The parser takes a zero byte for the end, and would not see what follows.
+        // The parser treats a zero byte as the end and would miss the rest.
         {std::string("{\"op\":\"save\"}\0{\"op\":\"undo\"}", 27), {"is not JSON: byte 14 is zero"}},
         {R"({"op":"save","a":[[[[[[[[[[[[1]]]]]]]]]]]]})", {"nests"}},
     };

@@ -1,5 +1,5 @@
 // Offsets as readers of voxels see them: components of a raised volume against a breadth-first search, and where
-// offsets are found.
+// offsets are loaded from.
 
 #include "engine/annotation/work/work_offsets.h"
 
@@ -25,7 +25,7 @@ int64_t index_in(const Size3& size, const Size3& at)
     return at.x + size.x * (at.y + size.y * at.z);
 }
 
-/// With the range of every brick and one voxel around, as a project has it: whoever believes it reads nothing else.
+/// Gives the range of every brick and one voxel around, as a project does; callers that trust it skip the voxels.
 class RangedSource final : public MemorySource {
 public:
     RangedSource(const Size3& size, std::vector<uint8_t> voxels)

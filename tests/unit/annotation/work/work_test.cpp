@@ -1,4 +1,4 @@
-// A person's work: that it is there again, whatever happened in between.
+// The user's work is restored, whatever happened in between.
 
 #include "engine/annotation/work/work.h"
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class Desk : public TemporaryFolder {
 public:
     WorkFiles files() const { return files_in(path); }
-    /// A work as it was left; what opening said goes to `said`.
+    /// Reopens the work as it was left; messages from opening go to `said`.
     std::unique_ptr<Work> open(Work::Start start = Work::Start::as_left) const
     {
         auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
@@ -33,7 +33,7 @@ public:
     mutable std::string said;
 };
 
-/// One voxel more of a group, at a place of its own.
+/// One more voxel of a group, at its own position.
 Command dab(uint16_t at, uint8_t group = 1)
 {
     return {"dab", {MaskBrickChange{.brick = 0, .runs = {{at, at, 0, group}}}}};
@@ -52,7 +52,7 @@ TEST_CASE(
         size_t at = 0, wrong = 0, reopened = 0, saved = 0;
         auto work = desk.open();
         for (int step = 0; step < 1500; ++step) {
-            // Memory for few commands, and states so often that most of what is undone lies before the last.
+            // Memory for few commands, and frequent states, so that most undone commands are before the last state.
             work->set_limits({.history_bytes = 20000, .bytes_between_states = 3000, .steps_between_states = 40});
             const auto choice = random() % 40;
             if (choice < 11) {
@@ -71,7 +71,7 @@ TEST_CASE(
                 Command command = random_command(work->document(), random);
                 if (command.changes.empty()) continue;
                 states.resize(++at);
-                // A stroke: the rest goes on with it.
+                // A stroke: the remaining changes extend it.
                 const size_t first = command.changes.size() > 1 && choice < 24 ? command.changes.size() / 2 : 0;
                 std::vector<Change> rest;
                 if (first > 0) rest.assign(command.changes.begin() + ptrdiff_t(first), command.changes.end());
@@ -123,7 +123,7 @@ TEST_CASE("what was not saved is there, and it is said; what was saved needs no 
     {
         const auto work = desk.open();
         CHECK(desk.said.empty());
-        CHECK_FALSE(fs::exists(desk.files().journal));  // who only looks leaves no file
+        CHECK_FALSE(fs::exists(desk.files().journal));  // just looking creates no file
         work->perform(dab(1));
         work->save();
         work->perform(dab(2));
