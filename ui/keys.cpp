@@ -358,6 +358,8 @@ void keys_held(const Window& window, double seconds, const Model& model, Actions
     const double taps = TAPS_PER_SECOND * std::clamp(seconds, 0.0, LONGEST_FRAME_S);
     for (const KeyBinding& binding : key_bindings()) {
         if (!binding.repeats || !window.is_down(binding.key) || !mods_match(binding, mods)) continue;
+        // After Ctrl + S, a hand that lets go of Ctrl first holds S for a moment.
+        if (!mods_match(binding, window.mods_of_press(binding.key))) continue;
         actions.push_back(binding.action(model, taps * rate(binding, mods)));
     }
 }

@@ -1,6 +1,7 @@
 #include "ui/window.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -37,6 +38,7 @@ struct Window::Input {
     /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one turn of
     /// the loop receives a whole gesture.
     std::optional<glm::dvec2> last_cursor;
+    std::map<int, int> mods_of_press;  ///< by key: the modifiers that were down
     static glm::dvec2 cursor(GLFWwindow* window)
     {
         std::optional<glm::dvec2>& last = of(window).last_cursor;
@@ -68,6 +70,7 @@ struct Window::Input {
     void listen() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
+            if (action == GLFW_PRESS) of(w).mods_of_press[key] = mods;
             add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT});
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
@@ -187,6 +190,12 @@ std::vector<InputEvent> Window::wait_events(double timeout_s)
 bool Window::is_down(int key) const
 {
     return glfwGetKey(input_->window, key) == GLFW_PRESS;
+}
+
+int Window::mods_of_press(int key) const
+{
+    const auto found = input_->mods_of_press.find(key);
+    return found == input_->mods_of_press.end() ? 0 : found->second;
 }
 
 void Window::begin_ui()

@@ -80,6 +80,8 @@ public:
     std::vector<InputEvent> wait_events(double timeout_s);
     /// Whether a key is held down.
     bool is_down(int key) const;
+    /// The modifiers (GLFW_MOD_...) that were down when this key was last pressed.
+    int mods_of_press(int key) const;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;

@@ -373,7 +373,7 @@ class View(CliTest):
         small = self.write_session("small.json", annotation={"mask": "other.mask"})
         self.check("annotate", small, "--script", self.write_script("s.jsonl", [
             {"op": "paint", "brush": "fill", "region": "ball", "path": [[12, 12, 12]], "radius": 5, "threshold": 0,
-             "group": 3}]))
+             "group": 3}, {"op": "save"}]))
         session = self.write_ball()
         others = [self.write_ball(name="other.json", annotation={"mask": "other.mask"}),
                   self.write_ball(name="large.json", render={"paging": "never"},

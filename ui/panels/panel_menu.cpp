@@ -87,7 +87,8 @@ void open_dialog(OpenDialog& dialog, Actions& actions)
     ImGui::TextUnformatted("Path of a volume, a session (.json) or a project folder:");
     ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
     if (appears) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputText("##path", &dialog.path,
+                                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     ImGui::TextDisabled("A file can also be dropped onto the window.");
     const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
     ImGui::BeginDisabled(dialog.path.empty());
