@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-enum class Brush { fill, flood, speckle, all };
+enum class Brush { fill, flood, speckle };
 
 /// Everything that is written about a brush.
 struct BrushRow {
@@ -34,8 +34,6 @@ inline constexpr std::array BRUSHES{
         "Paints pieces that lie wholly inside the probe and leaves larger ones alone: clears dirt and noise out of "
         "the view.",
         true},
-    BrushRow{Brush::all, "all", "paint all", "Paint all", "Paints every voxel in the probe, whatever its intensity.",
-             false},
 };
 
 constexpr const BrushRow& row_of(Brush brush)

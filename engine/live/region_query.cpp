@@ -40,11 +40,6 @@ Resource add_brush(FrameGraph& graph, const VolumeBinding& volume, Brush brush, 
         case Brush::fill: return select_fill(graph, volume, input);
         case Brush::flood: return select_flood(graph, volume, input);
         case Brush::speckle: return select_speckles(graph, volume, input);
-        case Brush::all: {
-            RegionInput whole = input;
-            whole.params.threshold_code = 0;
-            return select_fill(graph, volume, whole);
-        }
     }
     SHVR_CHECK(false, "brush ", int(brush));
 }
