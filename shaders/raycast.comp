@@ -19,7 +19,7 @@
 #include "pages.h"
 #endif
 #ifdef OCCLUDED
-#include "occlusion.h"
+#include "occlusion/occlusion.h"
 #endif
 #ifdef SURFACED
 #include "surfaces.h"
@@ -88,7 +88,7 @@ layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB
 #endif
 #include "library/shade.glsl"
 #ifdef OCCLUDED
-#include "library/occlusion.glsl"
+#include "occlusion/occlusion.glsl"
 #endif
 
 #ifdef PAGED

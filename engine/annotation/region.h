@@ -12,7 +12,7 @@
 
 #include "engine/annotation/mask.h"
 #include "engine/volume/volume.h"
-#include "shaders/paint.h"
+#include "shaders/regions/regions.h"
 
 namespace shvr {
 

@@ -231,8 +231,8 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) con
 
 // ---- The work -------------------------------------------------------------------------------------------------------
 
-/// An entry of the table of bricks around another (shaders/occlusion.h): the brick itself, or the finest coarser one on
-/// the device. The key of the brick found is added to `keys`.
+/// An entry of the table of bricks around another (shaders/occlusion/occlusion.h): the brick itself, or the finest
+/// coarser one on the device. The key of the brick found is added to `keys`.
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));

@@ -14,7 +14,7 @@ namespace shvr {
 /// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
 inline constexpr double MOST_OCCLUSION_RADIUS = 60.0;
 
-/// How much of the ambient light reaches a point (shaders/occlusion.h).
+/// How much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {
     double strength = 0.0;     ///< 0: off; 1: fully blocked places get no ambient light
     double radius = 16.0;      ///< distance that light comes from, in reference lengths

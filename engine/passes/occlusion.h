@@ -1,11 +1,12 @@
 #pragma once
-// Local ambient occlusion (shaders/occlusion.h): how opaque bricks are, and the light that reaches their voxels.
+// Local ambient occlusion (shaders/occlusion/occlusion.h): how opaque bricks are, and the light that reaches their
+// voxels.
 
 #include <span>
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
-#include "shaders/occlusion_bake.h"
+#include "shaders/occlusion/occlusion_bake.h"
 
 namespace shvr {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/passes/volume_binding.h"
-#include "shaders/paint.h"
+#include "shaders/regions/regions.h"
 
 namespace shvr {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
-#include "shaders/occlusion.h"
+#include "shaders/occlusion/occlusion.h"
 #include "shaders/raycast.h"
 
 namespace shvr {

@@ -6,11 +6,11 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
-#include "shaders/occlusion_bake.h"
+#include "shaders/occlusion/occlusion_bake.h"
 #include "shaders/pages.h"
-#include "shaders/paint.h"
 #include "shaders/preview.h"
 #include "shaders/raycast.h"
+#include "shaders/regions/regions.h"
 #include "shaders/surfaces.h"
 
 using namespace shvr;

@@ -1,6 +1,6 @@
 #pragma once
-// Local ambient occlusion in double, two ways: as shaders/occlusion.h defines the device's computation, cell by cell,
-// and as the sum over equal steps that it approximates. Lengths are in voxels of the finest axis.
+// Local ambient occlusion in double, two ways: as shaders/occlusion/occlusion.h defines the device's computation, cell
+// by cell, and as the sum over equal steps that it approximates. Lengths are in voxels of the finest axis.
 
 #include <functional>
 #include <vector>

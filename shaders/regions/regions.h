@@ -8,9 +8,9 @@
 //                  Hawick 2018): the root of a component is its lowest run, so the result does not depend on timing
 //   region_mark    speckle fill: marks the roots whose component holds an edge voxel of the region
 //   region_select  keeps the runs connected to the seed (flood fill), or those with an unmarked root (speckle fill)
-#ifndef SHVR_PAINT_H
-#define SHVR_PAINT_H
-#include "bricks.h"
+#ifndef SHVR_REGIONS_H
+#define SHVR_REGIONS_H
+#include "../bricks.h"
 
 SHARED_BEGIN
 

@@ -16,8 +16,8 @@ layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
 layout(binding = 4, r8ui) uniform writeonly uimage3D cells_2;
 layout(binding = 5, r8ui) uniform writeonly uimage3D cells_4;
-#include "library/occlusion_opacity.glsl"
-#include "library/voxel_code.glsl"
+#include "occlusion_opacity.glsl"
+#include "../library/voxel_code.glsl"
 
 float opacity_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)
 {

@@ -2,15 +2,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "paint.h"
+#include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
 layout(push_constant, scalar) uniform Push { RegionParams params; };
 layout(binding = 0, scalar) readonly buffer Bits { uint words[]; } bits;
 layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 
-#include "library/forest.glsl"
-#include "library/region.glsl"
+#include "forest.glsl"
+#include "region.glsl"
 
 // Links the higher root below the lower one; tries again if another thread has moved a root meanwhile.
 void unite(uint a, uint b)

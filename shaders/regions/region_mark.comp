@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "paint.h"
+#include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
 layout(push_constant, scalar) uniform Push { RegionParams params; };
@@ -11,8 +11,8 @@ layout(binding = 1, scalar) readonly buffer Parents { uint of[]; } parents;
 layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) buffer Marked { uint words[]; } marked;   // one bit per voxel, set at roots
 
-#include "library/forest.glsl"
-#include "library/region.glsl"
+#include "forest.glsl"
+#include "region.glsl"
 
 uint row_bits(ivec2 row, int first)
 {

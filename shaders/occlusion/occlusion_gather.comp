@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "pages.h"
+#include "../pages.h"
 #include "occlusion.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -28,9 +28,9 @@ layout(binding = 11, r32ui) uniform writeonly uimage3D near;
 layout(binding = 12, r8ui) uniform writeonly uimage3D around_2;
 layout(binding = 13, r8ui) uniform writeonly uimage3D around_4;
 
-#include "library/occlusion_around.glsl"
-#include "library/occlusion_opacity.glsl"
-#include "library/voxel_code.glsl"
+#include "occlusion_around.glsl"
+#include "occlusion_opacity.glsl"
+#include "../library/voxel_code.glsl"
 
 const uint CELLS_A_SIDE = OCCLUSION_NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;

@@ -14,7 +14,7 @@
 // "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included.
 #ifndef SHVR_OCCLUSION_H
 #define SHVR_OCCLUSION_H
-#include "bricks.h"
+#include "../bricks.h"
 
 SHARED_BEGIN
 

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "paint.h"
+#include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
 layout(constant_id = 0) const uint FLOOD = 1u;   // 1: flood fill, 0: speckle fill
@@ -12,8 +12,8 @@ layout(binding = 1, scalar) readonly buffer Parents { uint of[]; } parents;
 layout(binding = 2, scalar) readonly buffer Marked { uint words[]; } marked;
 layout(binding = 3, scalar) writeonly buffer Selected { uint words[]; } selected;
 
-#include "library/forest.glsl"
-#include "library/region.glsl"
+#include "forest.glsl"
+#include "region.glsl"
 
 void main()
 {

@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "paint.h"
+#include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
 layout(push_constant, scalar) uniform Push { RegionParams params; };
@@ -18,7 +18,7 @@ layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) writeonly buffer Bits { uint words[]; } bits;
 layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
-#include "library/region.glsl"
+#include "region.glsl"
 
 uint code_at(uvec3 voxel)
 {

@@ -7,7 +7,7 @@ layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } g
 #ifdef PAGED
 #define MASK_TABLE_HASHED
 #endif
-#include "mask.glsl"
+#include "../library/mask.glsl"
 #endif
 
 float opacity_of(const OcclusionCellsParams params, float code)

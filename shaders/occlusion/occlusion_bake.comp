@@ -6,7 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "pages.h"
+#include "../pages.h"
 #include "occlusion_bake.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -28,8 +28,8 @@ layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
 
-#include "library/occlusion_around.glsl"
-#include "library/voxel_code.glsl"
+#include "occlusion_around.glsl"
+#include "../library/voxel_code.glsl"
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
