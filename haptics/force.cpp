@@ -14,8 +14,8 @@ constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
 bool is_place(const DeviceState& state)
 {
     const glm::dquat& q = state.rotation;
-    const bool is_near = std::abs(state.position_m.x) <= MOST_REACH_M && std::abs(state.position_m.y) <= MOST_REACH_M &&
-                         std::abs(state.position_m.z) <= MOST_REACH_M;  // false for NaN
+    const bool is_near = std::abs(state.position_m.x) <= MAX_REACH_M && std::abs(state.position_m.y) <= MAX_REACH_M &&
+                         std::abs(state.position_m.z) <= MAX_REACH_M;  // false for NaN
     return is_near && std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
 }
 
@@ -130,7 +130,7 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     if (!usable) memory.flags |= FORCE_NO_REGION;
     if (memory.engagement < 1.0) memory.flags |= FORCE_ENGAGING;
 
-    const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MOST_DAMPING);
+    const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MAX_DAMPING);
     return {.force_n = memory.engagement * memory.relevance_fade * (pull - damping * memory.velocity),
             .probe = probe,
             .proxy = probe + proxy.offset,

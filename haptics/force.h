@@ -77,8 +77,8 @@ inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d:
 inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
 inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
 inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device was moved
-inline constexpr double MOST_REACH_M = 10.0;                  ///< no device reaches farther
-inline constexpr double MOST_DAMPING = 1.2;                   ///< N s/m; more is unstable with jitter and no friction
+inline constexpr double MAX_REACH_M = 10.0;                   ///< no device reaches farther
+inline constexpr double MAX_DAMPING = 1.2;                    ///< N s/m; more is unstable with jitter and no friction
 inline constexpr double SLEW_N = 0.1;                         ///< per tick
 
 /// One tick. `now_ns` is the servo's clock; `state` is the device's latest state and `result` what read() returned.

@@ -23,8 +23,8 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{50};
-constexpr int MOST_REPORTS_A_DRAIN = 256;  ///< a device that floods us must not delay the newest report
-constexpr int LINK_PRIORITY = 81;          ///< above the servo's: both are short and then wait
+constexpr int MAX_REPORTS_A_DRAIN = 256;  ///< a device that floods us must not delay the newest report
+constexpr int LINK_PRIORITY = 81;         ///< above the servo's: both are short and then wait
 
 /// Passed from the reader to the servo.
 struct Reading {
@@ -141,7 +141,7 @@ private:
     DeviceCaps ask_limits(HidPort& port) const
     {
         if (!profile_.feature) return profile_.limits;
-        std::array<uint8_t, 1 + MOST_REPORT_BYTES> report{};
+        std::array<uint8_t, 1 + MAX_REPORT_BYTES> report{};
         const int size = port.read_feature(profile_.feature->id, report);
         if (size <= 0) return profile_.limits;
         // hidapi puts the id first even if reports are unnumbered.
@@ -195,11 +195,11 @@ private:
     void read_while_there(HidPort& port, uint64_t connection)
     {
         Decoder decoder(profile_);
-        std::array<uint8_t, 2 + MOST_REPORT_BYTES> report{};  // one byte more than needed, to detect longer reports
+        std::array<uint8_t, 2 + MAX_REPORT_BYTES> report{};  // one byte more than needed, to detect longer reports
         while (is_running_ && !write_failed_) {
             std::optional<DeviceState> newest;
             int timeout_ms = READ_TIMEOUT_MS;
-            for (int count = 0; count < MOST_REPORTS_A_DRAIN; ++count, timeout_ms = 0) {
+            for (int count = 0; count < MAX_REPORTS_A_DRAIN; ++count, timeout_ms = 0) {
                 const int size = port.read(report, timeout_ms);
                 if (size < 0) return;
                 if (size == 0) break;

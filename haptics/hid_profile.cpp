@@ -105,8 +105,8 @@ HidReport read_report(const JsonNode& node, unsigned kind)
     node.allow({"id", "length", "fields"});
     HidReport report;
     report.id = uint8_t(node["id"].whole(0, 255));
-    report.length = uint32_t(node["length"].whole(1, MOST_REPORT_BYTES));
-    std::array<bool, 8 * MOST_REPORT_BYTES> taken{};
+    report.length = uint32_t(node["length"].whole(1, MAX_REPORT_BYTES));
+    std::array<bool, 8 * MAX_REPORT_BYTES> taken{};
     for (const JsonNode& each : node["fields"].elements(1)) {
         const HidField field = read_field(each, kind, report.length);
         if (report.find(field.quantity)) each["name"].refuse("each name once");

@@ -84,7 +84,7 @@ struct HidProfile {
     std::string note;          ///< for owners of such a device
 };
 
-inline constexpr uint32_t MOST_REPORT_BYTES = 64;
+inline constexpr uint32_t MAX_REPORT_BYTES = 64;
 
 /// `origin` names the text in errors.
 HidProfile parse_hid_profile(const std::string& text, const std::string& origin);

@@ -26,7 +26,7 @@ struct HidInput {
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
 
 struct HidBytes {
-    std::array<uint8_t, 1 + MOST_REPORT_BYTES> bytes{};
+    std::array<uint8_t, 1 + MAX_REPORT_BYTES> bytes{};
     size_t size = 0;
     std::span<const uint8_t> span() const { return {bytes.data(), size}; }
 };

@@ -46,10 +46,10 @@ Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, 
 
 bool is_well_formed(const RelevancePatch& patch)
 {
-    const auto fits = [](int32_t n) { return n > 0 && n <= RelevancePatch::MOST_VOXELS; };
+    const auto fits = [](int32_t n) { return n > 0 && n <= RelevancePatch::MAX_VOXELS; };
     return fits(patch.size.x) && fits(patch.size.y) && fits(patch.size.z) &&
            patch.words_per_row >= (patch.size.x + 31) / 32 &&
-           size_t(patch.words_per_row) * size_t(patch.size.y) * size_t(patch.size.z) <= RelevancePatch::MOST_WORDS;
+           size_t(patch.words_per_row) * size_t(patch.size.y) * size_t(patch.size.z) <= RelevancePatch::MAX_WORDS;
 }
 
 /// Half-open range of the rows along one axis that may intersect the ball.

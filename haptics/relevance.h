@@ -12,17 +12,17 @@
 namespace shvr {
 
 struct RelevancePatch {
-    static constexpr int32_t MOST_VOXELS = 64;  ///< a side
-    static constexpr size_t MOST_WORDS = size_t(MOST_VOXELS) * MOST_VOXELS * MOST_VOXELS / 32;
+    static constexpr int32_t MAX_VOXELS = 64;  ///< a side
+    static constexpr size_t MAX_WORDS = size_t(MAX_VOXELS) * MAX_VOXELS * MAX_VOXELS / 32;
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
     uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC: later changes are not in it
     glm::ivec3 origin{0};   ///< voxel of its lower corner
-    glm::ivec3 size{0};  ///< voxels, each at most MOST_VOXELS; clipped to the volume, outside which nothing is relevant
+    glm::ivec3 size{0};  ///< voxels, each at most MAX_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
     glm::dvec3 spacing{1.0};    ///< physical units per voxel
     glm::ivec3 volume_size{0};  ///< voxels
-    std::array<uint32_t, MOST_WORDS> words{};  ///< word + words_per_row * (y + size.y * z)
+    std::array<uint32_t, MAX_WORDS> words{};  ///< word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const
     {

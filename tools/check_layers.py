@@ -57,7 +57,7 @@ MAY_INCLUDE = {
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "haptics"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
-MOST_SOURCES = 30  # in a folder
+MAX_SOURCES = 30  # in a folder
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
@@ -205,8 +205,8 @@ def check_tree(root, files, rooms):
         if is_room and not str(folder).startswith("tests/unit/") and not (root / folder / "README.md").is_file():
             yield f"{folder}: holds sources but no README.md"
         sources = [file for file in files if file.parent == folder and is_source(root, file)]
-        if len(sources) > MOST_SOURCES:
-            yield f"{folder}: holds {len(sources)} sources; expected at most {MOST_SOURCES}: cut it along an idea"
+        if len(sources) > MAX_SOURCES:
+            yield f"{folder}: holds {len(sources)} sources; expected at most {MAX_SOURCES}: cut it along an idea"
 
 
 def check(root, rooms=MAY_INCLUDE):
@@ -306,7 +306,7 @@ def self_test():
     for change, expected in FORBIDDEN_TABLES:
         if not any(expected in finding for finding in findings_of({}, ROOMS | change)):
             failures.append(f"{change}: expected {expected}")
-    crowd = {f"shaders/kernel_{number}.comp": "" for number in range(MOST_SOURCES)}
+    crowd = {f"shaders/kernel_{number}.comp": "" for number in range(MAX_SOURCES)}
     if not any("shaders: holds" in finding for finding in findings_of(crowd, ROOMS)):
         failures.append("a crowded folder is not reported")
     print("\n".join(f"self-test: {failure}" for failure in failures))

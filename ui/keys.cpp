@@ -20,7 +20,7 @@ constexpr double PROBE_FACTOR = 1.1;
 
 constexpr double SLOWED = 0.2;
 constexpr double BLEND_STEP = 0.05;
-constexpr double MOST_BLEND = 20.0;
+constexpr double MAX_BLEND = 20.0;
 constexpr double TAPS_PER_SECOND = 5.0;  ///< of a held key
 constexpr double LONGEST_FRAME_S = 0.5;  ///< after a hung frame a held key must not throw the view far away
 constexpr int MODIFIERS = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SHIFT;  ///< not Caps Lock and other locks
@@ -105,7 +105,7 @@ Action move_clip(const Model&, double amount)
 /// Steps of a twentieth; snaps values near 0 to 0, which costs nothing to render.
 double stepped(double value, double amount)
 {
-    const double next = std::clamp(value + BLEND_STEP * amount, 0.0, MOST_BLEND);
+    const double next = std::clamp(value + BLEND_STEP * amount, 0.0, MAX_BLEND);
     return next < 1e-9 ? 0.0 : next;
 }
 

@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MOST_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count as whole words
+constexpr int64_t MAX_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count as whole words
 
 struct Range {
     int64_t begin, end;
@@ -56,9 +56,9 @@ bool is_inside(const Size3& voxel, const Size3& size)
 
 void refuse_size(double radius_voxels, const Size3& size)
 {
-    if ((size.x + 31) / 32 * 32 * size.y * size.z > MOST_REGION_VOXELS)
+    if ((size.x + 31) / 32 * 32 * size.y * size.z > MAX_REGION_VOXELS)
         fail("brush radius is ", radius_voxels, " voxels: its region is ", size.x, " x ", size.y, " x ", size.z,
-             " voxels; expected at most ", MOST_REGION_VOXELS,
+             " voxels; expected at most ", MAX_REGION_VOXELS,
              " (256 x 256 x 256), each row filled up to a multiple of 32");
 }
 
@@ -140,8 +140,8 @@ double stroke_position_count(std::span<const glm::dvec3> path)
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 {
     const double count = stroke_position_count(path);
-    if (!(count <= double(MOST_STROKE_POSITIONS)))
-        fail("the stroke makes ", count, " positions a voxel apart; expected at most ", MOST_STROKE_POSITIONS);
+    if (!(count <= double(MAX_STROKE_POSITIONS)))
+        fail("the stroke makes ", count, " positions a voxel apart; expected at most ", MAX_STROKE_POSITIONS);
     std::vector<glm::dvec3> positions;
     positions.reserve(size_t(count));
     for (size_t i = 0; i < path.size(); ++i) {

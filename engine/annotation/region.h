@@ -37,11 +37,11 @@ void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& 
 
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
 /// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
-/// Fails if there are more than MOST_STROKE_POSITIONS.
+/// Fails if there are more than MAX_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
 /// How many positions that is, without making them; infinite where coordinates are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);
-inline constexpr int64_t MOST_STROKE_POSITIONS = 1'000'000;
+inline constexpr int64_t MAX_STROKE_POSITIONS = 1'000'000;
 
 /// A set of voxels in sparse bricks of 32^3 bits.
 class VoxelSelection {

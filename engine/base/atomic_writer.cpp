@@ -62,7 +62,7 @@ void AtomicWriter::append(std::span<const std::byte> content)
         if (count < 0) refuse(errno);
         // Some network file systems report "nothing written" for "full".
         if (count == 0) refuse(ENOSPC);
-        content = content.subspan(static_cast<size_t>(count));
+        content = content.subspan(size_t(count));
     }
 }
 
@@ -72,7 +72,7 @@ void AtomicWriter::write_at(int64_t offset, std::span<const std::byte> content)
         const ssize_t count = ::pwrite(descriptor_.number(), content.data(), content.size(), offset);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) refuse(count < 0 ? errno : ENOSPC);
-        content = content.subspan(static_cast<size_t>(count));
+        content = content.subspan(size_t(count));
         offset += count;
     }
 }
@@ -83,7 +83,7 @@ void AtomicWriter::read_back(int64_t offset, std::span<std::byte> content) const
         const ssize_t count = ::pread(descriptor_.number(), content.data(), content.size(), offset);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) refuse(count < 0 ? errno : EIO);
-        content = content.subspan(static_cast<size_t>(count));
+        content = content.subspan(size_t(count));
         offset += count;
     }
 }

@@ -33,13 +33,13 @@ Container read_whole(const std::filesystem::path& path, int64_t max_bytes)
         fail(path.string(), ": holds ", status.st_size, " bytes; expected at most ", max_bytes);
     }
     Container content;
-    content.resize(static_cast<size_t>(status.st_size));
+    content.resize(size_t(status.st_size));
     for (size_t done = 0; done < content.size();) {
         const ssize_t count = ::read(file.number(), content.data() + done, content.size() - done);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
         if (count == 0) fail(path.string(), ": ended after ", done, " bytes; expected ", content.size());
-        done += static_cast<size_t>(count);
+        done += size_t(count);
     }
     return content;
 }

@@ -61,7 +61,7 @@ Planes ycxcz_planes(const Image8& image)
 {
     std::array<double, 256> decoded{};
     for (size_t level = 0; level < decoded.size(); ++level) {
-        decoded[level] = srgb_decode(static_cast<double>(level) / 255.0);
+        decoded[level] = srgb_decode(double(level) / 255.0);
     }
     const Plane empty(image.width, image.height);
     Planes planes{empty, empty, empty};
@@ -69,7 +69,7 @@ Planes ycxcz_planes(const Image8& image)
         const uint8_t* const rgba = image.rgba.data() + 4 * pixel;
         const glm::dvec3 color = ycxcz_of_rgb({decoded[rgba[0]], decoded[rgba[1]], decoded[rgba[2]]});
         for (int channel = 0; channel < 3; ++channel) {
-            planes[static_cast<size_t>(channel)].values[pixel] = color[channel];
+            planes[size_t(channel)].values[pixel] = color[channel];
         }
     }
     return planes;
@@ -91,7 +91,7 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
 {
     const auto sigma_of = [&](double b) { return std::sqrt(b / 2.0) / std::numbers::pi * pixels_per_degree; };
     // One radius for all channels: 3 sigma of the widest Gaussian.
-    const int radius = static_cast<int>(std::ceil(3.0 * sigma_of(BLUE_YELLOW.b1)));
+    const int radius = int(std::ceil(3.0 * sigma_of(BLUE_YELLOW.b1)));
     const auto weights1 = gaussian_weights(sigma_of(sensitivity.b1), radius);
     Plane result = filtered(plane, weights1, weights1);
     if (sensitivity.a2 == 0.0) return result;
@@ -99,7 +99,7 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
     const Plane second = filtered(plane, weights2, weights2);
     // The middle weight of a kernel that sums to 1 is 1 over the sum of the unscaled kernel.
     const auto volume_of = [&](double a, double b, const std::vector<double>& weights) {
-        const double middle = weights[static_cast<size_t>(radius)];
+        const double middle = weights[size_t(radius)];
         return a * std::sqrt(std::numbers::pi / b) / (middle * middle);
     };
     const double volume1 = volume_of(sensitivity.a1, sensitivity.b1, weights1);
@@ -168,11 +168,11 @@ Features features_of(Plane brightness, double pixels_per_degree)
 {
     constexpr double WIDTH_DEGREES = 0.082;
     const double sigma = 0.5 * WIDTH_DEGREES * pixels_per_degree;
-    const int radius = static_cast<int>(std::ceil(3.0 * sigma));
+    const int radius = int(std::ceil(3.0 * sigma));
     const std::vector<double> smooth = gaussian_weights(sigma, radius);
     std::vector<double> first = smooth, second = smooth;
     for (size_t tap = 0; tap < smooth.size(); ++tap) {
-        const int x = static_cast<int>(tap) - radius;
+        const int x = int(tap) - radius;
         first[tap] *= -x;
         second[tap] *= x * x / (sigma * sigma) - 1.0;
     }

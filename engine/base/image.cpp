@@ -12,7 +12,7 @@ uint8_t byte_of(double share)
 {
     // Written so that NaN becomes 0; lround is undefined for it.
     if (!(share > 0.0)) return 0;
-    return static_cast<uint8_t>(std::lround(std::min(share, 1.0) * 255.0));
+    return uint8_t(std::lround(std::min(share, 1.0) * 255.0));
 }
 
 }  // namespace
@@ -29,15 +29,15 @@ double srgb_decode(double encoded)
 
 Image8 to_image8(const ImageF& image)
 {
-    const size_t values = 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+    const size_t values = 4 * size_t(image.width) * size_t(image.height);
     SHVR_CHECK(image.rgba.size() == values, image.rgba.size(), " != ", values);
     Image8 encoded{image.width, image.height, std::vector<uint8_t>(values)};
     for (size_t pixel = 0; pixel < values; pixel += 4) {
-        const double alpha = static_cast<double>(image.rgba[pixel + 3]);
+        const double alpha = double(image.rgba[pixel + 3]);
         encoded.rgba[pixel + 3] = byte_of(alpha);
         if (encoded.rgba[pixel + 3] == 0) continue;
         for (size_t channel = pixel; channel < pixel + 3; ++channel) {
-            encoded.rgba[channel] = byte_of(srgb_encode(static_cast<double>(image.rgba[channel]) / alpha));
+            encoded.rgba[channel] = byte_of(srgb_encode(double(image.rgba[channel]) / alpha));
         }
     }
     return encoded;
@@ -45,7 +45,7 @@ Image8 to_image8(const ImageF& image)
 
 size_t count_not_finite(const ImageF& image)
 {
-    return static_cast<size_t>(
+    return size_t(
         std::count_if(image.rgba.begin(), image.rgba.end(), [](float value) { return !std::isfinite(value); }));
 }
 

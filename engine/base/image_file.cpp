@@ -52,8 +52,8 @@ std::optional<int64_t> bits_of_pixel(Bytes file)
 void check_size(int64_t width, int64_t height, std::string_view name)
 {
     // Compared by division: the product of hostile sizes could overflow.
-    if (width < 1 || height < 1 || width > MOST_IMAGE_PIXELS / height) {
-        fail(name, ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MOST_IMAGE_PIXELS, " of them");
+    if (width < 1 || height < 1 || width > MAX_IMAGE_PIXELS / height) {
+        fail(name, ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_PIXELS, " of them");
     }
 }
 
@@ -62,7 +62,7 @@ void check_chunks(Bytes file, std::string_view name)
 {
     for (size_t start = SIGNATURE_BYTES; start + CHUNK_FRAME_BYTES <= file.size();) {
         if (number_at(file, start + 4) == 0x49454e44) return;  // IEND
-        start += static_cast<size_t>(number_at(file, start)) + CHUNK_FRAME_BYTES;
+        start += size_t(number_at(file, start)) + CHUNK_FRAME_BYTES;
     }
     fail(name, ": ends after ", file.size(), " bytes; expected an IEND chunk");
 }
@@ -81,7 +81,7 @@ void check_file(Bytes file, std::string_view name)
     check_size(width, height, name);
     const auto bits = bits_of_pixel(file);
     if (!bits) fail(name, ": the colour type is ", std::to_integer<int>(file[25]), "; expected 0, 2, 3, 4 or 6");
-    if (width * height * *bits / 8 / LARGEST_DEFLATE_RATIO > static_cast<int64_t>(file.size())) {
+    if (width * height * *bits / 8 / LARGEST_DEFLATE_RATIO > int64_t(file.size())) {
         fail(name, ": holds ", file.size(), " bytes, too few for the ", width, " x ", height,
              " pixels that its header tells of");
     }
@@ -110,8 +110,7 @@ Image8 decode_png(Bytes file, std::string_view name)
     png.image.format = PNG_FORMAT_RGBA;
     // Without this flag, 16-bit files without a gAMA chunk count as linear, which hardly any of them is.
     png.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
-    Image8 decoded{static_cast<int>(png.image.width), static_cast<int>(png.image.height),
-                   std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
+    Image8 decoded{int(png.image.width), int(png.image.height), std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
     if (png_image_finish_read(&png.image, nullptr, decoded.rgba.data(), 0, nullptr) == 0) {
         fail(name, ": is not a valid PNG file: ", png.image.message);
     }
@@ -121,7 +120,7 @@ Image8 decode_png(Bytes file, std::string_view name)
 std::vector<std::byte> encode_png(const Image8& image, std::string_view name)
 {
     check_size(image.width, image.height, name);
-    const size_t values = 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+    const size_t values = 4 * size_t(image.width) * size_t(image.height);
     SHVR_CHECK(image.rgba.size() == values, image.rgba.size(), " != ", values);
     PngImage png;
     png.image.width = static_cast<png_uint_32>(image.width);
@@ -149,8 +148,8 @@ void write_png(const std::filesystem::path& path, const Image8& image)
 void write_pfm(const std::filesystem::path& path, const ImageF& image)
 {
     check_size(image.width, image.height, path.string());
-    const auto row_values = 4 * static_cast<size_t>(image.width);
-    const auto rows = static_cast<size_t>(image.height);
+    const auto row_values = 4 * size_t(image.width);
+    const auto rows = size_t(image.height);
     SHVR_CHECK(image.rgba.size() == row_values * rows, image.rgba.size(), " != ", row_values * rows);
     // The sign of the scale gives the byte order: negative is little-endian.
     const char* scale = std::endian::native == std::endian::little ? "-1.0" : "1.0";

@@ -14,7 +14,7 @@
 namespace shvr {
 
 /// Larger pictures are neither read nor written.
-inline constexpr int64_t MOST_IMAGE_PIXELS = int64_t{1} << 28;
+inline constexpr int64_t MAX_IMAGE_PIXELS = int64_t{1} << 28;
 
 /// Grey, palette and colour files of 1 to 16 bits become 8-bit RGBA. Values are taken as sRGB unless the file says
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels

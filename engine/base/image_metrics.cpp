@@ -20,7 +20,7 @@ void check_comparable(const Image8& a, const Image8& b)
         fail("the pictures differ in size: ", a.width, " x ", a.height, " and ", b.width, " x ", b.height,
              " pixels; expected the same");
     }
-    const size_t values = 4 * static_cast<size_t>(a.width) * static_cast<size_t>(a.height);
+    const size_t values = 4 * size_t(a.width) * size_t(a.height);
     SHVR_CHECK(a.rgba.size() == values && b.rgba.size() == values, a.rgba.size(), ", ", b.rgba.size(), ", ", values);
     if (values == 0) fail("the pictures are ", a.width, " x ", a.height, " pixels; expected at least one pixel");
 }
@@ -55,14 +55,14 @@ double ssim_of(const Plane& a, const Plane& b)
     double sum = 0.0;
     for (int y = margin; y < a.height - margin; ++y) {
         for (int x = margin; x < a.width - margin; ++x) {
-            const size_t at = static_cast<size_t>(y) * static_cast<size_t>(a.width) + static_cast<size_t>(x);
+            const size_t at = size_t(y) * size_t(a.width) + size_t(x);
             const double ma = mean_a.values[at], mb = mean_b.values[at];
             const double variances = (mean_aa.values[at] - ma * ma) + (mean_bb.values[at] - mb * mb);
             const double covariance = mean_ab.values[at] - ma * mb;
             sum += (2.0 * ma * mb + C1) * (2.0 * covariance + C2) / ((ma * ma + mb * mb + C1) * (variances + C2));
         }
     }
-    return sum / (static_cast<double>(a.width - 2 * margin) * (a.height - 2 * margin));
+    return sum / (double(a.width - 2 * margin) * (a.height - 2 * margin));
 }
 
 }  // namespace
@@ -86,16 +86,16 @@ PixelDifference compare_pixels(const Image8& a, const Image8& b)
         over_1 += largest_here > 1;
         over_4 += largest_here > 4;
     }
-    const double pixels = static_cast<double>(a.rgba.size()) / 4.0;
+    const double pixels = double(a.rgba.size()) / 4.0;
     PixelDifference result;
     result.max_abs = largest;
-    result.rmse = std::sqrt(static_cast<double>(sum_of_squares) / (4.0 * pixels));
+    result.rmse = std::sqrt(double(sum_of_squares) / (4.0 * pixels));
     if (sum_of_squares > 0) result.psnr_db = 20.0 * std::log10(255.0 / result.rmse);
     for (const int64_t sum : sums) {
-        result.mean_error = std::max(result.mean_error, static_cast<double>(std::abs(sum)) / pixels / 255.0);
+        result.mean_error = std::max(result.mean_error, double(std::abs(sum)) / pixels / 255.0);
     }
-    result.fraction_over_1 = static_cast<double>(over_1) / pixels;
-    result.fraction_over_4 = static_cast<double>(over_4) / pixels;
+    result.fraction_over_1 = double(over_1) / pixels;
+    result.fraction_over_4 = double(over_4) / pixels;
     return result;
 }
 
@@ -104,8 +104,8 @@ ImageDifference compare(const Image8& a, const Image8& b)
     ImageDifference result{compare_pixels(a, b)};
     result.ssim = ssim_of(luma_of(a), luma_of(b));
     std::vector<double> flip = flip_map(a, b);
-    result.flip_mean = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
-    const auto p99 = flip.begin() + static_cast<std::ptrdiff_t>((flip.size() * 99 + 99) / 100 - 1);
+    result.flip_mean = std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size());
+    const auto p99 = flip.begin() + std::ptrdiff_t((flip.size() * 99 + 99) / 100 - 1);
     std::nth_element(flip.begin(), p99, flip.end());
     result.flip_p99 = *p99;
     return result;
@@ -120,7 +120,7 @@ Image8 difference_picture(const Image8& a, const Image8& b, double gain)
         const int of_alpha = difference_at(pixel + 3);
         for (size_t at = pixel; at < pixel + 3; ++at) {
             const double shown = gain * std::max(difference_at(at), of_alpha);
-            picture.rgba[at] = static_cast<uint8_t>(std::lround(std::clamp(shown, 0.0, 255.0)));
+            picture.rgba[at] = uint8_t(std::lround(std::clamp(shown, 0.0, 255.0)));
         }
         picture.rgba[pixel + 3] = 255;
     }

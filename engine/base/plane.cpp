@@ -11,15 +11,15 @@ namespace {
 
 Plane filtered_across(const Plane& plane, std::span<const double> weights)
 {
-    const size_t width = static_cast<size_t>(plane.width), radius = weights.size() / 2;
+    const size_t width = size_t(plane.width), radius = weights.size() / 2;
     Plane result(plane.width, plane.height);
     std::vector<double> padded(width + 2 * radius);
     for (size_t start = 0; start < plane.values.size(); start += width) {
         const double* const row = plane.values.data() + start;
         double* const sums = result.values.data() + start;
         std::fill_n(padded.begin(), radius, row[0]);
-        std::copy_n(row, width, padded.begin() + static_cast<std::ptrdiff_t>(radius));
-        std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, row[width - 1]);
+        std::copy_n(row, width, padded.begin() + std::ptrdiff_t(radius));
+        std::fill_n(padded.end() - std::ptrdiff_t(radius), radius, row[width - 1]);
         for (size_t tap = 0; tap < weights.size(); ++tap) {
             const double weight = weights[tap];
             const double* const shifted = padded.data() + tap;
@@ -31,15 +31,15 @@ Plane filtered_across(const Plane& plane, std::span<const double> weights)
 
 Plane filtered_down(const Plane& plane, std::span<const double> weights)
 {
-    const size_t width = static_cast<size_t>(plane.width);
-    const int radius = static_cast<int>(weights.size() / 2);
+    const size_t width = size_t(plane.width);
+    const int radius = int(weights.size() / 2);
     Plane result(plane.width, plane.height);
     for (int y = 0; y < plane.height; ++y) {
-        double* const sums = result.values.data() + static_cast<size_t>(y) * width;
+        double* const sums = result.values.data() + size_t(y) * width;
         for (size_t tap = 0; tap < weights.size(); ++tap) {
             const double weight = weights[tap];
-            const int source = std::clamp(y + static_cast<int>(tap) - radius, 0, plane.height - 1);
-            const double* const row = plane.values.data() + static_cast<size_t>(source) * width;
+            const int source = std::clamp(y + int(tap) - radius, 0, plane.height - 1);
+            const double* const row = plane.values.data() + size_t(source) * width;
             for (size_t x = 0; x < width; ++x) sums[x] += weight * row[x];
         }
     }

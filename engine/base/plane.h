@@ -13,9 +13,7 @@ struct Plane {
     std::vector<double> values;  ///< width * height, rows from the top
 
     Plane(int plane_width, int plane_height)
-        : width(plane_width),
-          height(plane_height),
-          values(static_cast<size_t>(plane_width) * static_cast<size_t>(plane_height))
+        : width(plane_width), height(plane_height), values(size_t(plane_width) * size_t(plane_height))
     {}
 };
 

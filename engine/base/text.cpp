@@ -39,7 +39,7 @@ std::string lower_case(std::string_view text)
 {
     std::string lower(text);
     for (char& character : lower) {
-        if (character >= 'A' && character <= 'Z') character = static_cast<char>(character - 'A' + 'a');
+        if (character >= 'A' && character <= 'Z') character = char(character - 'A' + 'a');
     }
     return lower;
 }

@@ -30,7 +30,7 @@ public:
     ~WorkPool();
     WorkPool(const WorkPool&) = delete;
 
-    int workers() const { return static_cast<int>(threads_.size()); }
+    int workers() const { return int(threads_.size()); }
 
     enum class Urgency { normal, urgent };
     class Batch;

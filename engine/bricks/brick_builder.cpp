@@ -60,7 +60,7 @@ void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t
 /// Separable: first along z, then y, then x, so that the long loops run over adjacent memory.
 void find_ranges(BrickTexels& brick)
 {
-    constexpr size_t SLICE = static_cast<size_t>(TEXELS * TEXELS);
+    constexpr size_t SLICE = size_t(TEXELS * TEXELS);
     constexpr size_t SLICE_PITCH = (SLICE + LANES - 1) / LANES * LANES;
     alignas(64) uint16_t minimum_z[CELLS][SLICE_PITCH + LANES];
     alignas(64) uint16_t maximum_z[CELLS][SLICE_PITCH + LANES];
@@ -82,7 +82,7 @@ void find_ranges(BrickTexels& brick)
             alignas(64) uint16_t minimum_y[ROW_PITCH];
             alignas(64) uint16_t maximum_y[ROW_PITCH];
             // Rows overlap beyond TEXELS: those lanes are never read.
-            const size_t first = y * CELL_STEP * static_cast<size_t>(TEXELS);
+            const size_t first = y * CELL_STEP * size_t(TEXELS);
             reduce_rows(minimum_z[z] + first, maximum_z[z] + first, TEXELS, ROW_PITCH, minimum_y, maximum_y);
             for (size_t x = 0; x < CELLS; ++x, ++cell) {
                 const uint16_t* const low = minimum_y + x * CELL_STEP;
@@ -112,7 +112,7 @@ public:
     Builder(const VolumeSource& source, const IntensityWindow& window)
         : source_(source),
           size_(source.info().size),
-          voxel_bytes_(static_cast<int64_t>(bytes_of(source.info().type))),
+          voxel_bytes_(int64_t(bytes_of(source.info().type))),
           code_rows_(source.info().type, window)
     {}
 
@@ -122,36 +122,36 @@ public:
 
     void read(Slab& slab, int64_t layer, int64_t lower, int64_t upper) const
     {
-        const auto offset = static_cast<size_t>((lower - first_slice(layer)) * slice_bytes());
+        const auto offset = size_t((lower - first_slice(layer)) * slice_bytes());
         source_.read({{0, 0, lower}, {size_.x, size_.y, upper}},
-                     std::span(slab).subspan(offset, static_cast<size_t>((upper - lower) * slice_bytes())));
+                     std::span(slab).subspan(offset, size_t((upper - lower) * slice_bytes())));
     }
 
     void build(const Slab& slab, BrickRow& row) const
     {
-        if (row.bricks.size() < static_cast<size_t>(row.count)) row.bricks.resize(static_cast<size_t>(row.count));
+        if (row.bricks.size() < size_t(row.count)) row.bricks.resize(size_t(row.count));
         const int64_t begin = row.first.x * SIZE - APRON;
         const int64_t first_x = std::max<int64_t>(0, begin);
         const int64_t end_x = std::min(size_.x, (row.first.x + row.count) * SIZE + APRON);
-        std::vector<uint16_t> codes(static_cast<size_t>(row.count * SIZE + 2 * APRON));
-        const std::span<uint16_t> inside(codes.data() + (first_x - begin), static_cast<size_t>(end_x - first_x));
-        const size_t inside_bytes = inside.size() * static_cast<size_t>(voxel_bytes_);
+        std::vector<uint16_t> codes(size_t(row.count * SIZE + 2 * APRON));
+        const std::span<uint16_t> inside(codes.data() + (first_x - begin), size_t(end_x - first_x));
+        const size_t inside_bytes = inside.size() * size_t(voxel_bytes_);
         for (int64_t z = 0; z < TEXELS; ++z) {
             const int64_t slice =
                 std::clamp<int64_t>(row.first.z * SIZE + z - APRON, 0, size_.z - 1) - first_slice(row.first.z);
             for (int64_t y = 0; y < TEXELS; ++y) {
                 const int64_t line = std::clamp<int64_t>(row.first.y * SIZE + y - APRON, 0, size_.y - 1);
                 const int64_t offset = (first_x + size_.x * (line + size_.y * slice)) * voxel_bytes_;
-                code_rows_.convert(std::span(slab).subspan(static_cast<size_t>(offset), inside_bytes), inside);
+                code_rows_.convert(std::span(slab).subspan(size_t(offset), inside_bytes), inside);
                 std::fill(codes.data(), inside.data(), inside.front());
                 std::fill(inside.data() + inside.size(), codes.data() + codes.size(), inside.back());
                 for (int64_t brick = 0; brick < row.count; ++brick) {
-                    std::memcpy(row.bricks[static_cast<size_t>(brick)].codes.data() + TEXELS * (y + TEXELS * z),
+                    std::memcpy(row.bricks[size_t(brick)].codes.data() + TEXELS * (y + TEXELS * z),
                                 codes.data() + brick * SIZE, TEXELS * sizeof(uint16_t));
                 }
             }
         }
-        for (int brick = 0; brick < row.count; ++brick) find_ranges(row.bricks[static_cast<size_t>(brick)]);
+        for (int brick = 0; brick < row.count; ++brick) find_ranges(row.bricks[size_t(brick)]);
     }
 
 private:
@@ -171,16 +171,16 @@ private:
 class Pipeline {
 public:
     Pipeline(const VolumeSource& source, const IntensityWindow& window, int threads)
-        : builder_(source, window), counts_(brick_counts(source.info().size)), rows_(static_cast<size_t>(threads) + 2)
+        : builder_(source, window), counts_(brick_counts(source.info().size)), rows_(size_t(threads) + 2)
     {
         runs_per_line_ = (counts_.x + ROW_BRICKS - 1) / ROW_BRICKS;
         rows_per_layer_ = runs_per_line_ * counts_.y;
-        reads_done_.resize(static_cast<size_t>(counts_.z));
-        rows_done_.resize(static_cast<size_t>(counts_.z));
+        reads_done_.resize(size_t(counts_.z));
+        rows_done_.resize(size_t(counts_.z));
         row_is_built_.resize(rows_.size());
         const int64_t slices = std::min(source.info().size.z, TEXELS);
         for (int layer = 0; layer < std::min(2, counts_.z); ++layer) {
-            slabs_[static_cast<size_t>(layer)].resize(static_cast<size_t>(slices * builder_.slice_bytes()));
+            slabs_[size_t(layer)].resize(size_t(slices * builder_.slice_bytes()));
         }
     }
 
@@ -223,7 +223,7 @@ public:
     }
 
 private:
-    size_t place_of(int64_t row) const { return static_cast<size_t>(row) % rows_.size(); }
+    size_t place_of(int64_t row) const { return size_t(row) % rows_.size(); }
     /// A layer shares two slices with the one before it; they are read once and copied.
     int64_t first_new_slice(int64_t layer) const { return layer == 0 ? 0 : builder_.end_slice(layer - 1); }
     int64_t read_count(int64_t layer) const
@@ -250,9 +250,8 @@ private:
     {
         // Copying the shared slices needs the whole previous layer, which nobody may overwrite meanwhile.
         changed_.wait(lock, [&] {
-            const bool slab_is_free = layer < 2 || rows_done_[static_cast<size_t>(layer - 2)] == rows_per_layer_;
-            const bool before_is_read =
-                layer == 0 || reads_done_[static_cast<size_t>(layer - 1)] == read_count(layer - 1);
+            const bool slab_is_free = layer < 2 || rows_done_[size_t(layer - 2)] == rows_per_layer_;
+            const bool before_is_read = layer == 0 || reads_done_[size_t(layer - 1)] == read_count(layer - 1);
             return is_stopped_ || (slab_is_free && before_is_read);
         });
         if (is_stopped_) return false;
@@ -260,20 +259,20 @@ private:
         if (read == 0 && layer > 0) copy_shared_slices(layer);
         const int64_t lower = first_new_slice(layer) + read * READ_SLICES;
         const int64_t upper = std::min(builder_.end_slice(layer), lower + READ_SLICES);
-        if (lower < upper) builder_.read(slabs_[static_cast<size_t>(layer % 2)], layer, lower, upper);
+        if (lower < upper) builder_.read(slabs_[size_t(layer % 2)], layer, lower, upper);
         lock.lock();
-        ++reads_done_[static_cast<size_t>(layer)];
+        ++reads_done_[size_t(layer)];
         changed_.notify_all();
         return true;
     }
 
     void copy_shared_slices(int64_t layer)
     {
-        const Slab& before = slabs_[static_cast<size_t>((layer - 1) % 2)];
-        Slab& slab = slabs_[static_cast<size_t>(layer % 2)];
+        const Slab& before = slabs_[size_t((layer - 1) % 2)];
+        Slab& slab = slabs_[size_t(layer % 2)];
         const int64_t first = builder_.first_slice(layer);
-        const auto offset = static_cast<size_t>((first - builder_.first_slice(layer - 1)) * builder_.slice_bytes());
-        const auto bytes = static_cast<size_t>((first_new_slice(layer) - first) * builder_.slice_bytes());
+        const auto offset = size_t((first - builder_.first_slice(layer - 1)) * builder_.slice_bytes());
+        const auto bytes = size_t((first_new_slice(layer) - first) * builder_.slice_bytes());
         std::memcpy(slab.data(), before.data() + offset, bytes);
     }
 
@@ -281,20 +280,19 @@ private:
     {
         const int64_t number = layer * rows_per_layer_ + row;
         changed_.wait(lock, [&] {
-            const bool slab_is_read = reads_done_[static_cast<size_t>(layer)] == read_count(layer);
-            return is_stopped_ || (slab_is_read && number < rows_taken_ + static_cast<int64_t>(rows_.size()));
+            const bool slab_is_read = reads_done_[size_t(layer)] == read_count(layer);
+            return is_stopped_ || (slab_is_read && number < rows_taken_ + int64_t(rows_.size()));
         });
         if (is_stopped_) return false;
         lock.unlock();
         BrickRow& bricks = rows_[place_of(number)];
         const int64_t run = row % runs_per_line_;
-        bricks.first = {static_cast<int>(run * ROW_BRICKS), static_cast<int>(row / runs_per_line_),
-                        static_cast<int>(layer)};
-        bricks.count = static_cast<int>(std::min(ROW_BRICKS, counts_.x - run * ROW_BRICKS));
-        builder_.build(slabs_[static_cast<size_t>(layer % 2)], bricks);
+        bricks.first = {int(run * ROW_BRICKS), int(row / runs_per_line_), int(layer)};
+        bricks.count = int(std::min(ROW_BRICKS, counts_.x - run * ROW_BRICKS));
+        builder_.build(slabs_[size_t(layer % 2)], bricks);
         lock.lock();
         row_is_built_[place_of(number)] = true;
-        ++rows_done_[static_cast<size_t>(layer)];
+        ++rows_done_[size_t(layer)];
         changed_.notify_all();
         return true;
     }
@@ -330,8 +328,8 @@ void BrickMaker::make(const BrickKey& key, BrickTexels& texels)
     const Size3 begin = SIZE * Size3(key.brick) - APRON;
     const VoxelBox box{glm::max(begin, Size3(0)), glm::min(begin + TEXELS, size)};
     const Size3 extent = box.size();
-    const auto row_bytes = static_cast<size_t>(extent.x) * bytes_of(source_.info().type);
-    voxels_.resize(row_bytes * static_cast<size_t>(extent.y * extent.z));
+    const auto row_bytes = size_t(extent.x) * bytes_of(source_.info().type);
+    voxels_.resize(row_bytes * size_t(extent.y * extent.z));
     source_.read_level(key.level, box, voxels_);
 
     const int64_t inside_begin = box.lower.x - begin.x;
@@ -340,10 +338,9 @@ void BrickMaker::make(const BrickKey& key, BrickTexels& texels)
         for (int64_t y = 0; y < TEXELS; ++y) {
             const int64_t line = std::clamp<int64_t>(begin.y + y, box.lower.y, box.upper.y - 1) - box.lower.y;
             const std::span<uint16_t> row(texels.codes.data() + TEXELS * (y + TEXELS * z), TEXELS);
-            const auto inside = row.subspan(static_cast<size_t>(inside_begin), static_cast<size_t>(extent.x));
-            code_rows_.convert(
-                std::span(voxels_).subspan(row_bytes * static_cast<size_t>(line + extent.y * slice), row_bytes),
-                inside);
+            const auto inside = row.subspan(size_t(inside_begin), size_t(extent.x));
+            code_rows_.convert(std::span(voxels_).subspan(row_bytes * size_t(line + extent.y * slice), row_bytes),
+                               inside);
             std::fill(row.begin(), inside.begin(), inside.front());
             std::fill(inside.end(), row.end(), inside.back());
         }
@@ -361,8 +358,7 @@ void build_bricks(const VolumeSource& source, const IntensityWindow& window, int
         for (int i = 0; i < std::max(1, threads); ++i) workers.emplace_back([&] { pipeline.work(); });
         for (int64_t row = 0; row < pipeline.row_count(); ++row) {
             const BrickRow& built = pipeline.wait_for_row();
-            for (int i = 0; i < built.count; ++i)
-                take(built.first + glm::ivec3(i, 0, 0), built.bricks[static_cast<size_t>(i)]);
+            for (int i = 0; i < built.count; ++i) take(built.first + glm::ivec3(i, 0, 0), built.bricks[size_t(i)]);
             pipeline.give_back_row();
         }
     } catch (...) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
 /// More messages than a user reads; failures are still counted.
-constexpr size_t MOST_MESSAGES = 20;
+constexpr size_t MAX_MESSAGES = 20;
 
 /// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first
 /// picture. Linux has a priority for each thread; elsewhere (POSIX has one per process), or if the call fails, only
@@ -32,7 +32,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
 {
     const int loaders = std::max(1, threads);
     // One brick in progress for each loader, and one that waits to be taken.
-    most_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
+    max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {
             give_way();
@@ -161,7 +161,7 @@ std::optional<BrickKey> BrickStore::next()
 /// one more.
 bool BrickStore::make_room()
 {
-    const auto is_full = [&] { return kept_.size() + loading_.size() >= most_bricks_; };
+    const auto is_full = [&] { return kept_.size() + loading_.size() >= max_bricks_; };
     for (auto oldest = by_age_.begin(); is_full() && oldest != by_age_.end();) {
         if (untaken_.contains(*oldest)) {
             ++oldest;
@@ -200,7 +200,7 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
     ++counts_.failures;
     failed_.emplace(key, message);
     // One broken chunk may affect several bricks.
-    if (known_messages_.size() < MOST_MESSAGES && known_messages_.insert(message).second) messages_.push_back(message);
+    if (known_messages_.size() < MAX_MESSAGES && known_messages_.insert(message).second) messages_.push_back(message);
 }
 
 void BrickStore::load(std::stop_token stop)

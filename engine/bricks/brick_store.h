@@ -72,7 +72,7 @@ private:
 
     const VolumeSource& source_;
     IntensityWindow window_;
-    uint64_t most_bricks_;
+    uint64_t max_bricks_;
     BrickMaker own_maker_;
 
     mutable std::mutex mutex_;

@@ -32,16 +32,16 @@ void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes
 template <class T>
 void convert_whole(std::span<const std::byte> voxels, std::span<uint16_t> codes, const IntensityWindow& window)
 {
-    const auto lower = static_cast<int64_t>(window.lower);
-    const auto factor = static_cast<uint32_t>(window.codes_per_unit);
-    const int64_t upper = lower + static_cast<int64_t>(65535u / factor);
+    const auto lower = int64_t(window.lower);
+    const auto factor = uint32_t(window.codes_per_unit);
+    const int64_t upper = lower + int64_t(65535u / factor);
     const auto lowest = static_cast<T>(std::max<int64_t>(lower, std::numeric_limits<T>::min()));
     const auto highest = static_cast<T>(std::min<int64_t>(upper, std::numeric_limits<T>::max()));
-    const auto lower_bits = static_cast<uint32_t>(lower);
+    const auto lower_bits = uint32_t(lower);
     for_each_block<T>(voxels, codes, [=](const T* __restrict in, uint16_t* __restrict out) {
         for (size_t i = 0; i < BLOCK; ++i) {
             const T voxel = std::min(std::max(in[i], lowest), highest);
-            out[i] = static_cast<uint16_t>((static_cast<uint32_t>(voxel) - lower_bits) * factor);
+            out[i] = uint16_t((uint32_t(voxel) - lower_bits) * factor);
         }
     });
 }
@@ -53,10 +53,10 @@ void convert_any(std::span<const std::byte> voxels, std::span<uint16_t> codes, c
     const double factor = window.codes_per_unit;
     for_each_block<T>(voxels, codes, [=](const T* __restrict in, uint16_t* __restrict out) {
         for (size_t i = 0; i < BLOCK; ++i) {
-            double code = (static_cast<double>(in[i]) - lower) * factor;
+            double code = (double(in[i]) - lower) * factor;
             code = code > 0.0 ? code : 0.0;  // NaN too
             code = (code < 65535.0 ? code : 65535.0) + 0.5;
-            out[i] = static_cast<uint16_t>(static_cast<int32_t>(code));
+            out[i] = uint16_t(int32_t(code));
         }
     });
 }

@@ -87,8 +87,8 @@ private:
 class Cutter {
 public:
     Cutter(const VolumeInfo& volume, int levels, const PageView& view,
-           const std::function<bool(const BrickKey&)>& shows, size_t most_leaves)
-        : volume_(volume), levels_(levels), view_(view), shows_(shows), most_leaves_(most_leaves)
+           const std::function<bool(const BrickKey&)>& shows, size_t max_leaves)
+        : volume_(volume), levels_(levels), view_(view), shows_(shows), max_leaves_(max_leaves)
     {
         frustums_.emplace_back(view.camera, view.pixels);
         if (view.other_eye) frustums_.emplace_back(*view.other_eye, view.pixels);
@@ -138,7 +138,7 @@ private:
         if (level == levels_ || !shows_(key)) return true;
         if (key.level <= level) {
             leaves_.push_back({key, depth});
-            return leaves_.size() <= most_leaves_;
+            return leaves_.size() <= max_leaves_;
         }
         for (int child = 0; child < 8; ++child)
             if (!visit({key.level - 1, 2 * key.brick + glm::ivec3(child & 1, child >> 1 & 1, child >> 2)}))
@@ -151,7 +151,7 @@ private:
     const PageView& view_;
     std::vector<Frustum> frustums_;  ///< one per eye
     const std::function<bool(const BrickKey&)>& shows_;
-    size_t most_leaves_;
+    size_t max_leaves_;
     double reference_ = 1.0;
     double detail_ = 1.0;
     std::vector<PageTree::Leaf> leaves_;
@@ -209,10 +209,10 @@ void measure_distances(PageTree& tree)
 }  // namespace
 
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
-                        const std::function<bool(const BrickKey&)>& shows, size_t most_leaves)
+                        const std::function<bool(const BrickKey&)>& shows, size_t max_leaves)
 {
     SHVR_CHECK(levels >= 1 && levels < int(gpu::PAGE_NODE), levels);
-    Cutter cutter(volume, levels, view, shows, most_leaves);
+    Cutter cutter(volume, levels, view, shows, max_leaves);
     double detail = view.detail;
     while (!cutter.cut(detail)) detail = detail > 0.0 ? 0.5 * detail : 1.0;
 

@@ -46,8 +46,8 @@ struct PageTree {
 };
 
 /// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the bricks below it, may be visible. A
-/// view that needs more than `most_leaves` gets half the detail, repeatedly.
+/// view that needs more than `max_leaves` gets half the detail, repeatedly.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
-                        const std::function<bool(const BrickKey&)>& shows, size_t most_leaves = size_t{1} << 17);
+                        const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 
 }  // namespace shvr

@@ -10,7 +10,7 @@ namespace {
 
 /// Bytes of voxels read at once, unless a row of blocks is larger: the size of a core's second-level cache.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
-constexpr int64_t MOST_BIT_BYTES = int64_t{64} << 20;
+constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 
 }  // namespace
 
@@ -18,9 +18,9 @@ BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits)
     : source_(source), bits_(bits), size_(source.info().size), row_words_(words_of_row(size_.x))
 {
     const Size3 block = glm::min(source.block(), size_);
-    const int64_t row_bytes = size_.x * static_cast<int64_t>(bytes_of(source.info().type));
+    const int64_t row_bytes = size_.x * int64_t(bytes_of(source.info().type));
     const int64_t bit_bytes = row_words_ * size_.y * 8;
-    slices_ = std::clamp<int64_t>(MOST_BIT_BYTES / bit_bytes, 1, block.z);
+    slices_ = std::clamp<int64_t>(MAX_BIT_BYTES / bit_bytes, 1, block.z);
     rows_ = std::max<int64_t>(STRIP_BYTES / (row_bytes * slices_) / block.y, 1) * block.y;
     if (rows_ >= size_.y) {
         rows_ = size_.y;
@@ -31,7 +31,7 @@ BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits)
 
 void BitSlab::read(int64_t lower, int64_t upper)
 {
-    words_.resize(static_cast<size_t>(row_words_ * size_.y * slices_));
+    words_.resize(size_t(row_words_ * size_.y * slices_));
     for (int64_t y = 0; y < size_.y; y += rows_) read_rows(lower, upper, y, std::min(size_.y, y + rows_));
 }
 
@@ -61,12 +61,11 @@ void BitSlab::read_rows(int64_t lower, int64_t upper, int64_t lower_row, int64_t
     const auto [left, right] = columns_above({{0, lower_row, lower}, {size_.x, upper_row, upper}});
     const int64_t rows = upper_row - lower_row;
     const auto row_of = [&](int64_t slice, int64_t row) {
-        return std::span(words_).subspan(static_cast<size_t>((lower_row + row + slice * size_.y) * row_words_),
-                                         static_cast<size_t>(row_words_));
+        return std::span(words_).subspan(size_t((lower_row + row + slice * size_.y) * row_words_), size_t(row_words_));
     };
-    const size_t row_bytes = static_cast<size_t>(std::max<int64_t>(right - left, 0)) * bytes_of(bits_.type());
+    const size_t row_bytes = size_t(std::max<int64_t>(right - left, 0)) * bytes_of(bits_.type());
     if (row_bytes > 0) {
-        voxels_.resize(row_bytes * static_cast<size_t>(rows * (upper - lower)));
+        voxels_.resize(row_bytes * size_t(rows * (upper - lower)));
         source_.read({{left, lower_row, lower}, {right, upper_row, upper}}, voxels_);
     }
     for (int64_t slice = 0; slice < upper - lower; ++slice)
@@ -74,9 +73,8 @@ void BitSlab::read_rows(int64_t lower, int64_t upper, int64_t lower_row, int64_t
             const std::span<uint64_t> words = row_of(slice, row);
             std::ranges::fill(words, uint64_t{0});
             if (row_bytes == 0) continue;
-            bits_.convert(
-                std::span(voxels_).subspan(static_cast<size_t>(row + rows * slice) * row_bytes, row_bytes),
-                words.subspan(static_cast<size_t>(left / 64), static_cast<size_t>(words_of_row(right - left))));
+            bits_.convert(std::span(voxels_).subspan(size_t(row + rows * slice) * row_bytes, row_bytes),
+                          words.subspan(size_t(left / 64), size_t(words_of_row(right - left))));
         }
 }
 

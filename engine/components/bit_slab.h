@@ -20,10 +20,9 @@ public:
     /// Row y of slice `lower` + slice.
     std::span<const uint64_t> row(int64_t y, int64_t slice) const
     {
-        return std::span(words_).subspan(static_cast<size_t>((y + slice * size_.y) * row_words_),
-                                         static_cast<size_t>(row_words_));
+        return std::span(words_).subspan(size_t((y + slice * size_.y) * row_words_), size_t(row_words_));
     }
-    int64_t bytes() const { return static_cast<int64_t>(words_.capacity() * sizeof(uint64_t) + voxels_.capacity()); }
+    int64_t bytes() const { return int64_t(words_.capacity() * sizeof(uint64_t) + voxels_.capacity()); }
 
 private:
     void read_rows(int64_t lower, int64_t upper, int64_t lower_row, int64_t upper_row);

@@ -28,8 +28,8 @@ FileDescriptor nameless_file(const std::filesystem::path& folder)
 RunFile::RunFile(const std::filesystem::path& folder, const Size3& size)
     : folder_(folder.empty() ? "." : folder),
       file_(nameless_file(folder)),
-      rows_bytes_((size.y + 1) * static_cast<int64_t>(sizeof(uint32_t))),
-      places_(static_cast<size_t>(size.z), int64_t{-1})
+      rows_bytes_((size.y + 1) * int64_t(sizeof(uint32_t))),
+      places_(size_t(size.z), int64_t{-1})
 {}
 
 void RunFile::write(int64_t z, const SliceRuns& slice)
@@ -42,23 +42,23 @@ void RunFile::write(int64_t z, const SliceRuns& slice)
             if (count <= 0)
                 fail(folder_.string(),
                      ": the runs of components cannot be kept in it: ", reason_of(count < 0 ? errno : ENOSPC));
-            bytes = bytes.subspan(static_cast<size_t>(count));
+            bytes = bytes.subspan(size_t(count));
             at += count;
         }
     };
     const auto rows = std::as_bytes(std::span(slice.rows));
     const auto runs = std::as_bytes(std::span(slice.runs));
-    const int64_t place = end_.fetch_add(static_cast<int64_t>(rows.size() + runs.size()));
+    const int64_t place = end_.fetch_add(int64_t(rows.size() + runs.size()));
     put(rows, place);
-    put(runs, place + static_cast<int64_t>(rows.size()));
-    places_[static_cast<size_t>(z)] = place;
+    put(runs, place + int64_t(rows.size()));
+    places_[size_t(z)] = place;
 }
 
 void RunFile::read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const
 {
-    slice.rows.assign(static_cast<size_t>(upper - lower + 1), 0);
+    slice.rows.assign(size_t(upper - lower + 1), 0);
     slice.runs.clear();
-    const int64_t place = places_[static_cast<size_t>(z)];
+    const int64_t place = places_[size_t(z)];
     if (place < 0) return;
     const auto get = [&](std::span<std::byte> bytes, int64_t at) {
         while (!bytes.empty()) {
@@ -67,12 +67,12 @@ void RunFile::read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) co
             if (count <= 0)
                 fail(folder_.string(),
                      ": the runs of components cannot be read from it: ", reason_of(count < 0 ? errno : EIO));
-            bytes = bytes.subspan(static_cast<size_t>(count));
+            bytes = bytes.subspan(size_t(count));
             at += count;
         }
     };
-    constexpr auto ROW = static_cast<int64_t>(sizeof(uint32_t));
-    constexpr auto RUN = static_cast<int64_t>(sizeof(LabelledRun));
+    constexpr auto ROW = int64_t(sizeof(uint32_t));
+    constexpr auto RUN = int64_t(sizeof(LabelledRun));
     get(std::as_writable_bytes(std::span(slice.rows)), place + lower * ROW);
     const uint32_t first = slice.rows.front();
     for (uint32_t& row : slice.rows) row -= first;

@@ -24,12 +24,12 @@ struct SliceRuns {
 
     std::span<LabelledRun> row(int64_t y)
     {
-        const auto at = static_cast<size_t>(y);
+        const auto at = size_t(y);
         return std::span(runs).subspan(rows[at], rows[at + 1] - rows[at]);
     }
     int64_t bytes() const
     {
-        return static_cast<int64_t>(rows.capacity() * sizeof(uint32_t) + runs.capacity() * sizeof(LabelledRun));
+        return int64_t(rows.capacity() * sizeof(uint32_t) + runs.capacity() * sizeof(LabelledRun));
     }
 };
 

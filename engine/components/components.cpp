@@ -64,7 +64,7 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
 void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, Connectivity connectivity,
                  LabelForest& forest)
 {
-    const auto rows = static_cast<int64_t>(before.rows.size()) - 1;
+    const auto rows = int64_t(before.rows.size()) - 1;
     if (connectivity == Connectivity::faces) return join_rows(row, before.row(y), 0, forest);
     for (int64_t near = std::max<int64_t>(y - 1, 0); near <= std::min(y + 1, rows - 1); ++near)
         join_rows(row, before.row(near), 1, forest);
@@ -112,7 +112,7 @@ private:
             ends_.clear();
             append_run_ends(slab.row(y, slice), size.x, ends_);
             for (size_t i = 0; i < ends_.size(); i += 2) last.runs.push_back({ends_[i], ends_[i + 1], NO_LABEL});
-            last.rows.push_back(static_cast<uint32_t>(last.runs.size()));
+            last.rows.push_back(uint32_t(last.runs.size()));
             label_row(y, connectivity);
         }
     }
@@ -126,7 +126,7 @@ private:
         if (forest.size() + row.size() >= LabelForest::MOST) refuse_labels();
         for (LabelledRun& run : row) {
             if (run.label == NO_LABEL) run.label = forest.add();
-            const auto voxels = static_cast<int64_t>(run.end - run.begin);
+            const auto voxels = int64_t(run.end - run.begin);
             forest.voxels(run.label) += voxels;
             foreground_voxels += voxels;
         }
@@ -135,7 +135,7 @@ private:
     void count_held(HeldBytes& held)
     {
         const int64_t bytes = first.bytes() + last.bytes() + before_.bytes() + forest.bytes() +
-                              static_cast<int64_t>(ends_.capacity() * sizeof(uint32_t));
+                              int64_t(ends_.capacity() * sizeof(uint32_t));
         held.change(bytes - held_);
         held_ = bytes;
     }
@@ -171,7 +171,7 @@ public:
             for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
                 table_->runs->read(z, box.lower.y, box.upper.y, slice);
                 const auto after = std::ranges::upper_bound(table_->lower, z);
-                const uint32_t base = table_->bases[static_cast<size_t>(after - table_->lower.begin()) - 1];
+                const uint32_t base = table_->bases[size_t(after - table_->lower.begin()) - 1];
                 for (int64_t y = 0; y < box.size().y; ++y, row += box.size().x) fill_row(slice.row(y), base, box, row);
             }
         });
@@ -228,10 +228,10 @@ private:
     void label_ranges(const VolumeSource& source)
     {
         const Size3& size = source_info_.size;
-        const int threads = options_.threads > 0 ? options_.threads
-                                                 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+        const int threads =
+            options_.threads > 0 ? options_.threads : std::max(1, int(std::thread::hardware_concurrency()));
         const ThresholdBits bits(source_info_.type, options_.threshold);
-        std::vector<BitSlab> slabs(static_cast<size_t>(threads), BitSlab(source, bits));
+        std::vector<BitSlab> slabs(size_t(threads), BitSlab(source, bits));
         // Ranges are whole blocks, so that no block is decoded twice.
         const int64_t block = std::min(source.block().z, size.z);
         const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
@@ -242,12 +242,11 @@ private:
         HeldBytes held;
         std::atomic<int64_t> slices_done = 0;
         WorkPool pool(threads, [&] {
-            if (options_.progress) options_.progress(static_cast<double>(slices_done) / static_cast<double>(size.z));
+            if (options_.progress) options_.progress(double(slices_done) / double(size.z));
         });
         RunFile* const file = table_->runs ? &*table_->runs : nullptr;
-        pool.run(static_cast<int64_t>(ranges_.size()), [&](int64_t task, int worker) {
-            ranges_[static_cast<size_t>(task)].label(slabs[static_cast<size_t>(worker)], size, options_.connectivity,
-                                                     file, held, slices_done);
+        pool.run(int64_t(ranges_.size()), [&](int64_t task, int worker) {
+            ranges_[size_t(task)].label(slabs[size_t(worker)], size, options_.connectivity, file, held, slices_done);
         });
         counts_.peak_bytes = held.peak();
     }
@@ -262,14 +261,14 @@ private:
             const uint64_t base = forest.append(std::move(range.forest));
             if (forest.size() > LabelForest::MOST) refuse_labels();
             table_->lower.push_back(range.lower_slice());
-            table_->bases.push_back(static_cast<uint32_t>(base));
+            table_->bases.push_back(uint32_t(base));
             for (SliceRuns* slice : {&range.first, &range.last})
-                for (LabelledRun& run : slice->runs) run.label += static_cast<uint32_t>(base);
+                for (LabelledRun& run : slice->runs) run.label += uint32_t(base);
             for (int64_t y = 0; !before.rows.empty() && y < source_info_.size.y; ++y)
                 join_slices(range.first.row(y), y, before, options_.connectivity, forest);
             before = std::move(range.last);
         }
-        counts_.provisional = static_cast<int64_t>(forest.size());
+        counts_.provisional = int64_t(forest.size());
         counts_.forest_bytes = forest.bytes();
     }
 
@@ -278,7 +277,7 @@ private:
     {
         LabelForest& forest = table_->forest;
         for (uint64_t i = 0; i < forest.size(); ++i) {
-            const auto label = static_cast<uint32_t>(i);
+            const auto label = uint32_t(i);
             const uint32_t root = forest.parent(forest.parent(label));
             if (root == label) continue;
             forest.parent(label) = root;
@@ -316,11 +315,11 @@ private:
         LabelForest& forest = table_->forest;
         const auto for_each_root = [&](const auto& visit) {
             for (uint64_t i = 0; i < forest.size(); ++i) {
-                const auto label = static_cast<uint32_t>(i);
+                const auto label = uint32_t(i);
                 if (forest.voxels(label) > 0) visit(Component{label, forest.voxels(label)});
             }
         };
-        const auto most = static_cast<size_t>(options_.most_components);
+        const auto most = size_t(options_.max_components);
         std::optional<Component> smallest_kept;
         if (most > 0) {
             const std::vector<Component> kept = largest_of(most, for_each_root);
@@ -330,9 +329,9 @@ private:
             return component.voxels >= options_.fewest_voxels &&
                    (!smallest_kept || !Larger{}(*smallest_kept, component));
         };
-        counts_.largest = largest_of(MOST_LARGEST, [&](const auto& visit) {
+        counts_.largest = largest_of(MAX_LARGEST_LISTED, [&](const auto& visit) {
             for (uint64_t i = 0; i < forest.size(); ++i) {
-                const auto label = static_cast<uint32_t>(i);
+                const auto label = uint32_t(i);
                 const int64_t voxels = forest.voxels(label);
                 if (voxels == 0) {
                     forest.parent(label) = forest.parent(forest.parent(label));  // the final label, stored at the root
@@ -341,7 +340,7 @@ private:
                 ++counts_.found;
                 counts_.largest_voxels = std::max(counts_.largest_voxels, voxels);
                 const bool stays = is_kept({label, voxels});
-                forest.parent(label) = stays ? static_cast<uint32_t>(++counts_.kept) : 0;
+                forest.parent(label) = stays ? uint32_t(++counts_.kept) : 0;
                 if (!stays) continue;
                 counts_.kept_voxels += voxels;
                 visit(Component{forest.parent(label), voxels});
@@ -359,7 +358,7 @@ private:
 
 std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options)
 {
-    SHVR_CHECK(!std::isnan(options.threshold) && options.fewest_voxels >= 1 && options.most_components >= 0);
+    SHVR_CHECK(!std::isnan(options.threshold) && options.fewest_voxels >= 1 && options.max_components >= 0);
     return std::make_unique<Labelling>(source, options);
 }
 

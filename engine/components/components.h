@@ -21,9 +21,9 @@ enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are joined
 struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
     Connectivity connectivity = Connectivity::faces;
-    int64_t fewest_voxels = 1;    ///< smaller components are dropped
-    int64_t most_components = 0;  ///< only the largest N are kept, the first of equal ones; 0: all
-    int threads = 0;              ///< 0: one per core
+    int64_t fewest_voxels = 1;   ///< smaller components are dropped
+    int64_t max_components = 0;  ///< only the largest N are kept, the first of equal ones; 0: all
+    int threads = 0;             ///< 0: one per core
     /// Folder of the temporary file; if unset, no labels are kept and `labels` may not be called.
     std::optional<std::filesystem::path> run_folder{};
     std::function<void(double fraction)> progress{};  ///< called a few times per second, on the calling thread
@@ -40,13 +40,13 @@ public:
         int64_t foreground_voxels = 0;  ///< of all components
         int64_t kept_voxels = 0;
         int64_t largest_voxels = 0;      ///< 0 if there is none
-        std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MOST_LARGEST
+        std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MAX_LARGEST_LISTED
         int64_t provisional = 0;         ///< labels
         int64_t peak_bytes = 0;          ///< of memory while labelling
         int64_t forest_bytes = 0;        ///< of that, for provisional labels
         int64_t run_file_bytes = 0;
     };
-    static constexpr size_t MOST_LARGEST = 100;
+    static constexpr size_t MAX_LARGEST_LISTED = 100;
 
     virtual ~Components() = default;
     const Counts& counts() const { return counts_; }

@@ -24,7 +24,7 @@ public:
     uint32_t add()
     {
         if (next_ % BLOCK == 0) add_block();
-        const auto label = static_cast<uint32_t>(next_++);
+        const auto label = uint32_t(next_++);
         parent(label) = label;
         return label;
     }
@@ -58,7 +58,7 @@ public:
     {
         const uint64_t base = blocks_.size() * uint64_t{BLOCK};
         for (auto& block : other.blocks_) {
-            for (uint32_t& parent : block->parents) parent += static_cast<uint32_t>(base);
+            for (uint32_t& parent : block->parents) parent += uint32_t(base);
             blocks_.push_back(std::move(block));
         }
         for (auto& counts : other.counts_) counts_.push_back(std::move(counts));
@@ -72,8 +72,8 @@ public:
 
     int64_t bytes() const
     {
-        return static_cast<int64_t>(blocks_.size() * (sizeof(Block) + sizeof(void*)) +
-                                    counts_.size() * (sizeof(Counts) + sizeof(void*)));
+        return int64_t(blocks_.size() * (sizeof(Block) + sizeof(void*)) +
+                       counts_.size() * (sizeof(Counts) + sizeof(void*)));
     }
 
 private:

@@ -18,12 +18,12 @@ std::optional<T> lowest_above(double threshold)
 {
     if constexpr (std::is_floating_point_v<T>) {
         const auto nearest = static_cast<T>(threshold);
-        if (static_cast<double>(nearest) >= threshold) return nearest;
+        if (double(nearest) >= threshold) return nearest;
         return std::nextafter(nearest, std::numeric_limits<T>::infinity());
     } else {
         const double whole = std::ceil(threshold);
-        if (whole > static_cast<double>(std::numeric_limits<T>::max())) return std::nullopt;
-        return static_cast<T>(std::max(whole, static_cast<double>(std::numeric_limits<T>::lowest())));
+        if (whole > double(std::numeric_limits<T>::max())) return std::nullopt;
+        return static_cast<T>(std::max(whole, double(std::numeric_limits<T>::lowest())));
     }
 }
 
@@ -67,7 +67,7 @@ void ThresholdBits::convert(std::span<const std::byte> voxels, std::span<uint64_
 {
     with_voxel_type(type_, [&]<class T>(T) {
         const size_t count = voxels.size() / sizeof(T);
-        SHVR_CHECK(words.size() == static_cast<size_t>(words_of_row(static_cast<int64_t>(count))));
+        SHVR_CHECK(words.size() == size_t(words_of_row(int64_t(count))));
         const std::optional<T> lowest = lowest_above<T>(threshold_);
         if (!lowest)
             std::ranges::fill(words, uint64_t{0});

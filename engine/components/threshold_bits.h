@@ -43,10 +43,9 @@ inline void append_run_ends(std::span<const uint64_t> words, int64_t voxels, std
         // Set where a bit differs from the one before it.
         uint64_t edges = bits ^ (bits << 1 | before);
         before = bits >> 63;
-        for (; edges != 0; edges &= edges - 1)
-            ends.push_back(static_cast<uint32_t>(64 * word) + static_cast<uint32_t>(std::countr_zero(edges)));
+        for (; edges != 0; edges &= edges - 1) ends.push_back(uint32_t(64 * word) + uint32_t(std::countr_zero(edges)));
     }
-    if (before != 0) ends.push_back(static_cast<uint32_t>(voxels));
+    if (before != 0) ends.push_back(uint32_t(voxels));
 }
 
 }  // namespace shvr

@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-static_assert(MOST_OCCLUSION_RADIUS == OCCLUSION_MOST_RADIUS);
+static_assert(MAX_OCCLUSION_RADIUS == OCCLUSION_MAX_RADIUS);
 
 namespace {
 

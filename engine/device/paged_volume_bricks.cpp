@@ -11,7 +11,7 @@ namespace shvr {
 namespace {
 
 /// At most so many bricks are re-read after a change of voxels while the caller waits.
-constexpr size_t MOST_RENEWED_NOW = 256;
+constexpr size_t MAX_RENEWED_NOW = 256;
 
 }  // namespace
 
@@ -98,7 +98,7 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
         known_ranges_.erase(key);
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot) continue;
-        const bool now = there <= MOST_RENEWED_NOW || slots_.is_pinned(*slot);
+        const bool now = there <= MAX_RENEWED_NOW || slots_.is_pinned(*slot);
         if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
             known_ranges_[key] = texels->range;
             stage(key, *slot, *texels);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr glm::uvec3 BRICK_EXTENT(gpu::BRICK_TEXELS);
 constexpr uint32_t BRICKS_IN_UPLOAD = 64;  // bricks per upload: 5 MiB of staging
-constexpr size_t MOST_RENEWALS = 2;        // uploads in flight
+constexpr size_t MAX_RENEWALS = 2;         // uploads in flight
 
 /// Collects bricks in a staging buffer and copies a batch of them at a time.
 class Uploader {
@@ -225,7 +225,7 @@ void ResidentVolume::renew_bricks(std::span<const BrickKey> keys)
     const auto texels = std::make_unique<BrickTexels>();
     for (size_t begin = 0; begin < keys.size(); begin += BRICKS_IN_UPLOAD) {
         std::erase_if(renewals_, [](const Renewal& renewal) { return renewal.copy.done(); });
-        if (renewals_.size() >= MOST_RENEWALS) {
+        if (renewals_.size() >= MAX_RENEWALS) {
             static_cast<void>(renewals_.front().copy.finish());
             renewals_.erase(renewals_.begin());
         }

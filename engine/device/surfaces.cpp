@@ -52,8 +52,8 @@ void SurfaceScene::set(SurfaceForest forest)
 {
     gpu::Storage nodes, list;
     if (!forest.nodes().empty()) {
-        nodes = memory_.create("surface nodes", buffer_desc(forest.most_nodes() * sizeof(gpu::SurfaceNode)));
-        list = memory_.create("surface list", buffer_desc(forest.most_surfaces() * sizeof(gpu::Surface)));
+        nodes = memory_.create("surface nodes", buffer_desc(forest.max_nodes() * sizeof(gpu::SurfaceNode)));
+        list = memory_.create("surface list", buffer_desc(forest.max_surfaces() * sizeof(gpu::Surface)));
     }
     nodes_ = std::move(nodes);
     list_ = std::move(list);

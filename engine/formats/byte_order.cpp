@@ -53,7 +53,7 @@ void vote(std::span<const std::byte> row, Votes& votes)
     const auto distance = [](std::span<const std::byte> voxels, size_t i) {
         T pair[2];
         std::memcpy(pair, voxels.data() + i * sizeof(T), sizeof(pair));
-        const double difference = std::abs(static_cast<double>(pair[1]) - static_cast<double>(pair[0]));
+        const double difference = std::abs(double(pair[1]) - double(pair[0]));
         return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
     };
     for (size_t i = 0; i + 1 < row.size() / sizeof(T); ++i) {
@@ -90,10 +90,10 @@ void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes)
 {
     constexpr int64_t ROWS = 64;  // from the middle: the first slices may be air
-    constexpr int64_t MOST_VOXELS = 4096;
+    constexpr int64_t MAX_VOXELS = 4096;
     Votes votes;
-    const auto voxel_bytes = static_cast<int64_t>(bytes_of(info.type));
-    std::vector<std::byte> row(static_cast<size_t>(std::min(info.size.x, MOST_VOXELS) * voxel_bytes));
+    const auto voxel_bytes = int64_t(bytes_of(info.type));
+    std::vector<std::byte> row(size_t(std::min(info.size.x, MAX_VOXELS) * voxel_bytes));
     for (int64_t i = 0; bytes != nullptr && i < ROWS; ++i) {
         const int64_t y = info.size.y * i / ROWS;
         bytes->read(voxel_bytes * info.size.x * (y + info.size.y * (info.size.z / 2)), row);

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Each name takes a hundred bytes of memory and a lookup of its file.
-constexpr int64_t MOST_FILES = 65536;
+constexpr int64_t MAX_FILES = 65536;
 
 /// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern is untrusted, so it is never
 /// passed to printf.
@@ -47,11 +47,11 @@ Pattern parse_pattern(const HeaderFields& fields, const char* field, std::string
         const std::string_view digits = text.substr(at + 1, letter - at - 1);
         const bool is_number = letter < text.size() && std::string_view("diu").find(text[letter]) != std::string::npos;
         const int64_t width = digits.empty() ? 0 : whole_of(digits).value_or(WIDEST + 1);
-        if (has_number || !is_number || width > static_cast<int64_t>(WIDEST)) {
+        if (has_number || !is_number || width > int64_t(WIDEST)) {
             fields.refuse(field, "a pattern with one number, as in slice%03d.raw 1 93 1");
         }
         has_number = true;
-        pattern.width = static_cast<size_t>(width);
+        pattern.width = size_t(width);
         pattern.has_zeros = digits.starts_with('0');
         at = letter;
     }
@@ -89,11 +89,11 @@ std::vector<fs::path> files_of_pattern(const HeaderFields& fields, const char* f
     int64_t span = 0;
     const bool is_sound = first >= 0 && last >= 0 && step != 0 && step != INT64_MIN &&
                           !__builtin_sub_overflow(last, first, &span) && (span == 0 || (span > 0) == (step > 0)) &&
-                          std::abs(span) / std::abs(step) < MOST_FILES;
+                          std::abs(span) / std::abs(step) < MAX_FILES;
     if (!is_sound) {
         fields.refuse(field,
                       sentence("a first and a last number from 0 and a step that leads from one to the other, to ",
-                               "at most ", MOST_FILES, " files"));
+                               "at most ", MAX_FILES, " files"));
     }
     std::vector<fs::path> files;
     for (int64_t i = 0; i <= span / step; ++i) {
@@ -108,8 +108,8 @@ std::vector<fs::path> files_of_list(const HeaderFields& fields, const char* fiel
     while (!rest.empty()) {
         const std::string_view line = trimmed(take_line(rest));
         if (!line.empty()) files.push_back(path_of(fields, field, std::string(line)));
-        if (files.size() > MOST_FILES)
-            fail(fields.path().string(), ": lists more than ", MOST_FILES, " files; expected fewer");
+        if (files.size() > MAX_FILES)
+            fail(fields.path().string(), ": lists more than ", MAX_FILES, " files; expected fewer");
     }
     return files;
 }
@@ -130,7 +130,7 @@ int64_t choose(const std::string& file, const std::string& choice, int64_t count
                const char* what, const char* option)
 {
     for (size_t i = 0; i < names.size(); ++i) {
-        if (lower_case(choice) == lower_case(names[i])) return static_cast<int64_t>(i);
+        if (lower_case(choice) == lower_case(names[i])) return int64_t(i);
     }
     if (choice.empty() && count == 1) return 0;
     const std::optional<int64_t> number = whole_of(choice);
@@ -163,7 +163,7 @@ std::vector<fs::path> data_files(const HeaderFields& fields, const char* field, 
                                    : axes_of_a_file(fields, field, split_pattern(value), 4);
     std::vector<fs::path> files =
         from_list ? files_of_list(fields, field, rest) : files_of_pattern(fields, field, value);
-    const auto count = static_cast<int64_t>(files.size());
+    const auto count = int64_t(files.size());
     const int64_t rows = size.y * size.z;
     const bool fits = count > 0 && (axes == 3 ? size.z % count == 0 : count == (axes == 2 ? size.z : rows));
     if (!fits) {
@@ -189,7 +189,7 @@ std::span<const char* const> color_names(int64_t count)
 {
     static constexpr const char* NAMES[] = {"red", "green", "blue", "alpha"};
     if (count != 3 && count != 4) return {};
-    return std::span(NAMES).first(static_cast<size_t>(count));
+    return std::span(NAMES).first(size_t(count));
 }
 
 }  // namespace shvr

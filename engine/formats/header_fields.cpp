@@ -28,14 +28,14 @@ std::string read_head(const std::filesystem::path& path, size_t max_bytes)
     if (!S_ISREG(status.st_mode)) {
         fail(path.string(), ": is ", S_ISDIR(status.st_mode) ? "a folder" : "a pipe or device", "; expected a file");
     }
-    std::string head(std::min(max_bytes, static_cast<size_t>(status.st_size)), '\0');
+    std::string head(std::min(max_bytes, size_t(status.st_size)), '\0');
     size_t done = 0;
     while (done < head.size()) {
         const ssize_t count = ::read(file.number(), head.data() + done, head.size() - done);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
         if (count == 0) break;
-        done += static_cast<size_t>(count);
+        done += size_t(count);
     }
     head.resize(done);
     return head;

@@ -13,10 +13,10 @@
 namespace shvr {
 namespace {
 
-constexpr int64_t MOST_EXPANSION = 1032;
+constexpr int64_t MAX_EXPANSION = 1032;
 constexpr int64_t CHUNK_BYTES = int64_t{1} << 20;
 constexpr int64_t CHUNKS_BETWEEN_STATES = 4;
-constexpr int64_t MOST_STATES = 512;
+constexpr int64_t MAX_STATES = 512;
 
 constexpr size_t INPUT_BYTES = 65536;
 
@@ -52,7 +52,7 @@ public:
         while (done < bytes.size() && !has_ended_) {
             const size_t count = decode_some(bytes.subspan(done));
             done += count;
-            output_at_ += static_cast<int64_t>(count);
+            output_at_ += int64_t(count);
         }
         return done;
     }
@@ -85,7 +85,7 @@ private:
         } else if (result == Z_MEM_ERROR) {
             check_memory(result);
         } else if (result != Z_OK && result != Z_BUF_ERROR) {
-            fail(file_.path.string(), ": is damaged after ", output_at_ + static_cast<int64_t>(count),
+            fail(file_.path.string(), ": is damaged after ", output_at_ + int64_t(count),
                  " decompressed bytes: ", stream_.msg == nullptr ? "a dictionary is asked for" : stream_.msg,
                  "; expected deflated data");
         }
@@ -100,7 +100,7 @@ private:
             fail(file_.path.string(), ": is cut short: its compressed data ends after ", output_at_,
                  " decompressed bytes, in the middle; expected its end");
         }
-        input_at_ += static_cast<int64_t>(count);
+        input_at_ += int64_t(count);
         stream_.next_in = input_.data();
         stream_.avail_in = static_cast<uInt>(count);
     }
@@ -128,22 +128,21 @@ public:
         : inflation_(std::move(inflation)),
           end_(inflation_.skip_bytes + inflation_.wanted_bytes),
           chunk_bytes_(std::min(CHUNK_BYTES, end_)),
-          chunks_between_states_(std::max(CHUNKS_BETWEEN_STATES, (chunk_of(end_) + MOST_STATES) / MOST_STATES)),
-          most_kept_(static_cast<size_t>(std::max<int64_t>(2, inflation_.kept_bytes / chunk_bytes_)))
+          chunks_between_states_(std::max(CHUNKS_BETWEEN_STATES, (chunk_of(end_) + MAX_STATES) / MAX_STATES)),
+          max_kept_(size_t(std::max<int64_t>(2, inflation_.kept_bytes / chunk_bytes_)))
     {}
 
     void read(int64_t offset, std::span<std::byte> bytes) const override
     {
         offset += inflation_.skip_bytes;
-        SHVR_CHECK(offset >= 0 && offset + static_cast<int64_t>(bytes.size()) <= end_, offset, " ", bytes.size());
+        SHVR_CHECK(offset >= 0 && offset + int64_t(bytes.size()) <= end_, offset, " ", bytes.size());
         while (!bytes.empty()) {
             const std::shared_ptr<const Bytes> chunk = decoded(chunk_of(offset));
-            const std::span<const std::byte> rest =
-                std::span(*chunk).subspan(static_cast<size_t>(offset % chunk_bytes_));
+            const std::span<const std::byte> rest = std::span(*chunk).subspan(size_t(offset % chunk_bytes_));
             const size_t count = std::min(rest.size(), bytes.size());
             std::copy_n(rest.begin(), count, bytes.begin());
             bytes = bytes.subspan(count);
-            offset += static_cast<int64_t>(count);
+            offset += int64_t(count);
         }
     }
 
@@ -177,22 +176,22 @@ private:
     /// Moves the decoder to the start of chunk `number`, or of the nearest earlier chunk with a saved state.
     void go_before(int64_t number) const
     {
-        const int64_t state = std::min(number / chunks_between_states_, static_cast<int64_t>(states_.size()) - 1);
+        const int64_t state = std::min(number / chunks_between_states_, int64_t(states_.size()) - 1);
         const bool is_near = decoder_ && chunk_of(decoder_->output_at()) <= number &&
                              chunk_of(decoder_->output_at()) >= state * chunks_between_states_;
         if (is_near) return;
         decoder_ = state < 0 ? std::make_unique<Decoder>(inflation_.file, inflation_.offset_bytes)
-                             : std::make_unique<Decoder>(*states_[static_cast<size_t>(state)]);
+                             : std::make_unique<Decoder>(*states_[size_t(state)]);
     }
 
     std::shared_ptr<const Bytes> decode_next() const
     {
         const int64_t begin = decoder_->output_at();
         const int64_t number = chunk_of(begin);
-        if (number == chunks_between_states_ * static_cast<int64_t>(states_.size())) {
+        if (number == chunks_between_states_ * int64_t(states_.size())) {
             states_.push_back(std::make_unique<const Decoder>(*decoder_));
         }
-        const auto chunk = std::make_shared<Bytes>(static_cast<size_t>(std::min(chunk_bytes_, end_ - begin)));
+        const auto chunk = std::make_shared<Bytes>(size_t(std::min(chunk_bytes_, end_ - begin)));
         if (decoder_->decode(*chunk) < chunk->size()) {
             fail(inflation_.file.path.string(), ": holds ", decoder_->output_at(), " decompressed bytes; expected ",
                  end_, " for the voxels that its header states");
@@ -201,7 +200,7 @@ private:
             decoder_->finish();
             decoder_.reset();
         }
-        if (kept_.size() == most_kept_) kept_.pop_back();
+        if (kept_.size() == max_kept_) kept_.pop_back();
         kept_.insert(kept_.begin(), {number, chunk});
         return chunk;
     }
@@ -210,7 +209,7 @@ private:
     int64_t end_;  ///< in decoded bytes, like all offsets here
     int64_t chunk_bytes_;
     int64_t chunks_between_states_;
-    size_t most_kept_;
+    size_t max_kept_;
 
     mutable std::mutex mutex_;
     mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: not positioned
@@ -242,7 +241,7 @@ std::unique_ptr<VoxelBytes> bytes_of_deflated(Inflation inflation)
     int64_t most = 0;
     const int64_t compressed = inflation.file.bytes - inflation.offset_bytes;
     if (__builtin_add_overflow(inflation.skip_bytes, inflation.wanted_bytes, &needed)) needed = -1;
-    if (__builtin_mul_overflow(compressed, MOST_EXPANSION, &most)) most = -1;
+    if (__builtin_mul_overflow(compressed, MAX_EXPANSION, &most)) most = -1;
     if (needed < 0 || (most >= 0 && most < needed)) {
         fail(name, ": holds ", compressed, " compressed bytes, which cannot become more than ", most,
              "; expected enough for the ", inflation.wanted_bytes, " bytes of voxels that its header states");

@@ -68,7 +68,7 @@ RawLayout parse_raw_layout(const std::string& text)
     const std::vector<std::string_view> sides = split(parts[0], 'x');
     if (sides.size() != 3) refuse_layout(text);
     for (int axis = 0; axis < 3; ++axis) {
-        const std::optional<int64_t> side = whole_of(sides[static_cast<size_t>(axis)]);
+        const std::optional<int64_t> side = whole_of(sides[size_t(axis)]);
         if (!side) refuse_layout(text);
         if (*side < 1 || *side > LARGEST_SIDE) {
             throw UsageError(sentence("raw layout ", in_quotes(text), ": size along ", "xyz"[axis], " is ", *side,

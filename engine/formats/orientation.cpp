@@ -12,8 +12,8 @@ namespace shvr {
 namespace {
 
 /// Smaller rotations are taken for rounding errors in the file's numbers.
-constexpr double LEAST_TURN_DEGREES = 0.05;
-constexpr double LEAST_SHEAR_DEGREES = 0.1;
+constexpr double MIN_TURN_DEGREES = 0.05;
+constexpr double MIN_SHEAR_DEGREES = 0.1;
 
 double degrees_of(double radians)
 {
@@ -42,7 +42,7 @@ void warn_of_turn(VolumeInfo& info)
         const double across = std::sqrt(std::max(0.0, glm::dot(direction, direction) - along * along));
         most = std::max(most, degrees_of(std::atan2(across, along)));
     }
-    if (most < LEAST_TURN_DEGREES) return;
+    if (most < MIN_TURN_DEGREES) return;
     info.warnings.push_back(sentence("axes are turned by up to ", with_one_decimal(most), " degrees against those of ",
                                      info.frame.empty() ? "their space" : "the scanner (" + info.frame + ")",
                                      "; the volume is drawn along its own axes"));
@@ -54,7 +54,7 @@ void warn_of_shear(VolumeInfo& info)
     for (const auto& [a, b] : PAIRS) {
         const double cosine = std::clamp(glm::dot(info.directions[a], info.directions[b]), -1.0, 1.0);
         const double angle = degrees_of(std::acos(cosine));
-        if (std::abs(angle - 90.0) < LEAST_SHEAR_DEGREES) continue;
+        if (std::abs(angle - 90.0) < MIN_SHEAR_DEGREES) continue;
         info.warnings.push_back(sentence("axes ", "xyz"[a], " and ", "xyz"[b], " meet at ", with_one_decimal(angle),
                                          " degrees; the volume is drawn as if they met at right angles"));
     }
@@ -71,7 +71,7 @@ int axis_to_reverse(const glm::dmat3& directions)
 
 VolumeInfo reversed(VolumeInfo info, int axis)
 {
-    info.origin += info.directions[axis] * (info.spacing[axis] * static_cast<double>(info.size[axis] - 1));
+    info.origin += info.directions[axis] * (info.spacing[axis] * double(info.size[axis] - 1));
     info.directions[axis] = -info.directions[axis];
     info.warnings.push_back(sentence("axes are left-handed; voxels are taken in reverse order along ", "xyz"[axis],
                                      ", so that the volume is not shown as its mirror image"));
@@ -94,10 +94,10 @@ public:
         source_->read(mirrored, voxels);
         // Swaps consecutive runs of `run_bytes` along the axis, front with back.
         const Size3 extent = box.size();
-        auto run_bytes = static_cast<int64_t>(bytes_of(info().type));
+        auto run_bytes = int64_t(bytes_of(info().type));
         for (int axis = 0; axis < axis_; ++axis) run_bytes *= extent[axis];
         const int64_t runs = extent[axis_];
-        const auto block_bytes = static_cast<size_t>(run_bytes * runs);
+        const auto block_bytes = size_t(run_bytes * runs);
         for (size_t begin = 0; begin < voxels.size(); begin += block_bytes) {
             std::byte* const block = voxels.data() + begin;
             for (int64_t front = 0, back = runs - 1; front < back; ++front, --back) {

@@ -33,7 +33,7 @@ ValueRange range_of(VoxelType type)
         case VoxelType::float32:
         case VoxelType::float64: break;
     }
-    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    SHVR_CHECK(false, "voxel type ", int(type));
     return {};
 }
 

@@ -22,9 +22,9 @@ public:
     {
         const size_t count = file_.read_some(offset_ + offset, bytes);
         if (count == bytes.size()) return;
-        const int64_t end = offset_ + offset + static_cast<int64_t>(count);
-        fail(file_.path.string(), ": ended after ", end, " bytes; expected ",
-             offset_ + offset + static_cast<int64_t>(bytes.size()), ": it was cut short while open");
+        const int64_t end = offset_ + offset + int64_t(count);
+        fail(file_.path.string(), ": ended after ", end, " bytes; expected ", offset_ + offset + int64_t(bytes.size()),
+             ": it was cut short while open");
     }
 
 private:
@@ -42,10 +42,10 @@ public:
     {
         while (!bytes.empty()) {
             const int64_t within = offset % share_bytes_;
-            const auto here = std::min(bytes.size(), static_cast<size_t>(share_bytes_ - within));
-            part(static_cast<size_t>(offset / share_bytes_))->read(within, bytes.first(here));
+            const auto here = std::min(bytes.size(), size_t(share_bytes_ - within));
+            part(size_t(offset / share_bytes_))->read(within, bytes.first(here));
             bytes = bytes.subspan(here);
-            offset += static_cast<int64_t>(here);
+            offset += int64_t(here);
         }
     }
 
@@ -56,7 +56,7 @@ private:
     };
 
     /// Enough for threads that read different parts, without keeping a thousand files open for a thousand slices.
-    static constexpr size_t MOST_OPEN = 16;
+    static constexpr size_t MAX_OPEN_FILES = 16;
 
     std::shared_ptr<const VoxelBytes> part(size_t number) const
     {
@@ -66,7 +66,7 @@ private:
             std::find_if(parts_.begin(), parts_.end(), [&](const Open& open) { return open.number == number; });
         if (found == parts_.end()) {
             std::shared_ptr<const VoxelBytes> opened = open_(number);
-            if (parts_.size() == MOST_OPEN) parts_.pop_back();
+            if (parts_.size() == MAX_OPEN_FILES) parts_.pop_back();
             found = parts_.insert(parts_.end(), {number, std::move(opened)});
         }
         std::rotate(parts_.begin(), found, found + 1);  // most recently used first
@@ -86,12 +86,12 @@ size_t InputFile::read_some(int64_t offset, std::span<std::byte> buffer) const
 {
     size_t done = 0;
     while (done < buffer.size()) {
-        const ssize_t count = ::pread(descriptor.number(), buffer.data() + done, buffer.size() - done,
-                                      offset + static_cast<int64_t>(done));
+        const ssize_t count =
+            ::pread(descriptor.number(), buffer.data() + done, buffer.size() - done, offset + int64_t(done));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
         if (count == 0) break;
-        done += static_cast<size_t>(count);
+        done += size_t(count);
     }
     return done;
 }

@@ -4,17 +4,17 @@
 
 namespace shvr {
 
-TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double min_radius,
                        const std::optional<glm::dvec3>& moved_to)
 {
     TraceMarks marks;
     const auto add_ball = [&](const glm::dvec3& at, double radius, const glm::dvec3& color) {
-        if (marks.balls.size() < MOST_MARKS) marks.balls.push_back({at, std::max(radius, least_radius), color});
+        if (marks.balls.size() < MAX_MARKS) marks.balls.push_back({at, std::max(radius, min_radius), color});
     };
     const TraceSelection& selected = trace.selection();
     if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
     for (const uint32_t number : selected.internodes) {
-        if (marks.lines.size() == MOST_MARKS) break;
+        if (marks.lines.size() == MAX_MARKS) break;
         const TraceInternode& internode = trace.internode(number);
         marks.lines.push_back({trace.node(internode.a).position, trace.node(internode.b).position, SELECTED_COLOR});
     }

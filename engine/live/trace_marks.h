@@ -10,16 +10,16 @@
 namespace shvr {
 
 /// The highlighted nodes and internodes: the selection, and the node that a click would take. Segments of more than
-/// MOST_MARKS internodes are marked in part.
+/// MAX_MARKS internodes are marked in part.
 struct TraceMarks {
     std::vector<OverlayScene::Ball> balls;
     std::vector<OverlayScene::Line> lines;
 };
-inline constexpr size_t MOST_MARKS = 2000;
+inline constexpr size_t MAX_MARKS = 2000;
 inline constexpr glm::dvec3 SELECTED_COLOR{1.0, 0.83, 0.02};  ///< yellow, linear light
 inline constexpr glm::dvec3 NEARBY_COLOR{0.45, 0.05, 0.9};    ///< purple
 /// `moved_to`: where the selected node is being dragged.
-TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double least_radius,
+TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double min_radius,
                        const std::optional<glm::dvec3>& moved_to = {});
 
 }  // namespace shvr

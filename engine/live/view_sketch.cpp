@@ -11,13 +11,13 @@ namespace shvr {
 
 namespace {
 
-constexpr double MOST_SCALE = 8.0;
+constexpr double MAX_SCALE = 8.0;
 
 /// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; at most `most`, and no
 /// coarser than is useful. Whole pictures take `ms`.
 double share_for(double ms, double target_ms, double most)
 {
-    return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MOST_SCALE, most), most);
+    return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MAX_SCALE, most), most);
 }
 
 }  // namespace

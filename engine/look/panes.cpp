@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-constexpr uint32_t LEAST_PANE = 16;    ///< pixels a side
+constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
 constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
 constexpr double MAP_MARGIN = 1.5;     ///< and the camera that looks at it
 
@@ -116,7 +116,7 @@ std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, con
     const std::vector<Pane> one{
         {.kind = Pane::Kind::main, .shot = main, .box = {glm::uvec2(0), pixels}, .name = "camera"}};
     const bool is_divided = settings.arrangement != Arrangement::single;
-    if (!is_divided || glm::any(glm::lessThan(pixels, glm::uvec2(2 * LEAST_PANE)))) return one;
+    if (!is_divided || glm::any(glm::lessThan(pixels, glm::uvec2(2 * MIN_PANE)))) return one;
     if (settings.arrangement == Arrangement::stereo) return stereo_panes(settings.stereo, main, pixels);
 
     const glm::uvec2 counts(2);

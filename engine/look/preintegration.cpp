@@ -12,7 +12,7 @@ namespace {
 /// Extinction where the opacity of a reference length is 1 over a range of densities: the smallest part of the shortest
 /// step is opaque, and differences of its integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
-constexpr uint32_t MOST_PARTS = 16;
+constexpr uint32_t MAX_PARTS = 16;
 
 double extinction_of(double opacity)
 {
@@ -82,7 +82,7 @@ Integrals integrals_of(const TransferFunction& function, uint32_t side)
 
 glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint32_t back)
 {
-    const uint32_t apart = std::max(front, back) - std::min(front, back), parts = std::min(apart, MOST_PARTS);
+    const uint32_t apart = std::max(front, back) - std::min(front, back), parts = std::min(apart, MAX_PARTS);
     const double scale = step / std::abs(sums.density[back] - sums.density[front]);
     const auto boundary = [&](uint32_t part) {
         const uint32_t along = apart * part / parts;

@@ -22,7 +22,7 @@ std::optional<double> byte_of(std::string_view digits)
 std::string digits_of(double share)
 {
     constexpr char DIGITS[] = "0123456789abcdef";
-    const auto value = static_cast<unsigned>(std::lround(std::clamp(share, 0.0, 1.0) * 255.0));
+    const auto value = unsigned(std::lround(std::clamp(share, 0.0, 1.0) * 255.0));
     return {DIGITS[value / 16], DIGITS[value % 16]};
 }
 
@@ -35,7 +35,7 @@ std::optional<glm::dvec4> color_of(std::string_view text)
     for (size_t channel = 0; channel < text.size() / 2; ++channel) {
         const std::optional<double> share = byte_of(text.substr(1 + 2 * channel, 2));
         if (!share) return {};
-        color[static_cast<int>(channel)] = channel < 3 ? srgb_decode(*share) : *share;
+        color[int(channel)] = channel < 3 ? srgb_decode(*share) : *share;
     }
     return color;
 }

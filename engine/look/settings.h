@@ -12,7 +12,7 @@
 namespace shvr {
 
 /// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
-inline constexpr double MOST_OCCLUSION_RADIUS = 60.0;
+inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
 /// How much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {

@@ -6,18 +6,18 @@
 
 namespace shvr {
 
-SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf)
-    : most_in_leaf_(most_in_leaf)
+SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t max_in_leaf)
+    : max_in_leaf_(max_in_leaf)
 {
-    SurfaceTree tree = surface_tree(surfaces, volume, most_in_leaf);
+    SurfaceTree tree = surface_tree(surfaces, volume, max_in_leaf);
     nodes_ = std::move(tree.nodes);
     list_ = std::move(tree.list);
     keys_ = std::move(tree.keys);
     base_nodes_ = nodes_.size();
     base_list_ = list_.size();
     if (!may_grow()) return;
-    nodes_.reserve(most_nodes());
-    list_.reserve(most_surfaces());
+    nodes_.reserve(max_nodes());
+    list_.reserve(max_surfaces());
     leaves_.resize(base_list_);
     for (uint32_t node = 0; node < base_nodes_; ++node)
         for (uint32_t i = nodes_[node].begin; i < nodes_[node].end; ++i) leaves_[i] = node;
@@ -44,7 +44,7 @@ void SurfaceForest::remove(uint64_t key)
 bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces,
                             const VolumeInfo& volume)
 {
-    if (!may_grow() || keys.size() > MOST_ADDED || surfaces.size() > MOST_ADDED) return false;
+    if (!may_grow() || keys.size() > MAX_SURFACES_ADDED || surfaces.size() > MAX_SURFACES_ADDED) return false;
     std::vector<uint64_t> gone(keys.begin(), keys.end());
     for (const KeyedSurface& surface : surfaces) gone.push_back(surface.key);
     std::ranges::sort(gone);
@@ -52,8 +52,8 @@ bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const Keye
     std::erase_if(added, [&](const KeyedSurface& surface) { return std::ranges::binary_search(gone, surface.key); });
     added.insert(added.end(), surfaces.begin(), surfaces.end());
     std::ranges::sort(added, {}, &KeyedSurface::key);
-    if (added.size() > MOST_ADDED) return false;
-    const SurfaceTree tree = surface_tree(added, volume, most_in_leaf_);
+    if (added.size() > MAX_SURFACES_ADDED) return false;
+    const SurfaceTree tree = surface_tree(added, volume, max_in_leaf_);
 
     added_ = std::move(added);
     for (const uint64_t key : gone) remove(key);
@@ -70,7 +70,7 @@ bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const Keye
         written_.list.push_back(uint32_t(list_.size()));
         list_.push_back(surface);
     }
-    SHVR_CHECK(nodes_.size() <= most_nodes() && list_.size() <= most_surfaces());
+    SHVR_CHECK(nodes_.size() <= max_nodes() && list_.size() <= max_surfaces());
     return true;
 }
 

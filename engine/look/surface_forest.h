@@ -15,22 +15,22 @@ namespace shvr {
 class SurfaceForest {
 public:
     /// Maximum number of surfaces in the small hierarchy: two milliseconds to build.
-    static constexpr size_t MOST_ADDED = 2048;
+    static constexpr size_t MAX_SURFACES_ADDED = 2048;
 
     SurfaceForest() = default;
-    /// Keys must differ. Fails as `surface_tree` does. `most_in_leaf` is for tests.
-    SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf = SURFACES_IN_LEAF);
+    /// Keys must differ. Fails as `surface_tree` does. `max_in_leaf` is for tests.
+    SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t max_in_leaf = SURFACES_IN_LEAF);
 
     /// Removes the surfaces with `keys`, if present, and adds `surfaces`. Returns false, and changes nothing, if a new
     /// forest is as cheap. Fails as `surface_tree` does, and then changes nothing. Memory and time are proportional to
-    /// the changes and MOST_ADDED, not to the forest.
+    /// the changes and MAX_SURFACES_ADDED, not to the forest.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }
     const std::vector<gpu::Surface>& list() const { return list_; }
     /// Upper bound of the number of nodes, whatever `replace` does.
-    size_t most_nodes() const { return base_nodes_ + (may_grow() ? 2 * MOST_ADDED : 0); }
-    size_t most_surfaces() const { return base_list_ + (may_grow() ? MOST_ADDED : 0); }
+    size_t max_nodes() const { return base_nodes_ + (may_grow() ? 2 * MAX_SURFACES_ADDED : 0); }
+    size_t max_surfaces() const { return base_list_ + (may_grow() ? MAX_SURFACES_ADDED : 0); }
 
     /// Indices into `nodes` and `list` that `replace` wrote since the last call; may contain duplicates.
     struct Written {
@@ -40,10 +40,10 @@ public:
 
 private:
     /// Smaller forests are rebuilt as fast as the small hierarchy.
-    bool may_grow() const { return base_list_ > 2 * MOST_ADDED; }
+    bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
 
-    size_t most_in_leaf_ = SURFACES_IN_LEAF;
+    size_t max_in_leaf_ = SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
     size_t base_nodes_ = 0, base_list_ = 0;  ///< of the large hierarchy, which comes first

@@ -104,8 +104,8 @@ struct Item {
 /// Splits by the surface area heuristic (MacDonald and Booth 1990) over bins (Wald 2007).
 class Builder {
 public:
-    Builder(std::vector<Item>& items, size_t most_in_leaf, std::vector<gpu::SurfaceNode>& nodes)
-        : items_(items), most_in_leaf_(most_in_leaf), nodes_(nodes)
+    Builder(std::vector<Item>& items, size_t max_in_leaf, std::vector<gpu::SurfaceNode>& nodes)
+        : items_(items), max_in_leaf_(max_in_leaf), nodes_(nodes)
     {}
 
     /// Adds items begin ... end. Every split leaves at least a sixteenth on each side, so the depth is bounded.
@@ -116,7 +116,7 @@ public:
         const size_t node = nodes_.size();
         nodes_.push_back({.lower = rounded(box.lower, -INFINITY), .upper = rounded(box.upper, INFINITY)});
         nodes_[node].begin = nodes_[node].end = uint32_t(begin);
-        if (end - begin <= most_in_leaf_) {
+        if (end - begin <= max_in_leaf_) {
             nodes_[node].end = uint32_t(end);
         } else {
             const size_t middle = split(begin, end);
@@ -191,7 +191,7 @@ private:
     }
 
     std::vector<Item>& items_;
-    size_t most_in_leaf_;
+    size_t max_in_leaf_;
     std::vector<gpu::SurfaceNode>& nodes_;
 };
 
@@ -206,10 +206,10 @@ std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces)
     return all;
 }
 
-SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume, size_t most_in_leaf)
+SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume, size_t max_in_leaf)
 {
-    if (surfaces.size() > MOST_SURFACES)
-        fail(surfaces.size(), " surfaces are to be drawn; expected at most ", MOST_SURFACES);
+    if (surfaces.size() > MAX_SURFACES)
+        fail(surfaces.size(), " surfaces are to be drawn; expected at most ", MAX_SURFACES);
     const double reference_length = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     std::vector<gpu::Surface> all;
     std::vector<Item> items;
@@ -223,7 +223,7 @@ SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInf
     }
     SurfaceTree tree;
     if (items.empty()) return tree;
-    Builder(items, std::max<size_t>(most_in_leaf, 1), tree.nodes).add(0, items.size());
+    Builder(items, std::max<size_t>(max_in_leaf, 1), tree.nodes).add(0, items.size());
     tree.list.reserve(all.size());
     tree.keys.reserve(all.size());
     for (const Item& item : items) {

@@ -38,7 +38,7 @@ struct KeyedSurface {
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 
 /// 60 bytes each, and at most as many bytes of nodes: below the smallest buffer limit of any device, 128 MiB.
-inline constexpr size_t MOST_SURFACES = 1'000'000;
+inline constexpr size_t MAX_SURFACES = 1'000'000;
 
 /// Maximum surfaces per leaf. Fewer means more boxes to load, more means more rods to intersect.
 inline constexpr size_t SURFACES_IN_LEAF = 4;
@@ -49,9 +49,9 @@ struct SurfaceTree {
     std::vector<uint64_t> keys;      ///< of `list`
 };
 
-/// Fails, naming the surface, if there are more than MOST_SURFACES, or if one is not finite, has no size, or is farther
-/// than 2^20 reference lengths from any place the volume may be. `most_in_leaf` is for tests.
+/// Fails, naming the surface, if there are more than MAX_SURFACES, or if one is not finite, has no size, or is farther
+/// than 2^20 reference lengths from any place the volume may be. `max_in_leaf` is for tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
-                         size_t most_in_leaf = SURFACES_IN_LEAF);
+                         size_t max_in_leaf = SURFACES_IN_LEAF);
 
 }  // namespace shvr

@@ -21,9 +21,9 @@ constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border: a compromise
 constexpr uint32_t NEAR_TAPS = 2;
 constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
 constexpr uint32_t FAR_SIZES[] = {0, 0, 1, 1};
-constexpr uint32_t MOST_APRON = 14;     ///< in cells of any size, for the largest radius
-constexpr double MOST_STRETCHED = 1.2;  ///< before another tap is added
-static_assert(NEAR_TAPS + std::size(FAR_STRETCHES) == gpu::OCCLUSION_MOST_TAPS);
+constexpr uint32_t MAX_APRON = 14;     ///< in cells of any size, for the largest radius
+constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
+static_assert(NEAR_TAPS + std::size(FAR_STRETCHES) == gpu::OCCLUSION_MAX_TAPS);
 static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::OCCLUSION_NEAR_APRON);
 
 /// Angle between successive directions: the golden angle.
@@ -39,7 +39,7 @@ ResourceDesc occlusion_near_desc()
 
 ResourceDesc occlusion_around_desc(uint32_t size)
 {
-    const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MOST_APRON;
+    const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MAX_APRON;
     return image_desc(Format::r8_uint, {side, side, side * gpu::OCCLUSION_SLICE});
 }
 
@@ -59,7 +59,7 @@ OcclusionTaps occlusion_taps(double radius)
     const double rest = radius - begin;
     double covered = 0.0;
     size_t count = 0;
-    while (rest > 1e-6 && count < std::size(FAR_STRETCHES) && rest > MOST_STRETCHED * covered)
+    while (rest > 1e-6 && count < std::size(FAR_STRETCHES) && rest > MAX_STRETCHED * covered)
         covered += FAR_STRETCHES[count++];
     if (count > 0) result.exponent = rest / covered;
     for (size_t i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ OcclusionTaps occlusion_taps(double radius)
         for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
         const gpu::OcclusionTap& tap = result.taps.back();
         result.aprons[size] = uint32_t(std::ceil((double(tap.distance) + double(tap.lift)) / cell));
-        SHVR_CHECK(result.aprons[size] <= MOST_APRON);
+        SHVR_CHECK(result.aprons[size] <= MAX_APRON);
     }
     return result;
 }

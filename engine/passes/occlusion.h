@@ -35,7 +35,7 @@ struct OcclusionTaps {
     std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};  ///< cells around a brick that taps may reach
 };
 /// The largest radius, in units of any level.
-inline constexpr double OCCLUSION_MOST_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
+inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
 /// Radii below 1 have no tap: light reaches every voxel.
 OcclusionTaps occlusion_taps(double radius);
 

@@ -32,13 +32,13 @@ void ImportBox::read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool
 void ImportBox::read_slices(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const
 {
     const Size3 extent = part.size();
-    const int64_t slice_bytes = extent.x * extent.y * static_cast<int64_t>(bytes_of(type()));
+    const int64_t slice_bytes = extent.x * extent.y * int64_t(bytes_of(type()));
     const int64_t slices = std::clamp<int64_t>(TASK_BYTES / slice_bytes, 1, extent.z);
     pool.run((extent.z + slices - 1) / slices, [&](int64_t task, int /*worker*/) {
         const int64_t lower = task * slices;
         const int64_t upper = std::min(extent.z, lower + slices);
-        const std::span<std::byte> to = voxels.subspan(static_cast<size_t>(lower * slice_bytes),
-                                                       static_cast<size_t>((upper - lower) * slice_bytes));
+        const std::span<std::byte> to =
+            voxels.subspan(size_t(lower * slice_bytes), size_t((upper - lower) * slice_bytes));
         source_.read(
             {{part.lower.x, part.lower.y, part.lower.z + lower}, {part.upper.x, part.upper.y, part.lower.z + upper}},
             to);
@@ -50,7 +50,7 @@ void ImportBox::read_slices(const VoxelBox& part, std::span<std::byte> voxels, W
 void ImportBox::read_blocks(const VoxelBox& box, std::span<std::byte> voxels, WorkPool& pool) const
 {
     const Size3 extent = box.size();
-    const int64_t row_bytes = extent.x * static_cast<int64_t>(bytes_of(type()));
+    const int64_t row_bytes = extent.x * int64_t(bytes_of(type()));
     const int64_t slice_bytes = row_bytes * extent.y;
     const Size3 block = this->block();
     const int64_t first_z = box.lower.z / block.z;
@@ -62,14 +62,14 @@ void ImportBox::read_blocks(const VoxelBox& box, std::span<std::byte> voxels, Wo
         const int64_t y = first_y + task % along_y;
         const VoxelBox part{glm::max(box.lower, Size3(0, y * block.y, z * block.z)),
                             glm::min(box.upper, Size3(box.upper.x, (y + 1) * block.y, (z + 1) * block.z))};
-        const auto part_bytes = static_cast<size_t>(row_bytes * part.size().y);
-        std::vector<std::byte> read(part_bytes * static_cast<size_t>(part.size().z));
+        const auto part_bytes = size_t(row_bytes * part.size().y);
+        std::vector<std::byte> read(part_bytes * size_t(part.size().z));
         source_.read(part, read);
         reverse(read);
         for (int64_t slice = 0; slice < part.size().z; ++slice) {
             const int64_t to =
                 (part.lower.z - box.lower.z + slice) * slice_bytes + (part.lower.y - box.lower.y) * row_bytes;
-            std::memcpy(voxels.data() + to, read.data() + static_cast<size_t>(slice) * part_bytes, part_bytes);
+            std::memcpy(voxels.data() + to, read.data() + size_t(slice) * part_bytes, part_bytes);
         }
     });
 }
@@ -80,7 +80,7 @@ void ImportBox::reverse(std::span<std::byte> voxels) const
     with_voxel_type(type(), [&]<class T>(T) {
         for (T& voxel : std::span(reinterpret_cast<T*>(voxels.data()), voxels.size() / sizeof(T))) {
             if constexpr (std::is_floating_point_v<T>) {
-                voxel = static_cast<T>(ends_ - static_cast<double>(voxel));
+                voxel = static_cast<T>(ends_ - double(voxel));
             } else {
                 voxel = static_cast<T>(~voxel);  // = smallest + largest - voxel
             }

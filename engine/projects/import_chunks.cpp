@@ -22,35 +22,34 @@ bool is_empty(Bytes chunk)
 
 ImportChunks::ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
                            const ZarrCompressor& compressor, int workers)
-    : compressor_(compressor), compressed_(static_cast<size_t>(workers))
+    : compressor_(compressor), compressed_(size_t(workers))
 {
     for (int level = 0; level < levels; ++level) {
         ZarrVolume volume = import_level(project, info, level, compressor);
         const Size3 counts = volume.counts();
-        levels_.push_back(
-            {std::move(volume), std::vector<uint64_t>(static_cast<size_t>(counts.x * counts.y * counts.z))});
+        levels_.push_back({std::move(volume), std::vector<uint64_t>(size_t(counts.x * counts.y * counts.z))});
     }
 }
 
 void ImportChunks::write(int level, const Size3& chunk, Bytes voxels, int worker)
 {
-    Level& to = levels_[static_cast<size_t>(level)];
-    const auto index = static_cast<size_t>(to.volume.index_of(chunk));
+    Level& to = levels_[size_t(level)];
+    const auto index = size_t(to.volume.index_of(chunk));
     if (is_empty(voxels)) {
         to.checksums[index] = 0;
         return;
     }
-    const Bytes stored = compress_chunk(compressor_, voxels, bytes_of(to.volume.metadata().type),
-                                        compressed_[static_cast<size_t>(worker)]);
+    const Bytes stored =
+        compress_chunk(compressor_, voxels, bytes_of(to.volume.metadata().type), compressed_[size_t(worker)]);
     write_part_file(to.volume.path_of(chunk), stored);
     to.checksums[index] = checksum_of(stored);
-    bytes_ += static_cast<int64_t>(stored.size());
+    bytes_ += int64_t(stored.size());
 }
 
 int64_t ImportChunks::all() const
 {
     int64_t chunks = 0;
-    for (const Level& level : levels_) chunks += static_cast<int64_t>(level.checksums.size());
+    for (const Level& level : levels_) chunks += int64_t(level.checksums.size());
     return chunks;
 }
 
@@ -58,8 +57,7 @@ int64_t ImportChunks::stored() const
 {
     int64_t chunks = 0;
     for (const Level& level : levels_) {
-        chunks += static_cast<int64_t>(
-            std::ranges::count_if(level.checksums, [](uint64_t checksum) { return checksum != 0; }));
+        chunks += int64_t(std::ranges::count_if(level.checksums, [](uint64_t checksum) { return checksum != 0; }));
     }
     return chunks;
 }

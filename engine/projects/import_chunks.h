@@ -20,7 +20,7 @@ public:
     /// different chunks at once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
 
-    int levels() const { return static_cast<int>(levels_.size()); }
+    int levels() const { return int(levels_.size()); }
     Size3 counts(int level) const { return of(level).volume.counts(); }
     const ZarrMetadata& metadata(int level) const { return of(level).volume.metadata(); }
     /// Indexed by ZarrVolume::index_of; 0 if there is no file.
@@ -39,7 +39,7 @@ private:
         ZarrVolume volume;  ///< for names and places; nothing is read through it
         std::vector<uint64_t> checksums;
     };
-    const Level& of(int level) const { return levels_[static_cast<size_t>(level)]; }
+    const Level& of(int level) const { return levels_[size_t(level)]; }
 
     ZarrCompressor compressor_;
     std::vector<Level> levels_;

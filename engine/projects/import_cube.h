@@ -17,9 +17,9 @@ namespace shvr {
 /// long, so that loops over them have a length known at compile time; `side` rows make a slice.
 template <class T>
 struct ImportCube {
-    explicit ImportCube(int64_t rows) : side(rows), values(static_cast<size_t>(rows * rows * IMPORT_CHUNK)) {}
+    explicit ImportCube(int64_t rows) : side(rows), values(size_t(rows * rows * IMPORT_CHUNK)) {}
 
-    size_t row(int64_t y, int64_t z) const { return static_cast<size_t>((y + side * z) * IMPORT_CHUNK); }
+    size_t row(int64_t y, int64_t z) const { return size_t((y + side * z) * IMPORT_CHUNK); }
     const T* lowest() const { return has_ranges ? lower.data() : values.data(); }
     const T* highest() const { return has_ranges ? upper.data() : values.data(); }
 
@@ -54,7 +54,7 @@ void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lowe
     alignas(64) T least[SIDE];
     alignas(64) T most[SIDE];
     for (int row = 0; row < rows.count; ++row) {
-        const std::ptrdiff_t first = rows.first[static_cast<size_t>(row)] - fine.values.data();
+        const std::ptrdiff_t first = rows.first[size_t(row)] - fine.values.data();
         const T* const low = fine.lowest() + first;
         const T* const high = fine.highest() + first;
         if (row == 0) {
@@ -85,7 +85,7 @@ void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how)
             HalvingRows<T> rows;
             for (int64_t dz = 2 * z; dz < std::min(2 * z + 2, fine.extent.z); ++dz) {
                 for (int64_t dy = 2 * y; dy < std::min(2 * y + 2, fine.extent.y); ++dy) {
-                    rows.first[static_cast<size_t>(rows.count++)] = fine.values.data() + fine.row(dy, dz);
+                    rows.first[size_t(rows.count++)] = fine.values.data() + fine.row(dy, dz);
                 }
             }
             const size_t to = coarse.row(y, z);

@@ -109,7 +109,7 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
 {
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
-        const double factor = static_cast<double>(int64_t{1} << level);
+        const double factor = double(int64_t{1} << level);
         // The centre of voxel 0, which is the middle of the voxels it covers. Rotated axes cannot be expressed here.
         glm::dvec3 translation = 0.5 * (factor - 1.0) * info.spacing;
         if (info.directions == glm::dmat3(1.0)) translation += info.origin;
@@ -198,10 +198,10 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
         {"frame", info.frame},
         {"warnings", info.warnings},
         {"preparation", to_text(options.preparation)},
-        {"halving", static_cast<int>(options.halving)},
+        {"halving", int(options.halving)},
         {"sigma", list(options.preparation.blur_sigma_voxels)},
         {"compressor",
-         {static_cast<int>(options.compressor.kind), options.compressor.codec, options.compressor.level,
+         {int(options.compressor.kind), options.compressor.codec, options.compressor.level,
           options.compressor.shuffle}}};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

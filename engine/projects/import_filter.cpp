@@ -45,10 +45,10 @@ T to_voxel(Number<T> number)
         return static_cast<T>(number);
     } else if constexpr (sizeof(T) <= 2) {
         constexpr float SHIFT = 12582912.0f;
-        return static_cast<T>(static_cast<int32_t>((number + SHIFT) - SHIFT));
+        return static_cast<T>(int32_t((number + SHIFT) - SHIFT));
     } else {
         constexpr double SHIFT = 6755399441055744.0;
-        return static_cast<T>(static_cast<int64_t>((number + SHIFT) - SHIFT));
+        return static_cast<T>(int64_t((number + SHIFT) - SHIFT));
     }
 }
 
@@ -90,7 +90,7 @@ public:
           box_(box),
           size_(box.size()),
           factor_(options.downscale),
-          pitch_(padded_length(static_cast<size_t>(size_.x)))
+          pitch_(padded_length(size_t(size_.x)))
     {
         for (int axis = 0; axis < 3; ++axis) {
             for (const double weight : gaussian_weights(options.blur_sigma_voxels[axis])) {
@@ -102,20 +102,20 @@ public:
 
     void read(const Slab& slab, std::span<std::byte> voxels, WorkPool& pool) override
     {
-        scratch_.resize(static_cast<size_t>(pool.workers()));
+        scratch_.resize(size_t(pool.workers()));
         const int64_t lower_row = slab.lower_row * factor_;
         const int64_t upper_row = std::min(slab.upper_row * factor_, size_.y);
         if (lower_row != lower_row_ || upper_row != upper_row_) planes_.clear();
         lower_row_ = lower_row;
         upper_row_ = upper_row;
-        const auto plane_bytes = static_cast<int64_t>(pitch_ * sizeof(Number<T>)) * (upper_row - lower_row);
+        const auto plane_bytes = int64_t(pitch_ * sizeof(Number<T>)) * (upper_row - lower_row);
         const int64_t at_once = (PLANE_BYTES / plane_bytes - 2 * reach(2)) / factor_;
         const int64_t step = std::clamp<int64_t>(at_once, 1, slab.upper - slab.lower);
-        const auto slice_bytes = static_cast<size_t>(info().size.x * (slab.upper_row - slab.lower_row)) * sizeof(T);
+        const auto slice_bytes = size_t(info().size.x * (slab.upper_row - slab.lower_row)) * sizeof(T);
         for (int64_t z = slab.lower; z < slab.upper; z += step) {
             const Slab part{z, std::min(slab.upper, z + step), slab.lower_row, slab.upper_row};
-            const std::span<std::byte> out = voxels.subspan(static_cast<size_t>(z - slab.lower) * slice_bytes,
-                                                            static_cast<size_t>(part.upper - z) * slice_bytes);
+            const std::span<std::byte> out =
+                voxels.subspan(size_t(z - slab.lower) * slice_bytes, size_t(part.upper - z) * slice_bytes);
             make_planes(std::max<int64_t>(0, part.lower * factor_ - reach(2)),
                         std::min(size_.z, part.upper * factor_ + reach(2)), pool);
             const int64_t rows = slab.upper_row - slab.lower_row;
@@ -127,14 +127,14 @@ public:
     }
 
 private:
-    int64_t reach(size_t axis) const { return static_cast<int64_t>(weights_[axis].size()) - 1; }
+    int64_t reach(size_t axis) const { return int64_t(weights_[axis].size()) - 1; }
 
     // ---- Along x and y, slice by slice ----
 
     /// Makes planes `lower` to `upper`, keeping those that exist already.
     void make_planes(int64_t lower, int64_t upper, WorkPool& pool)
     {
-        const int64_t end = first_plane_ + static_cast<int64_t>(planes_.size());
+        const int64_t end = first_plane_ + int64_t(planes_.size());
         if (planes_.empty() || lower < first_plane_ || lower > end) {
             planes_.clear();
             first_plane_ = lower;
@@ -144,21 +144,20 @@ private:
             planes_.pop_front();
         }
         first_plane_ = lower;
-        const int64_t row_bytes = size_.x * static_cast<int64_t>(sizeof(T));
+        const int64_t row_bytes = size_.x * int64_t(sizeof(T));
         const int64_t lower_row = std::max<int64_t>(0, lower_row_ - reach(1));
         const int64_t upper_row = std::min(size_.y, upper_row_ + reach(1));
         const int64_t slice_bytes = row_bytes * (upper_row - lower_row);
         const int64_t at_once = std::max<int64_t>({1, READ_BYTES / slice_bytes, box_.block().z});
-        for (int64_t z = first_plane_ + static_cast<int64_t>(planes_.size()); z < upper;) {
+        for (int64_t z = first_plane_ + int64_t(planes_.size()); z < upper;) {
             const int64_t slices = std::min(at_once, upper - z);
-            read_.resize(static_cast<size_t>(slices * slice_bytes));
+            read_.resize(size_t(slices * slice_bytes));
             box_.read({{0, lower_row, z}, {size_.x, upper_row, z + slices}}, read_, pool);
             const size_t first_new = planes_.size();
             for (int64_t slice = 0; slice < slices; ++slice) planes_.push_back(take_spare());
             pool.run(slices, [&](int64_t slice, int worker) {
                 const T* const voxels = reinterpret_cast<const T*>(read_.data() + slice * slice_bytes);
-                make_plane(voxels, lower_row, upper_row, planes_[first_new + static_cast<size_t>(slice)],
-                           scratch_[static_cast<size_t>(worker)]);
+                make_plane(voxels, lower_row, upper_row, planes_[first_new + size_t(slice)], scratch_[size_t(worker)]);
             });
             z += slices;
         }
@@ -182,28 +181,28 @@ private:
 
     void make_plane(const T* voxels, int64_t lower_row, int64_t upper_row, Plane<T>& plane, Scratch& scratch) const
     {
-        const auto count = static_cast<size_t>(size_.x * (upper_row - lower_row));
+        const auto count = size_t(size_.x * (upper_row - lower_row));
         if (all_finite(std::span(voxels, count))) {
             blur_slice(voxels, lower_row, upper_row, plane.values, scratch);
             return;
         }
-        const auto kept = static_cast<size_t>(size_.x * (lower_row_ - lower_row));
+        const auto kept = size_t(size_.x * (lower_row_ - lower_row));
         plane.original.assign(voxels + kept, voxels + kept + size_.x * (upper_row_ - lower_row_));
         std::vector<T>& finite = scratch.finite;
         finite.assign(voxels, voxels + count);
-        for (T& voxel : finite) voxel = std::isfinite(static_cast<double>(voxel)) ? voxel : T{0};
+        for (T& voxel : finite) voxel = std::isfinite(double(voxel)) ? voxel : T{0};
         blur_slice(finite.data(), lower_row, upper_row, plane.values, scratch);
-        for (size_t i = 0; i < count; ++i) finite[i] = std::isfinite(static_cast<double>(voxels[i])) ? T{1} : T{0};
+        for (size_t i = 0; i < count; ++i) finite[i] = std::isfinite(double(voxels[i])) ? T{1} : T{0};
         blur_slice(finite.data(), lower_row, upper_row, plane.shares, scratch);
     }
 
     void blur_slice(const T* voxels, int64_t lower_row, int64_t upper_row, std::vector<Number<T>>& out,
                     Scratch& scratch) const
     {
-        const auto length = static_cast<size_t>(size_.x);
-        const auto around = static_cast<size_t>(reach(0));
-        const auto rows_in = static_cast<size_t>(upper_row - lower_row);
-        out.resize(pitch_ * static_cast<size_t>(upper_row_ - lower_row_));
+        const auto length = size_t(size_.x);
+        const auto around = size_t(reach(0));
+        const auto rows_in = size_t(upper_row - lower_row);
+        out.resize(pitch_ * size_t(upper_row_ - lower_row_));
         // Without a blur along y the rows already form the plane.
         std::vector<Number<T>>& rows = reach(1) > 0 ? scratch.rows : out;
         rows.resize(pitch_ * rows_in);
@@ -222,16 +221,16 @@ private:
         }
         if (reach(1) == 0) return;
         const auto row_at = [&](int64_t y) {
-            return rows.data() + pitch_ * static_cast<size_t>(std::clamp<int64_t>(y, 0, size_.y - 1) - lower_row);
+            return rows.data() + pitch_ * size_t(std::clamp<int64_t>(y, 0, size_.y - 1) - lower_row);
         };
         std::vector<const Number<T>*> before(weights_[1].size() - 1), after(before.size());
         for (int64_t y = lower_row_; y < upper_row_; ++y) {
             for (int64_t k = 1; k <= reach(1); ++k) {
-                before[static_cast<size_t>(k - 1)] = row_at(y - k);
-                after[static_cast<size_t>(k - 1)] = row_at(y + k);
+                before[size_t(k - 1)] = row_at(y - k);
+                after[size_t(k - 1)] = row_at(y + k);
             }
             filter_rows<Number<T>>(weights_[1], row_at(y), before.data(), after.data(),
-                                   out.data() + pitch_ * static_cast<size_t>(y - lower_row_), pitch_);
+                                   out.data() + pitch_ * size_t(y - lower_row_), pitch_);
         }
     }
 
@@ -239,7 +238,7 @@ private:
 
     const Plane<T>& plane_at(int64_t z) const
     {
-        return planes_[static_cast<size_t>(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
+        return planes_[size_t(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
     /// Filters rows of a slice, from the first of `planes_`, along z. `of` selects a member of the plane; for
@@ -248,15 +247,15 @@ private:
     {
         const auto row_of = [&](int64_t at) {
             const std::vector<Number<T>>& numbers = plane_at(at).*of;
-            return numbers.empty() ? ones_.data() : numbers.data() + pitch_ * static_cast<size_t>(row);
+            return numbers.empty() ? ones_.data() : numbers.data() + pitch_ * size_t(row);
         };
         const size_t pairs = weights_[2].size() - 1;
-        constexpr size_t MOST = 4 * static_cast<size_t>(LARGEST_SIGMA) + 1;
+        constexpr size_t MOST = 4 * size_t(LARGEST_SIGMA) + 1;
         const Number<T>* before[MOST];
         const Number<T>* after[MOST];
         for (size_t k = 0; k < pairs; ++k) {
-            before[k] = row_of(z - static_cast<int64_t>(k) - 1);
-            after[k] = row_of(z + static_cast<int64_t>(k) + 1);
+            before[k] = row_of(z - int64_t(k) - 1);
+            after[k] = row_of(z + int64_t(k) + 1);
         }
         filter_rows<Number<T>>(weights_[2], row_of(z), before, after, out, pitch_);
     }
@@ -273,8 +272,8 @@ private:
             filter_z(z, row, &Plane<T>::shares, shares.data());
             const std::vector<T>& original = plane_at(z).original;
             for (int64_t x = 0; x < size_.x; ++x) {
-                const auto i = static_cast<size_t>(x);
-                const T voxel = original.empty() ? T{0} : original[static_cast<size_t>(x + size_.x * row)];
+                const auto i = size_t(x);
+                const T voxel = original.empty() ? T{0} : original[size_t(x + size_.x * row)];
                 out[i] = std::isfinite(voxel) ? out[i] / shares[i] : static_cast<Number<T>>(voxel);
             }
         }
@@ -290,7 +289,7 @@ private:
                 T* const to = voxels + info().size.x * (y + rows * (z - slab.lower));
                 if (factor_ == 1) {
                     blurred_row(z, y, row, shares);
-                    narrow<T>(row.data(), to, static_cast<size_t>(size_.x));
+                    narrow<T>(row.data(), to, size_t(size_.x));
                 } else {
                     make_small_row(z, y, row, shares, to);
                 }
@@ -300,23 +299,23 @@ private:
 
     void make_small_row(int64_t z, int64_t y, std::vector<Number<T>>& row, std::vector<Number<T>>& shares, T* out) const
     {
-        const int64_t length = info().size.x;
-        std::vector<double> sums(static_cast<size_t>(length));
-        std::vector<int64_t> counts(static_cast<size_t>(length));
+        const auto length = size_t(info().size.x);
+        std::vector<double> sums(length);
+        std::vector<int64_t> counts(length);
         for (int64_t from_z = z * factor_; from_z < std::min(size_.z, (z + 1) * factor_); ++from_z) {
             const int64_t end = std::min(upper_row_ - lower_row_, (y + 1) * factor_);
             for (int64_t from_y = y * factor_; from_y < end; ++from_y) {
                 blurred_row(from_z, from_y, row, shares);
                 for (int64_t x = 0; x < size_.x; ++x) {
-                    const auto number = static_cast<double>(row[static_cast<size_t>(x)]);
+                    const auto number = double(row[size_t(x)]);
                     if (std::is_floating_point_v<T> && !std::isfinite(number)) continue;
-                    sums[static_cast<size_t>(x / factor_)] += number;
-                    ++counts[static_cast<size_t>(x / factor_)];
+                    sums[size_t(x / factor_)] += number;
+                    ++counts[size_t(x / factor_)];
                 }
             }
         }
         for (size_t x = 0; x < sums.size(); ++x) {
-            const double mean = sums[x] / static_cast<double>(counts[x]);  // 0 / 0: NaN, as it should be
+            const double mean = sums[x] / double(counts[x]);  // 0 / 0: NaN, as it should be
             if constexpr (std::is_floating_point_v<T>) {
                 out[x] = static_cast<T>(mean);
             } else {

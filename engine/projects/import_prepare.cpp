@@ -15,9 +15,9 @@ VolumeInfo info_after(const VolumeSource& source, const PreparationOptions& opti
     const int64_t factor = options.downscale;
     info.size = (box.size() + (factor - 1)) / factor;
     // The centre of the new voxel 0, in voxels of the source from the centre of its voxel 0.
-    const glm::dvec3 first = glm::dvec3(box.lower) + 0.5 * static_cast<double>(factor - 1);
+    const glm::dvec3 first = glm::dvec3(box.lower) + 0.5 * double(factor - 1);
     info.origin += info.directions * (info.spacing * first);
-    info.spacing *= static_cast<double>(factor);
+    info.spacing *= double(factor);
     return info;
 }
 
@@ -57,13 +57,13 @@ std::string to_text(const PreparationOptions& options)
 
 std::vector<double> gaussian_weights(double sigma_voxels)
 {
-    const auto reach = static_cast<int>(4.0 * sigma_voxels + 0.5);
-    std::vector<double> weights(static_cast<size_t>(reach) + 1, 1.0);
+    const auto reach = int(4.0 * sigma_voxels + 0.5);
+    std::vector<double> weights(size_t(reach) + 1, 1.0);
     double sum = 1.0;
     for (int k = 1; k <= reach; ++k) {
         const double distance = k / sigma_voxels;
-        weights[static_cast<size_t>(k)] = std::exp(-0.5 * distance * distance);
-        sum += 2.0 * weights[static_cast<size_t>(k)];
+        weights[size_t(k)] = std::exp(-0.5 * distance * distance);
+        sum += 2.0 * weights[size_t(k)];
     }
     for (double& weight : weights) weight /= sum;
     return weights;

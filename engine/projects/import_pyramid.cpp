@@ -21,7 +21,7 @@ struct Window {
           is_whole(level >= REACH),
           keeps_ranges(level % REACH == 0),
           slices(is_whole ? size.z : std::min(size.z, IMPORT_CHUNK)),
-          values(static_cast<size_t>(size.x * size.y * slices))
+          values(size_t(size.x * size.y * slices))
     {
         if (!keeps_ranges) return;
         lower.resize(values.size());
@@ -31,7 +31,7 @@ struct Window {
     /// The index in the window of a voxel of the level.
     size_t at(int64_t x, int64_t y, int64_t z) const
     {
-        return static_cast<size_t>(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
+        return size_t(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
     }
 
     Size3 size;
@@ -55,12 +55,11 @@ public:
 
     std::span<const std::byte> add(const Chunk& chunk, int worker) override
     {
-        ImportCube<T>& cube = scratch_[static_cast<size_t>(worker)].cubes[0];
+        ImportCube<T>& cube = scratch_[size_t(worker)].cubes[0];
         cube.has_ranges = false;
         fill(cube, chunk.extent, [&](int64_t y, int64_t z, std::vector<T> ImportCube<T>::*of, T* row) {
-            const std::byte* const from =
-                chunk.voxels + static_cast<size_t>(z) * chunk.slice_bytes + static_cast<size_t>(y) * chunk.row_bytes;
-            if (of == &ImportCube<T>::values) std::memcpy(row, from, static_cast<size_t>(chunk.extent.x) * sizeof(T));
+            const std::byte* const from = chunk.voxels + size_t(z) * chunk.slice_bytes + size_t(y) * chunk.row_bytes;
+            if (of == &ImportCube<T>::values) std::memcpy(row, from, size_t(chunk.extent.x) * sizeof(T));
         });
         find_own_ranges(cube);
         tables_[0]->add(cube, chunk.origin);
@@ -85,7 +84,7 @@ public:
     {
         const Window<T>& window = window_of(level);
         const Size3 origin = chunk * IMPORT_CHUNK;
-        ImportCube<T>& cube = scratch_[static_cast<size_t>(worker)].cubes[0];
+        ImportCube<T>& cube = scratch_[size_t(worker)].cubes[0];
         fill(cube, glm::min(Size3(IMPORT_CHUNK), window.size - origin),
              [&](int64_t y, int64_t z, std::vector<T> ImportCube<T>::*of, T* row) {
                  if (of != &ImportCube<T>::values) return;
@@ -97,13 +96,13 @@ public:
 
     void clear_layer(int level) override
     {
-        Window<T>& window = windows_[static_cast<size_t>(level - 1)];
+        Window<T>& window = windows_[size_t(level - 1)];
         std::fill(window.values.begin(), window.values.end(), T{});
     }
 
     std::vector<std::byte> ranges(int level) const override
     {
-        const auto bytes = std::as_bytes(std::span(tables_[static_cast<size_t>(level)]->ranges()));
+        const auto bytes = std::as_bytes(std::span(tables_[size_t(level)]->ranges()));
         static_assert(sizeof(ImportRange<T>) == 2 * sizeof(T));
         return {bytes.begin(), bytes.end()};
     }
@@ -137,7 +136,7 @@ private:
         std::vector<ImportCube<T>> cubes;
     };
 
-    const Window<T>& window_of(int level) const { return windows_[static_cast<size_t>(level - 1)]; }
+    const Window<T>& window_of(int level) const { return windows_[size_t(level - 1)]; }
 
     /// Fills every row with `put`; 0 outside the extent.
     template <class Put>
@@ -159,14 +158,14 @@ private:
     /// Makes the six levels above the cube of level `base` in the worker's scratch memory.
     void cascade(int base, const Size3& origin, int worker)
     {
-        std::vector<ImportCube<T>>& cubes = scratch_[static_cast<size_t>(worker)].cubes;
+        std::vector<ImportCube<T>>& cubes = scratch_[size_t(worker)].cubes;
         Size3 at = origin;
         for (int above = 1; above <= REACH && base + above < levels(); ++above) {
-            ImportCube<T>& cube = cubes[static_cast<size_t>(above)];
-            halve_cube(cubes[static_cast<size_t>(above - 1)], cube, how_);
+            ImportCube<T>& cube = cubes[size_t(above)];
+            halve_cube(cubes[size_t(above - 1)], cube, how_);
             at = at / int64_t{2};
-            tables_[static_cast<size_t>(base + above)]->add(cube, at);
-            store(cube, at, windows_[static_cast<size_t>(base + above - 1)]);
+            tables_[size_t(base + above)]->add(cube, at);
+            store(cube, at, windows_[size_t(base + above - 1)]);
         }
     }
 
@@ -177,7 +176,7 @@ private:
             for (int64_t y = 0; y < cube.extent.y; ++y) {
                 const size_t to = window.at(origin.x, origin.y + y, origin.z + z);
                 const size_t from = cube.row(y, z);
-                const auto length = static_cast<size_t>(cube.extent.x);
+                const auto length = size_t(cube.extent.x);
                 std::copy_n(cube.values.data() + from, length, window.values.data() + to);
                 if (!window.keeps_ranges) continue;
                 std::copy_n(cube.lower.data() + from, length, window.lower.data() + to);

@@ -29,7 +29,7 @@ template <class T>
 class ImportRanges {
 public:
     explicit ImportRanges(const Size3& size)
-        : counts_(size_of_level(size, 5)), ranges_(static_cast<size_t>(counts_.x * counts_.y * counts_.z))
+        : counts_(size_of_level(size, 5)), ranges_(size_t(counts_.x * counts_.y * counts_.z))
     {
         static_assert(BRICK == 32);
     }
@@ -48,8 +48,7 @@ public:
         for (const Segment& z : along_z) {
             for (const Segment& y : along_y) {
                 for (const Segment& x : along_x) {
-                    ranges_[static_cast<size_t>(x.brick + counts_.x * (y.brick + counts_.y * z.brick))].include(
-                        *range++);
+                    ranges_[size_t(x.brick + counts_.x * (y.brick + counts_.y * z.brick))].include(*range++);
                 }
             }
         }

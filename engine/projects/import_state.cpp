@@ -16,7 +16,7 @@ constexpr size_t MAGIC_BYTES = 8;
 constexpr size_t HEADER_BYTES = MAGIC_BYTES + 2 * sizeof(uint64_t);  ///< the content's length and its hash follow
 constexpr int64_t LARGEST_STATE = int64_t{1} << 40;
 /// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
-constexpr uint64_t MOST_OUT_OF_A_BYTE = uint64_t{32} << 10;
+constexpr uint64_t MAX_OUT_OF_A_BYTE = uint64_t{32} << 10;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ StateReader::StateReader(const std::filesystem::path& file) : file_(file)
     const size_t frame_bytes = content.size() - HEADER_BYTES;
     // The frame's own length must agree before memory is allocated.
     if (ZSTD_getFrameContentSize(frame, frame_bytes) != header[0] || header[0] > uint64_t{LARGEST_STATE}) refuse();
-    if (header[0] / MOST_OUT_OF_A_BYTE > frame_bytes) refuse();
+    if (header[0] / MAX_OUT_OF_A_BYTE > frame_bytes) refuse();
     bytes_.resize(header[0]);
     const size_t made = ZSTD_decompress(bytes_.data(), bytes_.size(), frame, frame_bytes);
     if (made != bytes_.size() || XXH3_64bits(bytes_.data(), bytes_.size()) != header[1]) refuse();

@@ -26,20 +26,20 @@ void count_values(Bytes voxels, std::vector<int64_t>& counts)
 
 ImportTally::ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers)
     : type_(info.type),
-      hashes_(static_cast<size_t>(info.size.z)),
-      hashers_(static_cast<size_t>(slices_at_once)),
-      counts_(static_cast<size_t>(workers), std::vector<int64_t>(values_of(info.type)))
+      hashes_(size_t(info.size.z)),
+      hashers_(size_t(slices_at_once)),
+      counts_(size_t(workers), std::vector<int64_t>(values_of(info.type)))
 {}
 
 SliceHasher& ImportTally::hasher_of(int64_t slice)
 {
-    return hashers_[static_cast<size_t>(slice) % hashers_.size()];
+    return hashers_[size_t(slice) % hashers_.size()];
 }
 
 void ImportTally::add(int64_t slice, Bytes rows, int worker)
 {
     hasher_of(slice).add(rows);
-    std::vector<int64_t>& counts = counts_[static_cast<size_t>(worker)];
+    std::vector<int64_t>& counts = counts_[size_t(worker)];
     if (bytes_of(type_) == 1) count_values<uint8_t>(rows, counts);
     if (bytes_of(type_) == 2) count_values<uint16_t>(rows, counts);
 }
@@ -47,7 +47,7 @@ void ImportTally::add(int64_t slice, Bytes rows, int worker)
 void ImportTally::finish(int64_t lower, int64_t upper)
 {
     for (int64_t slice = lower; slice < upper; ++slice) {
-        hashes_[static_cast<size_t>(slice)] = hasher_of(slice).finish();
+        hashes_[size_t(slice)] = hasher_of(slice).finish();
     }
 }
 
@@ -72,10 +72,10 @@ std::optional<VolumeStatistics> ImportTally::statistics() const
     const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
     if (!is_signed) return statistics_of(counts, 0);
     // Ordered by their bits, negative values follow the others.
-    const auto half = static_cast<std::ptrdiff_t>(counts.size() / 2);
+    const auto half = std::ptrdiff_t(counts.size() / 2);
     std::vector<int64_t> ascending(counts.begin() + half, counts.end());
     ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
-    return statistics_of(ascending, -static_cast<int>(half));
+    return statistics_of(ascending, -int(half));
 }
 
 void ImportTally::save(StateWriter& state) const

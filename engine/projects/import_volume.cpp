@@ -33,7 +33,7 @@ double seconds_since(Clock::time_point begin)
 
 int thread_count(int wanted)
 {
-    return wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
 /// Refuses processing that would create new label numbers.
@@ -70,7 +70,7 @@ public:
 
     ImportReport run()
     {
-        const auto voxel_bytes = static_cast<int64_t>(bytes_of(info_.type));
+        const auto voxel_bytes = int64_t(bytes_of(info_.type));
         const int64_t rows = SLAB_BYTES / (IMPORT_CHUNK * info_.size.x * voxel_bytes) / IMPORT_CHUNK * IMPORT_CHUNK;
         rows_ = std::clamp(rows, std::min(IMPORT_CHUNK, info_.size.y), info_.size.y);
         const int64_t bands = (info_.size.y + rows_ - 1) / rows_;
@@ -88,7 +88,7 @@ public:
         };
         const int64_t first = slabs_done_ * bands;
         for (int64_t step = first; step < slabs * bands; ++step) {
-            const auto place = static_cast<size_t>(step % 2);
+            const auto place = size_t(step % 2);
             if (step == first) read(slab_of(step), place);
             const auto batch = start(slab_of(step), place);
             if (step + 1 < slabs * bands) read(slab_of(step + 1), 1 - place);
@@ -114,7 +114,7 @@ private:
     void read(const Preparation::Slab& slab, size_t place)
     {
         const int64_t voxels = info_.size.x * (slab.upper_row - slab.lower_row) * (slab.upper - slab.lower);
-        buffers_[place].resize(static_cast<size_t>(voxels) * bytes_of(info_.type));
+        buffers_[place].resize(size_t(voxels) * bytes_of(info_.type));
         preparation_->read(slab, buffers_[place], pool_);
     }
 
@@ -122,22 +122,22 @@ private:
     std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
     {
         const std::byte* const voxels = buffers_[place].data();
-        const size_t row_bytes = static_cast<size_t>(info_.size.x) * bytes_of(info_.type);
-        const size_t slice_bytes = row_bytes * static_cast<size_t>(slab.upper_row - slab.lower_row);
+        const size_t row_bytes = size_t(info_.size.x) * bytes_of(info_.type);
+        const size_t slice_bytes = row_bytes * size_t(slab.upper_row - slab.lower_row);
         const int64_t along_x = counts(0).x;
         const int64_t along_y = (slab.upper_row - slab.lower_row + IMPORT_CHUNK - 1) / IMPORT_CHUNK;
         const int64_t chunks = along_x * along_y;
         const auto run = [=, this](int64_t task, int worker) {
             if (task >= chunks) {
-                const auto slice = static_cast<size_t>(task - chunks);
+                const auto slice = size_t(task - chunks);
                 tally_->add(slab.lower + task - chunks, Bytes(voxels + slice * slice_bytes, slice_bytes), worker);
                 return;
             }
             const Size3 chunk{task % along_x, slab.lower_row / IMPORT_CHUNK + task / along_x,
                               slab.lower / IMPORT_CHUNK};
             const Size3 origin = chunk * IMPORT_CHUNK;
-            const size_t first = static_cast<size_t>(origin.y - slab.lower_row) * row_bytes +
-                                 static_cast<size_t>(origin.x) * bytes_of(info_.type);
+            const size_t first =
+                size_t(origin.y - slab.lower_row) * row_bytes + size_t(origin.x) * bytes_of(info_.type);
             const ImportPyramid::Chunk taken{.origin = origin,
                                              .extent = glm::min(Size3(IMPORT_CHUNK), info_.size - origin),
                                              .voxels = voxels + first,
@@ -302,7 +302,7 @@ private:
     void write(const fs::path& file, Bytes content)
     {
         write_part_file(folder_.path() / file, content);
-        other_bytes_ += static_cast<int64_t>(content.size());
+        other_bytes_ += int64_t(content.size());
     }
     void write_text(const fs::path& file, const std::string& text) { write(file, std::as_bytes(std::span(text))); }
 
@@ -317,13 +317,13 @@ private:
         stop_where_asked();
         if (!options_.progress || seconds_since(told_) < 0.1) return;
         told_ = Clock::now();
-        const auto all = static_cast<double>(chunks_of_plane_ * counts(0).z);
-        const auto done = static_cast<double>(chunks_done_ - chunks_at_start_);
-        const auto left = all - static_cast<double>(chunks_done_);
+        const auto all = double(chunks_of_plane_ * counts(0).z);
+        const auto done = double(chunks_done_ - chunks_at_start_);
+        const auto left = all - double(chunks_done_);
         const double seconds = seconds_since(begin_);
         if (!(all > 0.0) || !(done > 0.0)) return;
-        const auto voxels = static_cast<double>(voxel_count(info_));
-        options_.progress({.fraction = static_cast<double>(chunks_done_) / all,
+        const auto voxels = double(voxel_count(info_));
+        options_.progress({.fraction = double(chunks_done_) / all,
                            .voxels_per_second = done / all * voxels / seconds,
                            .seconds_left = left / done * seconds});
     }

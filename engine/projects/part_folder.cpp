@@ -173,7 +173,7 @@ void write_part_file(const fs::path& path, std::span<const std::byte> content)
         if (count < 0 && errno == EINTR) continue;
         // Some network file systems report "nothing written" for "full".
         if (count <= 0) refuse_write(path, count < 0 ? errno : ENOSPC);
-        content = content.subspan(static_cast<size_t>(count));
+        content = content.subspan(size_t(count));
     }
     // Starts writing to the disk now rather than at the final sync. A failure here loses nothing.
     static_cast<void>(::sync_file_range(file.number(), 0, 0, SYNC_FILE_RANGE_WRITE));

@@ -21,16 +21,16 @@ size_t otsu_split(const std::vector<int64_t>& histogram)
     double count = 0.0;
     double sum = 0.0;
     for (size_t bin = 0; bin < histogram.size(); ++bin) {
-        count += static_cast<double>(histogram[bin]);
-        sum += static_cast<double>(histogram[bin]) * static_cast<double>(bin);
+        count += double(histogram[bin]);
+        sum += double(histogram[bin]) * double(bin);
     }
     double lower_count = 0.0;
     double lower_sum = 0.0;
     double best_variance = 0.0;
     size_t best_split = 1;
     for (size_t bin = 0; bin + 1 < histogram.size(); ++bin) {
-        lower_count += static_cast<double>(histogram[bin]);
-        lower_sum += static_cast<double>(histogram[bin]) * static_cast<double>(bin);
+        lower_count += double(histogram[bin]);
+        lower_sum += double(histogram[bin]) * double(bin);
         const double upper_count = count - lower_count;
         if (lower_count == 0.0 || upper_count == 0.0) continue;
         const double distance = lower_sum / lower_count - (sum - lower_sum) / upper_count;
@@ -46,11 +46,11 @@ size_t otsu_split(const std::vector<int64_t>& histogram)
 /// The number of bins, counted from `first`, that hold at least `share` of the voxels in and above `first`.
 size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, double share)
 {
-    const auto begin = histogram.begin() + static_cast<std::ptrdiff_t>(first);
-    const double wanted = share * static_cast<double>(std::accumulate(begin, histogram.end(), int64_t{0}));
+    const auto begin = histogram.begin() + std::ptrdiff_t(first);
+    const double wanted = share * double(std::accumulate(begin, histogram.end(), int64_t{0}));
     double found = 0.0;
     size_t bin = first;
-    while (bin < histogram.size() && found < wanted) found += static_cast<double>(histogram[bin++]);
+    while (bin < histogram.size() && found < wanted) found += double(histogram[bin++]);
     return bin;
 }
 
@@ -75,10 +75,8 @@ TissueRange tissue_range(const VolumeStatistics& statistics)
     const std::vector<int64_t>& histogram = statistics.histogram;
     // All voxels are equal, or there is no useful histogram.
     if (!(minimum < maximum) || histogram.size() < 4) return {minimum - 0.5, minimum + 0.5};
-    const auto bins = static_cast<double>(histogram.size());
-    const auto intensity_of = [&](size_t split) {
-        return minimum + (maximum - minimum) * static_cast<double>(split) / bins;
-    };
+    const auto bins = double(histogram.size());
+    const auto intensity_of = [&](size_t split) { return minimum + (maximum - minimum) * double(split) / bins; };
     const size_t median = quantile_split(histogram, 0, 0.5);
     const size_t lowest = std::min(std::max(otsu_split(histogram), median), histogram.size() - 2);
     const size_t full = std::clamp(quantile_split(histogram, lowest, FULL_QUANTILE), lowest + 1, histogram.size() - 1);

@@ -25,7 +25,7 @@ void fields(Fields& f, OcclusionSettings& occlusion)
 {
     f.number("strength", occlusion.strength, SHARE,
              {"local ambient occlusion: how far the ambient light goes where less of it arrives; 0: off"});
-    f.number("radius", occlusion.radius, above_zero(1e-3, 60.0),
+    f.number("radius", occlusion.radius, above_zero(1e-3, MAX_OCCLUSION_RADIUS),
              {"how far away things keep ambient light off", "reference lengths"});
     f.whole("rays", occlusion.rays, 1, 1024, {"directions that light is looked for in, for each voxel"});
     f.flag("full_sphere", occlusion.full_sphere,

@@ -63,15 +63,15 @@ std::string content_hash(const VolumeSource& source)
 {
     const HashedSource hashed(source);
     const Size3 size = source.info().size;
-    const int64_t row_bytes = size.x * static_cast<int64_t>(bytes_of(source.info().type));
+    const int64_t row_bytes = size.x * int64_t(bytes_of(source.info().type));
     // Whole blocks along z, so that a chunked source decodes nothing twice.
     const int64_t slices = std::min(size.z, source.block().z);
     const int64_t rows = std::clamp<int64_t>(PIECE_BYTES / (row_bytes * slices), 1, size.y);
-    std::vector<std::byte> piece(static_cast<size_t>(row_bytes * rows * slices));
+    std::vector<std::byte> piece(size_t(row_bytes * rows * slices));
     for (int64_t z = 0; z < size.z; z += slices) {
         for (int64_t y = 0; y < size.y; y += rows) {
             const VoxelBox box{{0, y, z}, {size.x, std::min(size.y, y + rows), std::min(size.z, z + slices)}};
-            hashed.read(box, std::span(piece).first(static_cast<size_t>(row_bytes * box.size().y * box.size().z)));
+            hashed.read(box, std::span(piece).first(size_t(row_bytes * box.size().y * box.size().z)));
         }
     }
     return hashed.hash();
@@ -82,10 +82,10 @@ HashedSource::HashedSource(const VolumeSource& source) : VolumeSource(source.inf
 void HashedSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
 {
     source_.read(box, voxels);
-    if (static_cast<int64_t>(slices_.size()) == info().size.z) return;
+    if (int64_t(slices_.size()) == info().size.z) return;
     const Size3 extent = box.size();
-    SHVR_CHECK(extent.x == info().size.x && box.lower.z == static_cast<int64_t>(slices_.size()), box.lower.z);
-    hashers_.resize(static_cast<size_t>(extent.z));
+    SHVR_CHECK(extent.x == info().size.x && box.lower.z == int64_t(slices_.size()), box.lower.z);
+    hashers_.resize(size_t(extent.z));
     const size_t slice_bytes = voxels.size() / hashers_.size();
     for (size_t slice = 0; slice < hashers_.size(); ++slice) {
         hashers_[slice].add(voxels.subspan(slice * slice_bytes, slice_bytes));
@@ -95,7 +95,7 @@ void HashedSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
 
 std::string HashedSource::hash() const
 {
-    return static_cast<int64_t>(slices_.size()) == info().size.z ? content_hash(slices_) : std::string();
+    return int64_t(slices_.size()) == info().size.z ? content_hash(slices_) : std::string();
 }
 
 }  // namespace shvr

@@ -57,9 +57,9 @@ T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
     int count = 0;
     for (int row = 0; row < rows.count; ++row) {
         for (int64_t x = begin; x < end; ++x) {
-            const T voxel = rows.first[static_cast<size_t>(row)][x];
+            const T voxel = rows.first[size_t(row)][x];
             if (!std::isfinite(voxel)) continue;
-            sum[x - begin] += static_cast<double>(voxel);
+            sum[x - begin] += double(voxel);
             ++count;
         }
     }
@@ -113,7 +113,7 @@ void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
     for (int64_t x = 0; x < length; x += 2) {
         std::array<T, 8> voxels{};
         size_t count = 0;
-        for (size_t row = 0; row < static_cast<size_t>(rows.count); ++row)
+        for (size_t row = 0; row < size_t(rows.count); ++row)
             for (int64_t i = x; i < std::min(x + 2, length); ++i) voxels[count++] = rows.first[row][i];
         T best{};
         size_t most = 0;

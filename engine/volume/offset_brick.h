@@ -23,8 +23,7 @@ double offset_limit(VoxelType type);
 
 inline double offset_of(VoxelType type, uint32_t bits)
 {
-    return is_float(type) ? static_cast<double>(std::bit_cast<float>(bits))
-                          : static_cast<double>(std::bit_cast<int32_t>(bits));
+    return is_float(type) ? double(std::bit_cast<float>(bits)) : double(std::bit_cast<int32_t>(bits));
 }
 
 /// Rounded to nearest (integers: halves away from 0) and clamped to the limit. `offset` is not NaN.

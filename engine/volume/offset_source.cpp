@@ -26,8 +26,8 @@ T raised(T voxel, OffsetOf<T> offset)
     using Limits = std::numeric_limits<T>;
     if constexpr (std::is_floating_point_v<T>) {
         if (!std::isfinite(voxel)) return voxel;
-        return static_cast<T>(std::clamp(static_cast<double>(voxel) + static_cast<double>(offset),
-                                         static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max())));
+        return static_cast<T>(
+            std::clamp(double(voxel) + double(offset), double(Limits::lowest()), double(Limits::max())));
     } else {
         return static_cast<T>(
             std::clamp<int64_t>(int64_t{voxel} + offset, int64_t{Limits::lowest()}, int64_t{Limits::max()}));
@@ -39,9 +39,8 @@ double raised_value(VoxelType type, double value, double offset)
 {
     return with_voxel_type(type, [&]<class T>(T) {
         using Limits = std::numeric_limits<T>;
-        const double sum =
-            std::clamp(value + offset, static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
-        if constexpr (std::is_floating_point_v<T>) return static_cast<double>(static_cast<T>(sum));
+        const double sum = std::clamp(value + offset, double(Limits::lowest()), double(Limits::max()));
+        if constexpr (std::is_floating_point_v<T>) return double(static_cast<T>(sum));
         return sum;
     });
 }
@@ -71,15 +70,13 @@ void halve(const OffsetBrick& brick, const Size3& extent, const Size3& octant, O
             HalvingRows<Offset> rows;
             for (int64_t slice = z; slice < std::min(z + 2, extent.z); ++slice)
                 for (int64_t line = y; line < std::min(y + 2, extent.y); ++line)
-                    rows.first[static_cast<size_t>(rows.count++)] =
-                        finer.data() + BRICK_SIDE * (line + BRICK_SIDE * slice);
+                    rows.first[size_t(rows.count++)] = finer.data() + BRICK_SIDE * (line + BRICK_SIDE * slice);
             halve_rows(rows, extent.x, row.data());
             for (int64_t x = 0; x < half; ++x)
-                if (row[static_cast<size_t>(x)] == Offset{0})
-                    row[static_cast<size_t>(x)] = Offset{0};  // -0 does not count as an offset
+                if (row[size_t(x)] == Offset{0}) row[size_t(x)] = Offset{0};  // -0 does not count as an offset
             const Size3 to = octant * (BRICK_SIDE / 2) + Size3(0, y / 2, z / 2);
             std::memcpy(above.data() + to.x + BRICK_SIDE * (to.y + BRICK_SIDE * to.z), row.data(),
-                        static_cast<size_t>(half) * sizeof(Offset));
+                        size_t(half) * sizeof(Offset));
         }
 }
 
@@ -103,7 +100,7 @@ bool is_none(const OffsetBrick& offsets)
 
 double offset_limit(VoxelType type)
 {
-    if (is_float(type)) return static_cast<double>(std::numeric_limits<float>::max());
+    if (is_float(type)) return double(std::numeric_limits<float>::max());
     const size_t bytes = bytes_of(type);
     return bytes == 1 ? 255.0 : bytes == 2 ? 65535.0 : 2147483647.0;
 }
@@ -112,8 +109,8 @@ uint32_t offset_bits(VoxelType type, double offset)
 {
     SHVR_CHECK(!std::isnan(offset), "an offset that is not a number");
     const double limit = offset_limit(type), within = std::clamp(offset, -limit, limit);
-    if (!is_float(type)) return std::bit_cast<uint32_t>(static_cast<int32_t>(std::round(within)));
-    const auto rounded = static_cast<float>(within);
+    if (!is_float(type)) return std::bit_cast<uint32_t>(int32_t(std::round(within)));
+    const auto rounded = float(within);
     return rounded == 0.0f ? 0 : std::bit_cast<uint32_t>(rounded);
 }
 
@@ -206,7 +203,7 @@ void OffsetSource::read_level(int level, const VoxelBox& box, std::span<std::byt
             for (int64_t z = lower.z; z < upper.z; ++z)
                 for (int64_t y = lower.y; y < upper.y; ++y) {
                     const Size3 to = Size3(lower.x, y, z) - box.lower, from = Size3(lower.x, y, z) - corner;
-                    add_row<T>(voxels.data() + static_cast<int64_t>(sizeof(T)) * index_of(to, extent),
+                    add_row<T>(voxels.data() + int64_t(sizeof(T)) * index_of(to, extent),
                                offsets->data() + from.x + BRICK_SIDE * (from.y + BRICK_SIDE * from.z),
                                upper.x - lower.x);
                 }

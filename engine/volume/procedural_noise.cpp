@@ -12,12 +12,12 @@ namespace {
 
 uint32_t bits_of(int64_t index)
 {
-    return static_cast<uint32_t>(static_cast<uint64_t>(index));
+    return uint32_t(uint64_t(index));
 }
 
 int64_t floor_of(double coordinate)
 {
-    return static_cast<int64_t>(std::floor(coordinate));
+    return int64_t(std::floor(coordinate));
 }
 
 /// One in four cells of 8^3 voxels, chosen at random, holds one ball. Balls stay a voxel away from their cell's faces,
@@ -37,13 +37,13 @@ public:
         const uint32_t room = 112 - 16 - 2 * radius + 1;
         double squared = 0.0;
         uint32_t bits = hash;
-        for (const double local : {voxel.x - CELL * static_cast<double>(x), voxel.y - CELL * static_cast<double>(y),
-                                   voxel.z - CELL * static_cast<double>(z)}) {
+        for (const double local :
+             {voxel.x - CELL * double(x), voxel.y - CELL * double(y), voxel.z - CELL * double(z)}) {
             bits = mixed(bits + 1);
             const double offset = 16.0 * local - (16 + radius + bits % room);
             squared += offset * offset;
         }
-        return squared <= static_cast<double>(radius * radius) ? BALL : BACKGROUND;
+        return squared <= double(radius * radius) ? BALL : BACKGROUND;
     }
     bool has_gradient() const override { return false; }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
@@ -82,7 +82,7 @@ public:
     {
         const double scaled = coordinate / period_;
         const double index = std::floor(scaled);
-        return {static_cast<int64_t>(index), scaled - index};
+        return {int64_t(index), scaled - index};
     }
 
     /// Blended along y and z at lattice column `x`.
@@ -108,7 +108,7 @@ public:
         for (int i = 0; i < 8; ++i) {
             glm::dvec3 weight, slope;
             for (int axis = 0; axis < 3; ++axis) {
-                const double fraction = places[static_cast<size_t>(axis)].fraction;
+                const double fraction = places[size_t(axis)].fraction;
                 const bool is_upper = (i >> axis & 1) != 0;
                 weight[axis] = is_upper ? smooth(fraction) : 1.0 - smooth(fraction);
                 slope[axis] = (is_upper ? 1.0 : -1.0) * smooth_slope(fraction);
@@ -144,12 +144,12 @@ public:
     class LatticeRows final : public Rows {
     public:
         LatticeRows(const Fog& kind, const VoxelBox& box)
-            : kind_(kind), first_x_(box.lower.x), noise_(static_cast<size_t>(box.size().x))
+            : kind_(kind), first_x_(box.lower.x), noise_(size_t(box.size().x))
         {}
 
         void evaluate(int64_t y, int64_t z, std::span<double> values) override
         {
-            const glm::dvec2 yz(static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
+            const glm::dvec2 yz(double(y) + 0.5, double(z) + 0.5);
             evaluate(kind_.coarse_, yz, noise_);
             evaluate(kind_.fine_, yz, values);
             for (size_t x = 0; x < values.size(); ++x) values[x] = sum(noise_[x], values[x]);
@@ -160,11 +160,11 @@ public:
         {
             const Octave::Place y = octave.place(yz.x);
             const Octave::Place z = octave.place(yz.y);
-            int64_t index = octave.place(static_cast<double>(first_x_) + 0.5).index;
+            int64_t index = octave.place(double(first_x_) + 0.5).index;
             double left = octave.column(index, y, z);
             double right = octave.column(index + 1, y, z);
             for (size_t i = 0; i < values.size(); ++i) {
-                const Octave::Place x = octave.place(static_cast<double>(first_x_ + static_cast<int64_t>(i)) + 0.5);
+                const Octave::Place x = octave.place(double(first_x_ + int64_t(i)) + 0.5);
                 if (x.index != index) {
                     index = x.index;
                     left = right;

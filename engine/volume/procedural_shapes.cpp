@@ -21,7 +21,7 @@ public:
 
 class Ramp final : public ProceduralKind {
 public:
-    explicit Ramp(const Size3& size) : last_(static_cast<double>(size.x - 1)) {}
+    explicit Ramp(const Size3& size) : last_(double(size.x - 1)) {}
 
     double value(const glm::dvec3& voxel) const override
     {
@@ -41,8 +41,8 @@ class Sphere final : public ProceduralKind {
 public:
     explicit Sphere(const Size3& size)
         : centre_(0.5 * glm::dvec3(size)),
-          radius_(0.35 * static_cast<double>(std::min({size.x, size.y, size.z}))),
-          slope_(1000.0 / static_cast<double>(std::min({size.x, size.y, size.z})))
+          radius_(0.35 * double(std::min({size.x, size.y, size.z}))),
+          slope_(1000.0 / double(std::min({size.x, size.y, size.z})))
     {}
 
     double value(const glm::dvec3& voxel) const override { return std::clamp(unclamped(voxel), 0.0, FULL); }
@@ -86,19 +86,18 @@ public:
     class PlaneRows final : public Rows {
     public:
         PlaneRows(const MarschnerLobb& kind, const VoxelBox& box)
-            : kind_(kind), first_x_(box.lower.x), rings_(static_cast<size_t>(box.size().x))
+            : kind_(kind), first_x_(box.lower.x), rings_(size_t(box.size().x))
         {}
 
         void evaluate(int64_t y, int64_t z, std::span<double> values) override
         {
             if (y != y_) {
                 for (size_t x = 0; x < rings_.size(); ++x) {
-                    rings_[x] = kind_.ring(static_cast<double>(first_x_ + static_cast<int64_t>(x)) + 0.5,
-                                           static_cast<double>(y) + 0.5);
+                    rings_[x] = kind_.ring(double(first_x_ + int64_t(x)) + 0.5, double(y) + 0.5);
                 }
                 y_ = y;
             }
-            const double wave = kind_.wave(static_cast<double>(z) + 0.5);
+            const double wave = kind_.wave(double(z) + 0.5);
             for (size_t x = 0; x < rings_.size(); ++x) values[x] = kind_.sum(rings_[x], wave);
         }
 
@@ -152,7 +151,7 @@ private:
     {
         const double centre = std::floor(coordinate - 0.5);
         const double fraction = coordinate - 0.5 - centre;
-        const bool is_even = (static_cast<int64_t>(centre) & 1) == 0;
+        const bool is_even = (int64_t(centre) & 1) == 0;
         return is_even ? Wave{1.0 - 2.0 * fraction, -2.0} : Wave{2.0 * fraction - 1.0, 2.0};
     }
 };

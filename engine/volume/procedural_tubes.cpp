@@ -24,7 +24,7 @@ double noise_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
     const uint32_t sum = (hash & 0xffu) + (hash >> 8 & 0xffu) + (hash >> 16 & 0xffu) + (hash >> 24);
-    return (static_cast<double>(sum) - 510.0) * (NOISE_DEVIATION / DEVIATION);
+    return (double(sum) - 510.0) * (NOISE_DEVIATION / DEVIATION);
 }
 
 /// From the distance to the nearest tube's surface (negative inside) to intensity, soft over two voxels.
@@ -88,9 +88,8 @@ public:
     double value(const glm::dvec3& voxel) const override
     {
         const glm::dvec3 index = glm::floor(voxel);
-        const uint32_t hash = hash_of(seed_, static_cast<uint32_t>(static_cast<int64_t>(index.x)),
-                                      static_cast<uint32_t>(static_cast<int64_t>(index.y)),
-                                      static_cast<uint32_t>(static_cast<int64_t>(index.z)));
+        const uint32_t hash =
+            hash_of(seed_, uint32_t(int64_t(index.x)), uint32_t(int64_t(index.y)), uint32_t(int64_t(index.z)));
         double nearest = 1.0;
         for (const Segment& segment : segments_) {
             if (segment.is_near(voxel)) nearest = std::min(nearest, segment.distance(voxel));
@@ -121,10 +120,10 @@ public:
     class BinnedRows final : public Rows {
     public:
         BinnedRows(const Tubes& kind, const VoxelBox& box)
-            : kind_(kind), first_x_(box.lower.x), first_z_(box.lower.z), near_(static_cast<size_t>(box.size().z))
+            : kind_(kind), first_x_(box.lower.x), first_z_(box.lower.z), near_(size_t(box.size().z))
         {
             for (size_t slice = 0; slice < near_.size(); ++slice) {
-                const double z = static_cast<double>(first_z_ + static_cast<int64_t>(slice)) + 0.5;
+                const double z = double(first_z_ + int64_t(slice)) + 0.5;
                 for (const Segment& segment : kind_.segments_) {
                     if (z >= segment.lower.z && z <= segment.upper.z) near_[slice].push_back(&segment);
                 }
@@ -133,28 +132,28 @@ public:
 
         void evaluate(int64_t y, int64_t z, std::span<double> values) override
         {
-            glm::dvec3 p(0.0, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
+            glm::dvec3 p(0.0, double(y) + 0.5, double(z) + 0.5);
             std::fill(values.begin(), values.end(), 1.0);
-            const auto width = static_cast<int64_t>(values.size());
+            const auto width = int64_t(values.size());
             int64_t begin = width;
             int64_t end = 0;
-            for (const Segment* segment : near_[static_cast<size_t>(z - first_z_)]) {
+            for (const Segment* segment : near_[size_t(z - first_z_)]) {
                 if (p.y < segment->lower.y || p.y > segment->upper.y) continue;
-                const auto first = std::max<int64_t>(0, static_cast<int64_t>(segment->lower.x) - first_x_);
-                const auto last = std::min<int64_t>(width - 1, static_cast<int64_t>(segment->upper.x) - first_x_);
+                const auto first = std::max<int64_t>(0, int64_t(segment->lower.x) - first_x_);
+                const auto last = std::min<int64_t>(width - 1, int64_t(segment->upper.x) - first_x_);
                 for (int64_t x = first; x <= last; ++x) {
-                    p.x = static_cast<double>(first_x_ + x) + 0.5;
-                    double& nearest = values[static_cast<size_t>(x)];
+                    p.x = double(first_x_ + x) + 0.5;
+                    double& nearest = values[size_t(x)];
                     nearest = std::min(nearest, segment->distance(p));
                 }
                 begin = std::min(begin, first);
                 end = std::max(end, last + 1);
             }
-            const uint32_t row = row_hash(kind_.seed_, static_cast<uint32_t>(y), static_cast<uint32_t>(z));
+            const uint32_t row = row_hash(kind_.seed_, uint32_t(y), uint32_t(z));
             for (int64_t x = 0; x < width; ++x) {
-                double& value = values[static_cast<size_t>(x)];
+                double& value = values[size_t(x)];
                 value = x >= begin && x < end ? profile(value) : BACKGROUND;
-                value += noise_of(mixed(static_cast<uint32_t>(first_x_ + x) ^ row));
+                value += noise_of(mixed(uint32_t(first_x_ + x) ^ row));
             }
         }
 
@@ -199,7 +198,7 @@ void Tubes::make_segments()
         return glm::dvec3(std::clamp(x, 0.06, 0.94), std::clamp(y, 0.06, 0.94), z);
     };
     // Radii 2 to 6 voxels at 128 voxels a side, growing with the fourth root of the side.
-    const double scale = std::sqrt(std::sqrt(static_cast<double>(std::min({size_.x, size_.y, size_.z})) / 128.0));
+    const double scale = std::sqrt(std::sqrt(double(std::min({size_.x, size_.y, size_.z})) / 128.0));
     std::array<Bezier, BUNDLES> bundles;
     std::array<double, BUNDLES> radii{};
     for (uint32_t i = 0; i < BUNDLES; ++i) {
@@ -231,8 +230,7 @@ void Tubes::add_tube(const Bezier& curve, double radius)
     const auto pieces = std::clamp<int64_t>(std::max({size_.x, size_.y, size_.z}) / 8, 8, 256);
     glm::dvec3 from = curve[0] * glm::dvec3(size_);
     for (int64_t piece = 1; piece <= pieces; ++piece) {
-        const glm::dvec3 to =
-            point_on(curve, static_cast<double>(piece) / static_cast<double>(pieces)) * glm::dvec3(size_);
+        const glm::dvec3 to = point_on(curve, double(piece) / double(pieces)) * glm::dvec3(size_);
         segments_.emplace_back(from, to, radius);
         from = to;
     }

@@ -24,19 +24,19 @@ Level halved(const VolumeSource& source, int level)
 {
     const Size3 size = size_of_level(source.info().size, level), half = size_of_level(source.info().size, level + 1);
     Level result{half, {}};
-    result.voxels.resize(static_cast<size_t>(half.x * half.y * half.z) * sizeof(T));
+    result.voxels.resize(size_t(half.x * half.y * half.z) * sizeof(T));
     auto* to = reinterpret_cast<T*>(result.voxels.data());
-    std::vector<T> slices(static_cast<size_t>(size.x * size.y * std::min<int64_t>(size.z, 2)));
+    std::vector<T> slices(size_t(size.x * size.y * std::min<int64_t>(size.z, 2)));
     for (int64_t z = 0; z < size.z; z += 2) {
         const VoxelBox box{{0, 0, z}, {size.x, size.y, std::min(z + 2, size.z)}};
         const Size3 extent = box.size();
-        const std::span<T> read(slices.data(), static_cast<size_t>(extent.x * extent.y * extent.z));
+        const std::span<T> read(slices.data(), size_t(extent.x * extent.y * extent.z));
         source.read_level(level, box, std::as_writable_bytes(read));
         for (int64_t y = 0; y < extent.y; y += 2, to += half.x) {
             HalvingRows<T> rows;
             for (int64_t slice = 0; slice < extent.z; ++slice)
                 for (int64_t row = y; row < std::min(y + 2, extent.y); ++row)
-                    rows.first[static_cast<size_t>(rows.count++)] = read.data() + extent.x * (row + extent.y * slice);
+                    rows.first[size_t(rows.count++)] = read.data() + extent.x * (row + extent.y * slice);
             halve_rows(rows, extent.x, to);
         }
     }
@@ -60,15 +60,15 @@ public:
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         if (level == 0) return read(box, voxels);
-        const Level& coarse = coarse_.at(static_cast<size_t>(level - 1));
+        const Level& coarse = coarse_.at(size_t(level - 1));
         const Size3 extent = box.size();
-        const auto voxel_bytes = static_cast<int64_t>(bytes_of(info().type));
+        const auto voxel_bytes = int64_t(bytes_of(info().type));
         std::byte* to = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y, to += extent.x * voxel_bytes)
                 std::memcpy(
                     to, coarse.voxels.data() + voxel_bytes * (box.lower.x + coarse.size.x * (y + coarse.size.y * z)),
-                    static_cast<size_t>(extent.x * voxel_bytes));
+                    size_t(extent.x * voxel_bytes));
     }
     Size3 block() const override { return base_->block(); }
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override

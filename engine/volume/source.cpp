@@ -23,19 +23,19 @@ void for_each_slab(const VolumeSource& source, const Take& take)
 {
     const Size3 size = source.info().size;
     const Size3 block = glm::min(source.block(), size);
-    const int64_t row_bytes = size.x * static_cast<int64_t>(sizeof(T));
+    const int64_t row_bytes = size.x * int64_t(sizeof(T));
     int64_t rows = std::min(size.y, std::max<int64_t>(1, SLAB_BYTES / (row_bytes * block.z)));
     if (rows < size.y) rows = std::max(rows / block.y, int64_t{1}) * block.y;
     int64_t slices = block.z;
     if (rows >= size.y) slices *= std::max<int64_t>(1, SLAB_BYTES / (row_bytes * size.y * block.z));
     rows = std::min(rows, size.y);
     slices = std::min(slices, size.z);
-    std::vector<T> slab(static_cast<size_t>(size.x * rows * slices));
+    std::vector<T> slab(size_t(size.x * rows * slices));
     for (int64_t z = 0; z < size.z; z += slices) {
         for (int64_t y = 0; y < size.y; y += rows) {
             const VoxelBox box{{0, y, z}, {size.x, std::min(y + rows, size.y), std::min(z + slices, size.z)}};
             const Size3 extent = box.size();
-            const std::span<T> voxels(slab.data(), static_cast<size_t>(extent.x * extent.y * extent.z));
+            const std::span<T> voxels(slab.data(), size_t(extent.x * extent.y * extent.z));
             source.read(box, std::as_writable_bytes(voxels));
             take(std::span<const T>(voxels));
         }
@@ -48,7 +48,7 @@ size_t bin_of(const ValueRange& range, double value)
     const double extent = 0.5 * range.upper - 0.5 * range.lower;
     if (!(extent > 0.0)) return 0;
     const double place = (0.5 * std::clamp(value, range.lower, range.upper) - 0.5 * range.lower) / extent;
-    return std::min(BINS - 1, static_cast<size_t>(place * double{BINS}));
+    return std::min(BINS - 1, size_t(place * double{BINS}));
 }
 
 /// Integers of 8 and 16 bits have few enough values to count each; everything else follows from the counts.
@@ -66,8 +66,8 @@ VolumeStatistics measure_integers(const VolumeSource& source)
     });
 
     std::vector<int64_t> ascending;
-    constexpr int LOWEST = std::is_signed_v<T> ? -static_cast<int>(VALUES / 2) : 0;
-    for (int value = LOWEST; value < LOWEST + static_cast<int>(VALUES); ++value) {
+    constexpr int LOWEST = std::is_signed_v<T> ? -int(VALUES / 2) : 0;
+    for (int value = LOWEST; value < LOWEST + int(VALUES); ++value) {
         int64_t count = 0;
         for (size_t table = 0; table < TABLES; ++table) {
             count += counts[table * VALUES + static_cast<Unsigned>(value)];
@@ -110,11 +110,11 @@ private:
     static size_t key_of(double value)
     {
         const auto bits = std::bit_cast<uint64_t>(value);
-        return static_cast<size_t>(((bits & SIGN) != 0 ? ~bits : bits | SIGN) >> (64 - KEY_BITS));
+        return size_t(((bits & SIGN) != 0 ? ~bits : bits | SIGN) >> (64 - KEY_BITS));
     }
     static double value_of(size_t key, uint64_t rest)
     {
-        const uint64_t ordered = static_cast<uint64_t>(key) << (64 - KEY_BITS) | rest;
+        const uint64_t ordered = uint64_t(key) << (64 - KEY_BITS) | rest;
         return std::bit_cast<double>((ordered & SIGN) != 0 ? ordered & ~SIGN : ~ordered);
     }
 
@@ -130,7 +130,7 @@ void for_each_finite(const VolumeSource& source, const Take& take)
             if constexpr (std::is_floating_point_v<T>) {
                 if (!std::isfinite(voxel)) continue;
             }
-            take(static_cast<double>(voxel));
+            take(double(voxel));
         }
     });
 }
@@ -141,8 +141,7 @@ void find_bulk(const VolumeSource& source, const Sketch& sketch, int64_t finite,
 {
     const double most = std::numeric_limits<double>::max();
     if (finite < FEWEST_VOXELS) return;
-    const ValueRange middle =
-        sketch.without(std::max<int64_t>(1, static_cast<int64_t>(OUTLIER_SHARE * static_cast<double>(finite))));
+    const ValueRange middle = sketch.without(std::max<int64_t>(1, int64_t(OUTLIER_SHARE * double(finite))));
     const double lower = std::max(middle.lower, statistics.minimum);
     const double upper = std::min(middle.upper, statistics.maximum);
     const double reach = OUTLIER_DISTANCE * (upper - lower);
@@ -184,7 +183,7 @@ VolumeStatistics measure_wide(const VolumeSource& source)
     if (finite == 0) return statistics;
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
-    statistics.mean = static_cast<double>(sum / static_cast<long double>(finite));
+    statistics.mean = double(sum / static_cast<long double>(finite));
     find_bulk<T>(source, sketch, finite, statistics);
     const ValueRange range = statistics.range();
     for_each_finite<T>(source, [&](double value) { ++statistics.histogram[bin_of(range, value)]; });
@@ -233,9 +232,9 @@ int level_to_measure(const VolumeSource& source)
     int level = 0;
     const auto voxels = [&] {
         const Size3 size = size_of_level(source.info().size, level);
-        return static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
+        return double(size.x) * double(size.y) * double(size.z);
     };
-    while (level + 1 < source.levels() && voxels() > static_cast<double>(MOST_MEASURED)) ++level;
+    while (level + 1 < source.levels() && voxels() > double(MAX_VOXELS_MEASURED)) ++level;
     return level;
 }
 
@@ -256,7 +255,7 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
 {
     std::vector<std::pair<double, int64_t>> present;  // value, how often; ascending
     for (size_t i = 0; i < counts.size(); ++i) {
-        if (counts[i] > 0) present.emplace_back(lowest + static_cast<int>(i), counts[i]);
+        if (counts[i] > 0) present.emplace_back(lowest + int(i), counts[i]);
     }
     VolumeStatistics statistics{.minimum = present.front().first, .maximum = present.back().first};
     statistics.histogram.assign(BINS, 0);
@@ -267,7 +266,7 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
         sum += static_cast<long double>(value) * static_cast<long double>(count);
         voxels += count;
     }
-    statistics.mean = static_cast<double>(sum / static_cast<long double>(voxels));
+    statistics.mean = double(sum / static_cast<long double>(voxels));
     return statistics;
 }
 
@@ -290,7 +289,7 @@ VolumeStatistics measure(const VolumeSource& source)
         case VoxelType::float32: return measure_wide<float>(source);
         case VoxelType::float64: return measure_wide<double>(source);
     }
-    SHVR_CHECK(false, "voxel type ", static_cast<int>(source.info().type));
+    SHVR_CHECK(false, "voxel type ", int(source.info().type));
     return {};
 }
 

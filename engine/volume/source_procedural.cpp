@@ -103,12 +103,12 @@ public:
         check_box(level, box, voxels);
         const double side = std::ldexp(1.0, level);
         const Size3 extent = box.size();
-        std::vector<double> values(static_cast<size_t>(extent.x));
+        std::vector<double> values(size_t(extent.x));
         std::byte* row = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
                 for (int64_t x = 0; x < extent.x; ++x)
-                    values[static_cast<size_t>(x)] = kind_->value(
+                    values[size_t(x)] = kind_->value(
                         glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
                 store(info().type, values, row);
                 row += values.size() * bytes_of(info().type);
@@ -119,9 +119,9 @@ public:
     {
         check_box(0, box, voxels);
         const Size3 extent = box.size();
-        const auto row_bytes = extent.x * static_cast<int64_t>(bytes_of(info().type));
+        const auto row_bytes = extent.x * int64_t(bytes_of(info().type));
         const std::unique_ptr<ProceduralKind::Rows> rows = kind_->rows(box);
-        std::vector<double> values(static_cast<size_t>(extent.x));
+        std::vector<double> values(size_t(extent.x));
         for (int64_t y = 0; y < extent.y; ++y) {
             for (int64_t z = 0; z < extent.z; ++z) {
                 rows->evaluate(box.lower.y + y, box.lower.z + z, values);
@@ -138,8 +138,7 @@ private:
         SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
                    glm::all(glm::lessThanEqual(box.upper, size_of_level(info().size, level))) &&
                    glm::all(glm::greaterThan(extent, Size3(0))));
-        SHVR_CHECK(voxels.size() == static_cast<size_t>(extent.x * extent.y * extent.z) * bytes_of(info().type),
-                   voxels.size());
+        SHVR_CHECK(voxels.size() == size_t(extent.x * extent.y * extent.z) * bytes_of(info().type), voxels.size());
     }
 
     std::unique_ptr<ProceduralKind> kind_;
@@ -153,8 +152,7 @@ public:
 
     void evaluate(int64_t y, int64_t z, std::span<double> values) override
     {
-        glm::dvec3 voxel(static_cast<double>(first_x_) + 0.5, static_cast<double>(y) + 0.5,
-                         static_cast<double>(z) + 0.5);
+        glm::dvec3 voxel(double(first_x_) + 0.5, double(y) + 0.5, double(z) + 0.5);
         for (double& value : values) {
             value = kind_.value(voxel);
             voxel.x += 1.0;

@@ -60,7 +60,7 @@ std::string plain_spelling(const std::string& name)
         if (std::isspace(byte) != 0) {
             if (!plain.empty() && plain.back() != ' ') plain += ' ';
         } else {
-            plain += static_cast<char>(std::tolower(byte));
+            plain += char(std::tolower(byte));
         }
     }
     if (!plain.empty() && plain.back() == ' ') plain.pop_back();
@@ -81,7 +81,7 @@ size_t bytes_of(VoxelType type)
         case VoxelType::float32: return 4;
         case VoxelType::float64: return 8;
     }
-    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    SHVR_CHECK(false, "voxel type ", int(type));
     return 0;
 }
 
@@ -97,7 +97,7 @@ const char* name_of(VoxelType type)
         case VoxelType::float32: return "float32";
         case VoxelType::float64: return "float64";
     }
-    SHVR_CHECK(false, "voxel type ", static_cast<int>(type));
+    SHVR_CHECK(false, "voxel type ", int(type));
     return "";
 }
 

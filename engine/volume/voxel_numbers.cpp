@@ -14,8 +14,8 @@ T to_voxel(double value)
     if constexpr (std::is_floating_point_v<T>) return static_cast<T>(value);
     // Without SSE 4.1, std::floor is a function call.
     const double raised = value + 0.5;
-    const auto whole = static_cast<int64_t>(raised);
-    return static_cast<T>(static_cast<double>(whole) > raised ? whole - 1 : whole);
+    const auto whole = int64_t(raised);
+    return static_cast<T>(double(whole) > raised ? whole - 1 : whole);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ void load_voxels(VoxelType type, const std::byte* voxels, std::span<double> valu
     with_voxel_type(type, [&]<class T>(T voxel) {
         for (size_t i = 0; i < values.size(); ++i) {
             std::memcpy(&voxel, voxels + i * sizeof(T), sizeof(T));
-            values[i] = static_cast<double>(voxel);
+            values[i] = double(voxel);
         }
     });
 }

@@ -19,7 +19,7 @@
 SHARED_BEGIN
 
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // of cells: 2 << size voxels a side
-SHARED_CONST uint OCCLUSION_MOST_TAPS = 6u;
+SHARED_CONST uint OCCLUSION_MAX_TAPS = 6u;
 /// Bricks whose values can be computed at once: the scratch images hold as many, stacked along z.
 SHARED_CONST uint OCCLUSION_SLICE = 16u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels

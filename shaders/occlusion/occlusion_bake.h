@@ -20,8 +20,8 @@ struct OcclusionBakeParams {
     uint reach;
     uint grow;  ///< 1: also voxels beside those of occupied cells (painted ones show outside the cells' ranges)
     uint aprons[OCCLUSION_SIZES];
-    uvec3 cell_counts;                       ///< of the leap grid
-    OcclusionTap taps[OCCLUSION_MOST_TAPS];  ///< the nearest first; unused ones have a stretch of 0
+    uvec3 cell_counts;                      ///< of the leap grid
+    OcclusionTap taps[OCCLUSION_MAX_TAPS];  ///< the nearest first; unused ones have a stretch of 0
 };
 
 SHARED_END

@@ -23,12 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t MOST_STEPS = 4096;
+constexpr size_t MAX_STEPS = 4096;
 
 /// The child's reports before it is killed.
 struct Told {
     std::atomic<size_t> steps;
-    std::atomic<int64_t> done_ns[MOST_STEPS];
+    std::atomic<int64_t> done_ns[MAX_STEPS];
 };
 
 int64_t now_ns()
@@ -41,7 +41,7 @@ int64_t now_ns()
     std::string said;
     const auto work = open_work(files_in(folder), said);
     std::mt19937 random(seed);
-    for (size_t step = 0; step < MOST_STEPS;) {
+    for (size_t step = 0; step < MAX_STEPS;) {
         if (!random_step(*work, random)) continue;
         told.done_ns[step] = now_ns();
         told.steps = ++step;

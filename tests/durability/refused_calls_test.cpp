@@ -35,7 +35,7 @@ std::map<std::string, std::string> saved_files(const fs::path& folder)
 TEST_CASE("every call of a save fails once: each file is the old or the new one, and a second try succeeds")
 {
     const TemporaryFolder folder;
-    int most_calls = 0, refused_saves = 0;
+    int max_calls = 0, refused_saves = 0;
     using Kind = FileCall::Kind;
     for (const int error : {ENOSPC, EIO, EROFS, EINTR, SHORT_WRITE}) {
         const auto can_happen = [&](Kind kind) {
@@ -82,13 +82,13 @@ TEST_CASE("every call of a save fails once: each file is the old or the new one,
             work = open_work(files_in(desk), said);
             CHECK(hash_of(work->document()) == hash);
             CHECK(said.empty());
-            most_calls = std::max(most_calls, calls);
+            max_calls = std::max(max_calls, calls);
             if (calls <= nth) break;
         }
     }
-    CHECK(most_calls > 15);
+    CHECK(max_calls > 15);
     CHECK(refused_saves > 30);
-    MESSAGE("at most ", most_calls, " calls; ", refused_saves, " saves refused in words");
+    MESSAGE("at most ", max_calls, " calls; ", refused_saves, " saves refused in words");
 }
 
 TEST_CASE("a full disk stops nobody: work goes on in memory, it is said, and the journal catches up")

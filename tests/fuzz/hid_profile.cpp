@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     HidProfile profile;
     if (!accepts([&] { profile = parse_hid_profile(std::string(text_of({data, size})), "profile"); })) return 0;
     for (const uint8_t fill : std::array<uint8_t, 4>{0x00, 0x7f, 0x80, 0xff}) {
-        std::array<uint8_t, 1 + MOST_REPORT_BYTES> report{};
+        std::array<uint8_t, 1 + MAX_REPORT_BYTES> report{};
         report.fill(fill);
         for (const auto& layout : {profile.input, profile.feature}) {
             if (!layout) continue;

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path FOLDER = "tests/golden";
-constexpr int64_t MOST_FILE_BYTES = 1 << 20;
+constexpr int64_t MAX_FILE_BYTES = 1 << 20;
 constexpr std::string_view LAVAPIPE = "llvmpipe";  // the device name that the driver lavapipe reports
 
 struct Golden {
@@ -56,7 +56,7 @@ std::vector<ScriptLine> script_of(const std::string& name, const Json& lines)
 Golden read_golden(const fs::path& path)
 {
     Golden golden{.name = path.stem().string()};
-    const Json json = Json::parse(read_text(path, MOST_FILE_BYTES));
+    const Json json = Json::parse(read_text(path, MAX_FILE_BYTES));
     for (const auto& [key, value] : json.items())
         if (key != "why" && key != "class" && key != "session" && key != "script")
             fail(path, ": unknown key ", key, "; expected why, class, session and perhaps script");
@@ -147,8 +147,8 @@ std::optional<std::string> why_not_blessed(const Golden& golden)
 {
     if (!fs::exists(golden.picture())) return sentence(golden.picture().string(), " is missing");
     if (!fs::exists(golden.side_car())) return sentence(golden.side_car().string(), " is missing");
-    const Json side_car = Json::parse(read_text(golden.side_car(), MOST_FILE_BYTES));
-    const std::string found = hash_of(read_file(golden.picture(), MOST_FILE_BYTES));
+    const Json side_car = Json::parse(read_text(golden.side_car(), MAX_FILE_BYTES));
+    const std::string found = hash_of(read_file(golden.picture(), MAX_FILE_BYTES));
     const std::string expected = side_car.at("fnv1a64").get<std::string>();
     if (found != expected)
         return sentence(golden.picture().string(), " has hash ", found, "; its side-car says ", expected);
@@ -293,7 +293,7 @@ void bless(const Golden& golden, const std::string& reason)
     std::string old_hash = "none";
     Json history;
     if (fs::exists(golden.picture())) {
-        old_hash = hash_of(read_file(golden.picture(), MOST_FILE_BYTES));
+        old_hash = hash_of(read_file(golden.picture(), MAX_FILE_BYTES));
         const Image8 before = read_png(golden.picture());
         if (before == actual && !why_not_blessed(golden)) return print_row(golden.name, old_hash, "unchanged", "0", "");
         history = history_of(old_hash, before, actual);

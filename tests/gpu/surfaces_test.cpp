@@ -77,7 +77,7 @@ public:
     VolumeInfo info;
     glm::uvec2 pixels{24, 24};
     glm::vec3 light{0.0f, 0.0f, 1.0f};
-    size_t most_in_leaf = SURFACES_IN_LEAF;
+    size_t max_in_leaf = SURFACES_IN_LEAF;
 
     Surfaces() { info.size = Size3(100); }
 
@@ -86,7 +86,7 @@ public:
     {
         const RayPlanes planes = ray_planes(camera, pixels, info);
         SurfaceScene scene(renderer().memory());
-        scene.set(SurfaceForest(keyed(surfaces), info, most_in_leaf));
+        scene.set(SurfaceForest(keyed(surfaces), info, max_in_leaf));
         FrameGraph graph;
         SurfacesInput input{.params = {},
                             .scene = scene.params(planes, pixels, info),
@@ -114,9 +114,9 @@ public:
 
     struct Errors {
         size_t hits = 0;
-        size_t wrong = 0;            ///< pixels that show a wrong surface, or wrongly none
-        double shade = 0.0;          ///< largest error of the diffuse light
-        double least_length = 1e30;  ///< shortest length along a ray
+        size_t wrong = 0;          ///< pixels that show a wrong surface, or wrongly none
+        double shade = 0.0;        ///< largest error of the diffuse light
+        double min_length = 1e30;  ///< shortest length along a ray
     };
     /// A length must lie between those at which the ray enters surfaces larger and smaller by `off`.
     Errors check(const std::vector<SurfaceLook>& surfaces, const Camera& camera, double off, double length_off = 0.0)
@@ -134,7 +134,7 @@ public:
             errors.wrong += length < earliest - length_off || length > latest + length_off;
             if (length == INFINITY) continue;
             ++errors.hits;
-            errors.least_length = std::min(errors.least_length, length);
+            errors.min_length = std::min(errors.min_length, length);
             if (length <= ray.begin + off) continue;  // cut by the near plane
             Distance nearest, second;
             for (const SurfaceLook& surface : surfaces) {
@@ -347,9 +347,9 @@ TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds
     for (const Camera& camera :
          {orthographic(MIDDLE, {1, 2, 3}, 120.0), orthographic(MIDDLE, {0, 1, 0}, 120.0),
           perspective(MIDDLE, {10.0, 50.0, 70.0}, 90.0), perspective({-1e6, 50, 50}, MIDDLE, 0.01)}) {
-        most_in_leaf = SURFACES_IN_LEAF;
+        max_in_leaf = SURFACES_IN_LEAF;
         const Sight found = look(rods, camera);
-        most_in_leaf = rods.size();
+        max_in_leaf = rods.size();
         const Sight asked = look(rods, camera);
         CHECK((found.seen == asked.seen));
         for (const glm::vec4& pixel : asked.seen) hits += pixel.a < gpu::NO_SURFACE;

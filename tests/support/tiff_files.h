@@ -30,8 +30,8 @@ struct TiffSpec {
     std::vector<uint16_t> palette{};  ///< red, green, blue, one after the other
     std::function<void(TIFF*)> more{};
 
-    size_t row_bytes() const { return static_cast<size_t>(width * samples * bits + 7) / 8; }
-    size_t page_bytes() const { return row_bytes() * static_cast<size_t>(height); }
+    size_t row_bytes() const { return size_t(width * samples * bits + 7) / 8; }
+    size_t page_bytes() const { return row_bytes() * size_t(height); }
 };
 
 class TiffWriter {
@@ -84,8 +84,7 @@ private:
             TIFFSetField(tiff_, TIFFTAG_ROWSPERSTRIP, spec.rows_per_strip > 0 ? spec.rows_per_strip : spec.height);
         }
         if (!spec.extra_samples.empty()) {
-            TIFFSetField(tiff_, TIFFTAG_EXTRASAMPLES, static_cast<int>(spec.extra_samples.size()),
-                         spec.extra_samples.data());
+            TIFFSetField(tiff_, TIFFTAG_EXTRASAMPLES, int(spec.extra_samples.size()), spec.extra_samples.data());
         }
         if (!spec.description.empty()) TIFFSetField(tiff_, TIFFTAG_IMAGEDESCRIPTION, spec.description.c_str());
         if (spec.x_resolution > 0.0) {
@@ -105,9 +104,9 @@ private:
     static std::string one_sample(const TiffSpec& spec, std::string_view samples, int plane)
     {
         std::string part;
-        const auto bytes = static_cast<size_t>(spec.bits / 8);
-        const size_t step = bytes * static_cast<size_t>(spec.samples);
-        for (size_t at = bytes * static_cast<size_t>(plane); at < samples.size(); at += step) {
+        const auto bytes = size_t(spec.bits / 8);
+        const size_t step = bytes * size_t(spec.samples);
+        for (size_t at = bytes * size_t(plane); at < samples.size(); at += step) {
             part += samples.substr(at, bytes);
         }
         return part;
@@ -116,29 +115,27 @@ private:
     // libtiff modifies its input, so rows and tiles are copies.
     bool rows(const TiffSpec& spec, const std::string& samples, int plane)
     {
-        const size_t row_bytes = samples.size() / static_cast<size_t>(spec.height);
+        const size_t row_bytes = samples.size() / size_t(spec.height);
         for (int y = 0; y < spec.height; ++y) {
-            std::string row = samples.substr(static_cast<size_t>(y) * row_bytes, row_bytes);
-            if (TIFFWriteScanline(tiff_, row.data(), static_cast<uint32_t>(y), static_cast<uint16_t>(plane)) != 1)
-                return false;
+            std::string row = samples.substr(size_t(y) * row_bytes, row_bytes);
+            if (TIFFWriteScanline(tiff_, row.data(), uint32_t(y), uint16_t(plane)) != 1) return false;
         }
         return true;
     }
 
     bool tiles(const TiffSpec& spec, const std::string& samples, int plane)
     {
-        const auto pixel = static_cast<size_t>(spec.bits / 8 * (spec.is_planar ? 1 : spec.samples));
-        const auto side = static_cast<size_t>(spec.tile);
-        const auto width = static_cast<size_t>(spec.width);
-        for (size_t top = 0; top < static_cast<size_t>(spec.height); top += side) {
+        const auto pixel = size_t(spec.bits / 8 * (spec.is_planar ? 1 : spec.samples));
+        const auto side = size_t(spec.tile);
+        const auto width = size_t(spec.width);
+        for (size_t top = 0; top < size_t(spec.height); top += side) {
             for (size_t left = 0; left < width; left += side) {
                 std::string tile(side * side * pixel, '\x55');  // values outside the page must not matter
-                for (size_t y = top; y < std::min(top + side, static_cast<size_t>(spec.height)); ++y) {
+                for (size_t y = top; y < std::min(top + side, size_t(spec.height)); ++y) {
                     const size_t columns = std::min(side, width - left);
                     samples.copy(tile.data() + (y - top) * side * pixel, columns * pixel, (y * width + left) * pixel);
                 }
-                if (TIFFWriteTile(tiff_, tile.data(), static_cast<uint32_t>(left), static_cast<uint32_t>(top), 0,
-                                  static_cast<uint16_t>(plane)) < 0)
+                if (TIFFWriteTile(tiff_, tile.data(), uint32_t(left), uint32_t(top), 0, uint16_t(plane)) < 0)
                     return false;
             }
         }
@@ -168,7 +165,7 @@ std::string bytes_of_numbers(const std::vector<T>& numbers)
 inline std::string chirality_page(int z)
 {
     std::vector<int16_t> voxels;
-    for (int i = 0; i < 20; ++i) voxels.push_back(static_cast<int16_t>(i % 5 + 10 * (i / 5) + 100 * z - 99));
+    for (int i = 0; i < 20; ++i) voxels.push_back(int16_t(i % 5 + 10 * (i / 5) + 100 * z - 99));
     return bytes_of_numbers(voxels);
 }
 

@@ -40,7 +40,7 @@ public:
         // A new file rather than a truncated one: some file systems wait for the disk when those are closed.
         std::filesystem::remove(path / name);
         std::ofstream file(path / name, std::ios::binary);
-        file.write(content.data(), static_cast<std::streamsize>(content.size()));
+        file.write(content.data(), std::streamsize(content.size()));
         return path / name;
     }
 
@@ -63,12 +63,12 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         const size_t voxel_bytes = bytes_of(info().type);
-        const size_t row_bytes = static_cast<size_t>(box.size().x) * voxel_bytes;
+        const size_t row_bytes = size_t(box.size().x) * voxel_bytes;
         std::byte* row = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
             for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += row_bytes) {
                 const int64_t first = box.lower.x + info().size.x * (y + info().size.y * z);
-                std::memcpy(row, voxels_.data() + static_cast<size_t>(first) * voxel_bytes, row_bytes);
+                std::memcpy(row, voxels_.data() + size_t(first) * voxel_bytes, row_bytes);
             }
         }
     }
@@ -91,7 +91,7 @@ MemorySource memory_source(const Size3& size, VoxelType type, const std::vector<
 template <class T>
 std::vector<T> voxels_in(const VolumeSource& source, const VoxelBox& box)
 {
-    std::vector<T> voxels(static_cast<size_t>(box.size().x * box.size().y * box.size().z));
+    std::vector<T> voxels(size_t(box.size().x * box.size().y * box.size().z));
     source.read(box, std::as_writable_bytes(std::span(voxels)));
     return voxels;
 }
@@ -110,7 +110,7 @@ inline bool is_chirality_phantom(const VolumeSource& source)
     if (source.info().size != Size3(5, 4, 3) || source.info().type != VoxelType::int16) return false;
     const std::vector<int16_t> voxels = voxels_of<int16_t>(source);
     for (int i = 0; i < 60; ++i) {
-        if (voxels[static_cast<size_t>(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
+        if (voxels[size_t(i)] != i % 5 + 10 * (i / 5 % 4) + 100 * (i / 20) - 99) return false;
     }
     return true;
 }

@@ -13,16 +13,15 @@ namespace shvr::cli {
 namespace {
 
 /// Enough for any machine, and products with 2^20 fit into 64 bits.
-constexpr int64_t MOST_MIB = int64_t{1} << 24;
+constexpr int64_t MAX_MIB = int64_t{1} << 24;
 
 CLI::Validator whole_mib()
 {
     return {[](std::string& text) {
                 const std::optional<int64_t> mib = whole_of(text);
-                return mib && *mib >= 1 && *mib <= MOST_MIB
+                return mib && *mib >= 1 && *mib <= MAX_MIB
                            ? std::string()
-                           : sentence(in_quotes(text), " is given; expected a whole number of MiB from 1 to ",
-                                      MOST_MIB);
+                           : sentence(in_quotes(text), " is given; expected a whole number of MiB from 1 to ", MAX_MIB);
             },
             ""};
 }

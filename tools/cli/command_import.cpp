@@ -142,7 +142,7 @@ void handle_signals()
 
 std::string time_text(double seconds)
 {
-    const auto whole = static_cast<int64_t>(std::ceil(seconds));
+    const auto whole = int64_t(std::ceil(seconds));
     if (whole < 60) return sentence(whole, " s");
     if (whole < 3600) return sentence(whole / 60, " min ", whole % 60, " s");
     return sentence(whole / 3600, " h ", whole / 60 % 60, " min");
@@ -152,22 +152,20 @@ std::string time_text(double seconds)
 class ProgressLine {
 public:
     ProgressLine(const Common& common, size_t voxel_bytes)
-        : is_quiet_(common.quiet),
-          is_terminal_(::isatty(STDERR_FILENO) == 1),
-          voxel_bytes_(static_cast<double>(voxel_bytes))
+        : is_quiet_(common.quiet), is_terminal_(::isatty(STDERR_FILENO) == 1), voxel_bytes_(double(voxel_bytes))
     {}
     ~ProgressLine() { clear(); }
 
     void show(const ImportProgress& progress)
     {
         if (is_quiet_) return;
-        const auto tenth = static_cast<int>(progress.fraction * 10.0);
+        const auto tenth = int(progress.fraction * 10.0);
         if (!is_terminal_ && tenth <= last_tenth_) return;
         last_tenth_ = tenth;
         const double rate = progress.voxels_per_second * voxel_bytes_ / 1e6;
-        const std::string line = sentence(static_cast<int>(progress.fraction * 100.0), " %, ", std::fixed,
-                                          std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s, ",
-                                          time_text(progress.seconds_left), " left");
+        const std::string line =
+            sentence(int(progress.fraction * 100.0), " %, ", std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate,
+                     " MB/s, ", time_text(progress.seconds_left), " left");
         if (is_terminal_) {
             std::cerr << "\r\x1b[K" << line << std::flush;
             is_shown_ = true;
@@ -192,7 +190,7 @@ double peak_rss_mib()
 {
     struct rusage usage {};
     ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+    return double(usage.ru_maxrss) / 1024.0;
 }
 
 void run_import(const ImportCommandOptions& options)
@@ -217,13 +215,12 @@ void run_import(const ImportCommandOptions& options)
     warn(report.warnings, options.common);
 
     const VolumeInfo& info = report.info;
-    const double megabytes =
-        static_cast<double>(voxel_count(info)) * static_cast<double>(bytes_of(info.type)) / seconds / 1e6;
+    const double megabytes = double(voxel_count(info)) * double(bytes_of(info.type)) / seconds / 1e6;
     if (!options.common.json) {
         return say(options.common,
                    sentence(report.project.string(), ": ", info.size.x, " x ", info.size.y, " x ", info.size.z,
                             " voxels in ", report.levels, " levels, ", std::fixed, std::setprecision(1),
-                            static_cast<double>(report.bytes) / 1048576.0, " MiB, ", seconds, " s"));
+                            double(report.bytes) / 1048576.0, " MiB, ", seconds, " s"));
     }
     print({{"project", report.project.string()},
            {"size", {info.size.x, info.size.y, info.size.z}},

@@ -70,7 +70,7 @@ void write_mask(const std::string& path, const VolumeSource& labels)
     for (int64_t z = 0; z < info.size.z; ++z)
         for (int64_t y = 0; y < info.size.y; y += step) {
             const VoxelBox box{{0, y, z}, {info.size.x, std::min(y + step, info.size.y), z + 1}};
-            rows.resize(static_cast<size_t>(box.size().x * box.size().y));
+            rows.resize(size_t(box.size().x * box.size().y));
             labels.read(box, rows);
             writer.append(rows);
         }
@@ -92,7 +92,7 @@ void write_labels(const LabelCommandOptions& options, const VolumeSource& labels
 std::function<void(double)> progress_of(const Common& common, const char* what)
 {
     return [&common, what, last = 0](double fraction) mutable {
-        const int tenth = static_cast<int>(10.0 * fraction);
+        const int tenth = int(10.0 * fraction);
         if (tenth <= last) return;
         last = tenth;
         say(common, sentence(what, " ", 10 * tenth, " %"));
@@ -114,7 +114,7 @@ void run_label(const LabelCommandOptions& options)
         .threshold = options.threshold,
         .connectivity = options.connectivity == 6 ? Connectivity::faces : Connectivity::corners,
         .fewest_voxels = options.fewest_voxels,
-        .most_components = options.largest,
+        .max_components = options.largest,
         .threads = options.common.threads,
         .progress = progress_of(options.common, "labelled"),
     };
@@ -129,7 +129,7 @@ void run_label(const LabelCommandOptions& options)
         write_labels(options, *labels, progress_of(options.common, "written"));
     }
     const double seconds = seconds_since(begin);
-    const auto voxels = static_cast<double>(voxel_count(info));
+    const auto voxels = double(voxel_count(info));
     if (!options.common.json) {
         say(options.common,
             sentence(counts.found, " components of ", counts.foreground_voxels, " voxels, the largest of ",

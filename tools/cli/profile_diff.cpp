@@ -73,7 +73,7 @@ Json counters_compared(const Json& a, const Json& b)
         const auto other = b["counters"].find(name);
         if (other == b["counters"].end() || !value.is_number_integer() || !other->is_number_integer()) continue;
         // Unsigned, because the difference of arbitrary numbers may exceed int64_t.
-        const auto delta = static_cast<int64_t>(other->get<uint64_t>() - value.get<uint64_t>());
+        const auto delta = int64_t(other->get<uint64_t>() - value.get<uint64_t>());
         rows.push_back({{"name", name}, {"a", value}, {"b", *other}, {"delta", delta}});
     }
     return rows;

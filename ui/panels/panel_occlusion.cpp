@@ -13,7 +13,7 @@ void occlusion_panel(const Model& model, Actions& actions)
     bool is_other = slider("Strength", settings.strength, 0.0, 1.0, "%.2f");
     hint("How dark gaps and contacts get, where little ambient light arrives. 0 switches it off.");
     is_other |=
-        slider("Radius", settings.radius, 1.0, MOST_OCCLUSION_RADIUS, "%.0f voxels", ImGuiSliderFlags_Logarithmic);
+        slider("Radius", settings.radius, 1.0, MAX_OCCLUSION_RADIUS, "%.0f voxels", ImGuiSliderFlags_Logarithmic);
     hint("How far away an object may be and still block light.");
     is_other |= slider("Curve", settings.curve, 0.25, 4.0, "%.2f", ImGuiSliderFlags_Logarithmic);
     hint("Exponent of the light that arrives: above 1, half-dark places get darker.");

@@ -46,7 +46,7 @@ uint32_t checked(const std::filesystem::path& path, VoxelType type, uint32_t bit
     };
     if (!(std::abs(offset) <= limit)) {
         if (is_float(type)) refuse(offset, limit);
-        refuse(static_cast<int64_t>(offset), static_cast<int64_t>(limit));
+        refuse(int64_t(offset), int64_t(limit));
     }
     return offset == 0.0 ? 0 : bits;
 }

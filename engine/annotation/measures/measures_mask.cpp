@@ -14,7 +14,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MOST_VOXELS = int64_t{1} << 36;
+constexpr int64_t MAX_VOXELS = int64_t{1} << 36;
 
 using Words = std::vector<uint64_t>;
 
@@ -196,9 +196,9 @@ Topology topology_of(const Mask& mask, std::optional<uint8_t> group)
     }
     if (lower.x >= upper.x) return {};
     const Size3 size = upper - lower;
-    if (size.x * size.y > MOST_VOXELS / size.z)
-        fail("the mask: its painted bricks lie in a box of ", digits_of(size), " voxels; expected at most ",
-             MOST_VOXELS, " to count its parts, loops and cavities");
+    if (size.x * size.y > MAX_VOXELS / size.z)
+        fail("the mask: its painted bricks lie in a box of ", digits_of(size), " voxels; expected at most ", MAX_VOXELS,
+             " to count its parts, loops and cavities");
     return Counter(mask, group, lower, upper).count();
 }
 

@@ -81,11 +81,11 @@ Dice dice_of(const Mask& a, const Mask& b)
 
 double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dvec3& position, double radius)
 {
-    constexpr double MOST_VOXELS = double(int64_t{1} << 31);
+    constexpr double MAX_VOXELS = double(int64_t{1} << 31);
     const glm::dvec3 centre = position / spacing, reach = radius / spacing;
     const glm::dvec3 box = 2.0 * reach + 1.0;
     // Coordinates read from files are far within the range of int64_t once the box is small enough.
-    if (!(box.x * box.y * box.z <= MOST_VOXELS) || !glm::all(glm::lessThan(glm::abs(centre), glm::dvec3(1e18))))
+    if (!(box.x * box.y * box.z <= MAX_VOXELS) || !glm::all(glm::lessThan(glm::abs(centre), glm::dvec3(1e18))))
         fail("a ball of radius ", digits_of(radius), " at ", digits_of(position),
              " is too large to be counted; expected at most 2147483648 voxels around it");
     const Size3 lower(glm::floor(centre - reach)), upper(glm::floor(centre + reach));

@@ -13,7 +13,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MOST_BYTES = int64_t{256} << 20;
+constexpr int64_t MAX_BYTES = int64_t{256} << 20;
 
 std::string extension_of(const std::filesystem::path& path)
 {
@@ -74,7 +74,7 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
 {
     const std::string form = extension_of(path);
     if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
-    const std::string text = read_text(path, MOST_BYTES);
+    const std::string text = read_text(path, MAX_BYTES);
     TraceReader reader(path.string());
     if (form == ".graphml")
         read_trace_graphml(reader, text);

@@ -14,7 +14,7 @@ namespace shvr {
 
 namespace {
 
-constexpr size_t MOST_NODES = 4'000'000;
+constexpr size_t MAX_NODES = 4'000'000;
 /// Far beyond any volume in any unit, and far below where squares overflow.
 constexpr double FARTHEST = 1e15;
 
@@ -53,7 +53,7 @@ private:
 
 uint32_t TraceReader::add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number)
 {
-    if (trace.nodes().size() == MOST_NODES) fail(where, ": is one node too many; expected at most ", MOST_NODES);
+    if (trace.nodes().size() == MAX_NODES) fail(where, ": is one node too many; expected at most ", MAX_NODES);
     if (!number && trace.next_node() >> 32 != 0) fail(where, ": no number is left for this node");
     const uint32_t given = number.value_or(uint32_t(trace.next_node()));
     if (trace.nodes().contains(given)) fail(where, ": node ", given, " is there already; expected each node once");

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-constexpr uint64_t MOST_NUMBERS = uint64_t{1} << 32;
+constexpr uint64_t MAX_NUMBERS = uint64_t{1} << 32;
 
 bool is_radius(double radius)
 {
@@ -94,7 +94,7 @@ double TraceGraph::radius_of(const TraceInternode& internode, double t) const
 
 void TraceGraph::reserve_numbers(uint64_t next_node, uint64_t next_internode)
 {
-    SHVR_CHECK(next_node <= MOST_NUMBERS && next_internode <= MOST_NUMBERS, next_node, " ", next_internode);
+    SHVR_CHECK(next_node <= MAX_NUMBERS && next_internode <= MAX_NUMBERS, next_node, " ", next_internode);
     next_node_ = std::max(next_node_, next_node);
     next_internode_ = std::max(next_internode_, next_internode);
 }

@@ -99,10 +99,10 @@ void History::bring(Entry& entry)
     dropped_ = 0;
 }
 
-void History::shrink(uint64_t most_bytes, RecordNumber durable)
+void History::shrink(uint64_t max_bytes, RecordNumber durable)
 {
     // Keeps the last command: it may be extended, and the caller may still read it.
-    for (; memory_ > most_bytes && dropped_ + 1 < done_; ++dropped_) {
+    for (; memory_ > max_bytes && dropped_ + 1 < done_; ++dropped_) {
         Entry& entry = commands_[dropped_];
         if (entry.records.back() == 0 || entry.records.back() > durable) return;
         if (!entry.is_here) continue;

@@ -41,9 +41,9 @@ public:
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops changes of the oldest commands until at most `most_bytes` are left; only of commands whose records, at
+    /// Drops changes of the oldest commands until at most `max_bytes` are left; only of commands whose records, at
     /// most `durable`, the journal has on disk.
-    void shrink(uint64_t most_bytes, RecordNumber durable);
+    void shrink(uint64_t max_bytes, RecordNumber durable);
 
 private:
     struct Entry {

@@ -126,9 +126,9 @@ Journal::~Journal()
 
 RecordNumber Journal::append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about)
 {
-    if (content.size() > MOST_RECORD_BYTES)
+    if (content.size() > MAX_RECORD_BYTES)
         fail(label, ": changes so much that its record has ", content.size(), " bytes; expected at most ",
-             MOST_RECORD_BYTES);
+             MAX_RECORD_BYTES);
     const std::scoped_lock lock(mutex_);
     waiting_bytes_ += content.size();
     queue_.push_back(

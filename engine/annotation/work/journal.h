@@ -36,7 +36,7 @@ public:
     ~Journal();
     Journal(const Journal&) = delete;
 
-    /// Fails if the content is larger than MOST_RECORD_BYTES.
+    /// Fails if the content is larger than MAX_RECORD_BYTES.
     RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
     /// The number of the last record appended.
     RecordNumber last() const;

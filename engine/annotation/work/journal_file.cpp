@@ -28,7 +28,7 @@ constexpr size_t HEADER_BYTES = 40;
 constexpr size_t CHECKSUM_AT = 32;
 constexpr uint16_t COMPRESSED = 1;
 /// Below this a zstd frame saves nothing.
-constexpr size_t LEAST_COMPRESSED_BYTES = 64;
+constexpr size_t MIN_COMPRESSED_BYTES = 64;
 
 using Header = std::array<std::byte, HEADER_BYTES>;
 
@@ -108,7 +108,7 @@ std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> 
     record.label.resize(std::min<size_t>(record.label.size(), UINT16_MAX));
     record.bytes = record.stored_bytes = content.size();
     std::vector<std::byte> compressed;
-    if (content.size() >= LEAST_COMPRESSED_BYTES) {
+    if (content.size() >= MIN_COMPRESSED_BYTES) {
         compressed.resize(ZSTD_compressBound(content.size()));
         const size_t made = ZSTD_compress(compressed.data(), compressed.size(), content.data(), content.size(), 1);
         SHVR_CHECK(ZSTD_isError(made) == 0, ZSTD_getErrorName(made));
@@ -171,7 +171,7 @@ JournalScan scan_journal(const fs::path& path)
                              .is_compressed = (flags & COMPRESSED) != 0};
         const uint64_t left = scan.file_bytes - std::min(scan.file_bytes, scan.end + HEADER_BYTES);
         if (record.stored_bytes > left || label_bytes > left - record.stored_bytes) break;
-        if (record.bytes > MOST_RECORD_BYTES || (!record.is_compressed && record.bytes != record.stored_bytes)) break;
+        if (record.bytes > MAX_RECORD_BYTES || (!record.is_compressed && record.bytes != record.stored_bytes)) break;
         body.resize(label_bytes + record.stored_bytes);
         if (read_at(file, path, scan.end + HEADER_BYTES, body) < body.size()) break;
         record.checksum = checksum_of(scan.checksum(), header, body);

@@ -59,7 +59,7 @@ struct JournalScan {
 };
 
 /// More than any single command paints; larger claims are refused before memory is allocated.
-constexpr uint64_t MOST_RECORD_BYTES = uint64_t{1} << 30;
+constexpr uint64_t MAX_RECORD_BYTES = uint64_t{1} << 30;
 
 /// Fails if the file is not a journal, is from a newer program, or cannot be read.
 JournalScan scan_journal(const std::filesystem::path& path);

@@ -404,8 +404,8 @@ std::vector<std::byte> bytes_of(const Document& document)
 Document document_of(std::span<const std::byte> bytes, Document empty)
 {
     Reader in(bytes);
-    constexpr uint64_t MOST_NUMBERS = LAST_NUMBER + 1;
-    const uint64_t next_node = in.whole(MOST_NUMBERS), next_internode = in.whole(MOST_NUMBERS);
+    constexpr uint64_t MAX_NUMBERS = LAST_NUMBER + 1;
+    const uint64_t next_node = in.whole(MAX_NUMBERS), next_internode = in.whole(MAX_NUMBERS);
     while (!in.at_end()) {
         const Change change = read_change(in);
         apply_if_it_fits(empty, std::span(&change, 1), Direction::forwards);

@@ -57,8 +57,8 @@ std::vector<glm::dvec3> read_path(const JsonNode& node)
     std::vector<glm::dvec3> points;
     points.reserve(node.count());
     for (const JsonNode& point : node.elements()) points.push_back(point.vector(any_number()));
-    if (const double count = stroke_position_count(points); !(count <= double(MOST_STROKE_POSITIONS)))
-        node.refuse_because(sentence(count, " positions a voxel apart; expected at most ", MOST_STROKE_POSITIONS));
+    if (const double count = stroke_position_count(points); !(count <= double(MAX_STROKE_POSITIONS)))
+        node.refuse_because(sentence(count, " positions a voxel apart; expected at most ", MAX_STROKE_POSITIONS));
     return points;
 }
 

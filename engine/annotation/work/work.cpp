@@ -358,7 +358,7 @@ void Work::keep_state()
         std::vector<std::byte> state = state_.get();
         state_bytes_ = state.size();
         // Larger states are not journalled.
-        if (state.size() <= MOST_RECORD_BYTES) journal_->append(RecordKind::state, {}, std::move(state), state_about_);
+        if (state.size() <= MAX_RECORD_BYTES) journal_->append(RecordKind::state, {}, std::move(state), state_about_);
         return;
     }
     if (since_state_bytes_ < std::max(limits_.bytes_between_states, 2 * state_bytes_) &&

@@ -26,10 +26,10 @@ namespace {
 using gdcm::DataSet;
 using gdcm::Tag;
 
-constexpr int64_t MOST_FRAMES = 65536;
+constexpr int64_t MAX_FRAMES = 65536;
 /// A larger decoded slice must have a minimum of bytes in its file; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
-constexpr int64_t MOST_EXPANSION = 1000;
+constexpr int64_t MAX_EXPANSION = 1000;
 
 /// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
 /// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
@@ -180,7 +180,7 @@ VoxelType read_type(const DicomFile& file, const Values& values, std::optional<V
         refuse(file, "Bits Allocated", std::to_string(allocated), "8, 16 or 32");
     }
     if (bits < 1 || bits > allocated) refuse(file, "Bits Stored", std::to_string(bits), "1 to Bits Allocated");
-    const double values_there_are = std::ldexp(1.0, static_cast<int>(bits));
+    const double values_there_are = std::ldexp(1.0, int(bits));
     stored = is_signed ? ValueRange{-0.5 * values_there_are, 0.5 * values_there_are - 1.0}
                        : ValueRange{0.0, values_there_are - 1.0};
     if (allocated == 8) return is_signed ? VoxelType::int8 : VoxelType::uint8;
@@ -232,18 +232,18 @@ int64_t read_number_of_frames(const DicomFile& file, const Values& values)
     const std::string text = values.text(Tag(0x0028, 0x0008));
     if (text.empty()) return 1;
     const int64_t frames = whole_of(text).value_or(0);
-    if (frames < 1 || frames > MOST_FRAMES) refuse(file, "Number of Frames", in_quotes(text), "1 to 65536");
+    if (frames < 1 || frames > MAX_FRAMES) refuse(file, "Number of Frames", in_quotes(text), "1 to 65536");
     return frames;
 }
 
 void check_size(const DicomFile& file, int64_t frames, const DicomLayout& layout)
 {
-    const int64_t slice = file.columns * file.rows * static_cast<int64_t>(bytes_of(file.type));
+    const int64_t slice = file.columns * file.rows * int64_t(bytes_of(file.type));
     if (!layout.is_encapsulated && layout.pixel_bytes < slice * frames) {
         fail(file.path.string(), ": Pixel Data holds ", layout.pixel_bytes, " bytes; expected ", slice * frames,
              " for ", frames, " slices of ", file.columns, "x", file.rows, " pixels of ", name_of(file.type));
     }
-    if (layout.is_encapsulated && slice > LARGE_SLICE && layout.pixel_bytes * MOST_EXPANSION < slice) {
+    if (layout.is_encapsulated && slice > LARGE_SLICE && layout.pixel_bytes * MAX_EXPANSION < slice) {
         fail(file.path.string(), ": Pixel Data holds ", layout.pixel_bytes, " compressed bytes; expected enough for ",
              file.columns, "x", file.rows, " pixels");
     }
@@ -278,7 +278,7 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     check_size(file, frames, layout);
     FrameValues frame_values(set);
     for (int64_t i = 0; i < frames; ++i) {
-        file.frames.push_back(read_frame(frame_values.of(static_cast<size_t>(i)), file, *stored));
+        file.frames.push_back(read_frame(frame_values.of(size_t(i)), file, *stored));
     }
 }
 
@@ -307,14 +307,13 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes)
 {
     std::vector<std::byte> pixels(bytes);
-    const auto index = static_cast<unsigned>(frame);
+    const auto index = unsigned(frame);
     try {
         const Turn turn;
         gdcm::ImageRegionReader reader;
         reader.SetFileName(file.path.c_str());
         gdcm::BoxRegion region;
-        region.SetDomain(0, static_cast<unsigned>(file.columns - 1), 0, static_cast<unsigned>(file.rows - 1), index,
-                         index);
+        region.SetDomain(0, unsigned(file.columns - 1), 0, unsigned(file.rows - 1), index, index);
         reader.SetRegion(region);
         if (reader.ReadInformation() && reader.ComputeBufferLength() == bytes &&
             reader.ReadIntoBuffer(reinterpret_cast<char*>(pixels.data()), bytes)) {

@@ -103,8 +103,7 @@ private:
     Element read_element(int64_t at, int64_t end, const Encoding& encoding) const
     {
         std::array<std::byte, 12> bytes{};
-        const size_t count =
-            file_.read_some(at, std::span(bytes).first(static_cast<size_t>(std::min<int64_t>(12, end - at))));
+        const size_t count = file_.read_some(at, std::span(bytes).first(size_t(std::min<int64_t>(12, end - at))));
         const auto need = [&](size_t needed) {
             if (count < needed)
                 fail(file_.path.string(), ": ends in the middle of an element at byte ", at, "; expected more");
@@ -117,7 +116,7 @@ private:
             element.value_at = at + 8;
             return element;
         }
-        element.type = {static_cast<char>(bytes[4]), static_cast<char>(bytes[5])};
+        element.type = {char(bytes[4]), char(bytes[5])};
         const std::string_view type(element.type.data(), 2);
         const auto is_letter = [](char character) { return character >= 'A' && character <= 'Z'; };
         if (!is_letter(type[0]) || !is_letter(type[1])) {

@@ -41,10 +41,10 @@ Kind kind_of(const DicomFile& file, const DicomFrame& frame)
 {
     std::array<int64_t, 6> direction{};
     for (int i = 0; i < 3; ++i) {
-        direction[static_cast<size_t>(i)] = std::llround(frame.along_x[i] * 1000.0);
-        direction[static_cast<size_t>(i) + 3] = std::llround(frame.along_y[i] * 1000.0);
+        direction[size_t(i)] = std::llround(frame.along_x[i] * 1000.0);
+        direction[size_t(i) + 3] = std::llround(frame.along_y[i] * 1000.0);
     }
-    return {file.columns, file.rows, static_cast<int>(file.type), direction};
+    return {file.columns, file.rows, int(file.type), direction};
 }
 
 /// The slices of the most frequent kind; leaves out, for example, a scout beside an axial series.
@@ -115,11 +115,11 @@ void choose_time(const std::string& where, const OpenOptions& options, std::vect
              " places, not equally many at each, as at ", with_digits(slices[begins[i]].along),
              " mm; expected one at each");
     }
-    const auto chosen = static_cast<size_t>(chosen_frame(where, options, static_cast<int64_t>(times)));
+    const auto chosen = size_t(chosen_frame(where, options, int64_t(times)));
     std::vector<Placed> of_time;
     for (const size_t begin : begins) {
-        std::vector<Placed> here(slices.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 slices.begin() + static_cast<std::ptrdiff_t>(begin + times));
+        std::vector<Placed> here(slices.begin() + std::ptrdiff_t(begin),
+                                 slices.begin() + std::ptrdiff_t(begin + times));
         std::sort(here.begin(), here.end(), [](const Placed& a, const Placed& b) {
             return std::tuple(a.file->time_number, a.file->instance_number, a.slice.file, a.slice.frame) <
                    std::tuple(b.file->time_number, b.file->instance_number, b.slice.file, b.slice.frame);
@@ -135,14 +135,14 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     std::vector<double> distances;
     for (size_t i = 1; i < slices.size(); ++i) distances.push_back(slices[i].along - slices[i - 1].along);
     std::vector<double> sorted = distances;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     const double usual = *middle;
-    constexpr size_t MOST_WARNINGS = 4;
+    constexpr size_t MAX_WARNINGS = 4;
     size_t odd = 0;
     for (size_t i = 0; i < distances.size(); ++i) {
         if (std::abs(distances[i] - usual) <= SAME_DISTANCE * usual) continue;
-        if (++odd > MOST_WARNINGS) continue;
+        if (++odd > MAX_WARNINGS) continue;
         const double missing = std::round(distances[i] / usual) - 1.0;
         const bool are_missing = missing >= 1.0 && std::abs(distances[i] / usual - missing - 1.0) < 0.1;
         info.warnings.push_back(sentence("slices ", i + 1, " and ", i + 2, " (",
@@ -152,8 +152,8 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
                                          are_missing ? sentence(": ", missing, " are missing there") : std::string(),
                                          "; they are drawn as if equally far apart"));
     }
-    if (odd > MOST_WARNINGS) {
-        info.warnings.push_back(sentence(odd - MOST_WARNINGS, " more slices are not as far apart as most others"));
+    if (odd > MAX_WARNINGS) {
+        info.warnings.push_back(sentence(odd - MAX_WARNINGS, " more slices are not as far apart as most others"));
     }
     return usual;
 }
@@ -235,7 +235,7 @@ DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile
     const bool are_placed = sort_slices(slices, volume.info);
     leave_out_copies(slices, volume.info);
     if (are_placed) choose_time(where, options, slices);
-    volume.info.size = {slices[0].file->columns, slices[0].file->rows, static_cast<int64_t>(slices.size())};
+    volume.info.size = {slices[0].file->columns, slices[0].file->rows, int64_t(slices.size())};
     describe_space(slices, are_placed, volume.info);
     for (const Placed& slice : slices) volume.slices.push_back(slice.slice);
     return volume;

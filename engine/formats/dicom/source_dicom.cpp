@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t KEPT_BYTES = int64_t{64} << 20;
-constexpr size_t MOST_FILES = 65536;
+constexpr size_t MAX_FILES = 65536;
 
 class DicomSource final : public VolumeSource {
 public:
@@ -25,23 +25,22 @@ public:
         : VolumeSource(std::move(info)), files_(std::move(files)), slices_(std::move(slices))
     {
         const Size3 size = this->info().size;
-        pixels_ = static_cast<size_t>(size.x * size.y);
-        most_kept_ = static_cast<size_t>(
-            std::max<int64_t>(2, KEPT_BYTES / (size.x * size.y * static_cast<int64_t>(bytes_of(this->info().type)))));
+        pixels_ = size_t(size.x * size.y);
+        max_kept_ = size_t(std::max<int64_t>(2, KEPT_BYTES / (size.x * size.y * int64_t(bytes_of(this->info().type)))));
     }
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         const Size3 extent = box.size();
         const size_t voxel_bytes = bytes_of(info().type);
-        const size_t row_bytes = static_cast<size_t>(extent.x) * voxel_bytes;
-        SHVR_CHECK(voxels.size() == row_bytes * static_cast<size_t>(extent.y * extent.z), voxels.size());
+        const size_t row_bytes = size_t(extent.x) * voxel_bytes;
+        SHVR_CHECK(voxels.size() == row_bytes * size_t(extent.y * extent.z), voxels.size());
         std::byte* row = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
-            const std::shared_ptr<const Pixels> slice = decoded(static_cast<size_t>(z));
+            const std::shared_ptr<const Pixels> slice = decoded(size_t(z));
             for (int64_t y = box.lower.y; y < box.upper.y; ++y, row += row_bytes) {
-                const auto first = static_cast<size_t>(box.lower.x + info().size.x * y) * voxel_bytes;
-                std::copy_n(slice->begin() + static_cast<std::ptrdiff_t>(first), row_bytes, row);
+                const auto first = size_t(box.lower.x + info().size.x * y) * voxel_bytes;
+                std::copy_n(slice->begin() + std::ptrdiff_t(first), row_bytes, row);
             }
         }
     }
@@ -70,14 +69,14 @@ private:
             rescale_voxels(file.type, stored, rescale, info().type, intensities);
             stored = std::move(intensities);
         }
-        if (kept_.size() == most_kept_) kept_.pop_back();
+        if (kept_.size() == max_kept_) kept_.pop_back();
         return kept_.insert(kept_.begin(), {number, std::make_shared<const Pixels>(std::move(stored))})->pixels;
     }
 
     std::vector<DicomFile> files_;
     std::vector<DicomSlice> slices_;
     size_t pixels_ = 0;  ///< per slice
-    size_t most_kept_ = 2;
+    size_t max_kept_ = 2;
     mutable std::mutex mutex_;
     mutable std::vector<Kept> kept_;
 };
@@ -97,8 +96,7 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
         if (!at->path().filename().string().starts_with('.') && begins_as_dicom(at->path()))
             paths.push_back(at->path());
-        if (paths.size() > MOST_FILES)
-            fail(folder.string(), ": holds more than ", MOST_FILES, " files; expected fewer");
+        if (paths.size() > MAX_FILES) fail(folder.string(), ": holds more than ", MAX_FILES, " files; expected fewer");
     }
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
     std::sort(paths.begin(), paths.end());

@@ -41,21 +41,19 @@ struct ClientFile {
     {
         ClientFile& file = of(handle);
         const int64_t some = std::clamp<int64_t>(file.size - file.at, 0, count);
-        return file.moved(some, [&] {
-            file.writer.read_back(file.at, {static_cast<std::byte*>(data), static_cast<size_t>(some)});
-        });
+        return file.moved(some, [&] { file.writer.read_back(file.at, {static_cast<std::byte*>(data), size_t(some)}); });
     }
     static tmsize_t write(thandle_t handle, void* data, tmsize_t count)
     {
         ClientFile& file = of(handle);
         return file.moved(count, [&] {
-            file.writer.write_at(file.at, {static_cast<const std::byte*>(data), static_cast<size_t>(count)});
+            file.writer.write_at(file.at, {static_cast<const std::byte*>(data), size_t(count)});
         });
     }
     static toff_t seek(thandle_t handle, toff_t offset, int whence)
     {
         ClientFile& file = of(handle);
-        file.at = static_cast<int64_t>(offset) + (whence == SEEK_CUR ? file.at : whence == SEEK_END ? file.size : 0);
+        file.at = int64_t(offset) + (whence == SEEK_CUR ? file.at : whence == SEEK_END ? file.size : 0);
         return static_cast<toff_t>(file.at);
     }
     static int close(thandle_t) { return 0; }
@@ -129,7 +127,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
 {
     const VolumeInfo& info = source.info();
     const Size3& size = info.size;
-    const auto voxel_bytes = static_cast<int64_t>(bytes_of(info.type));
+    const auto voxel_bytes = int64_t(bytes_of(info.type));
     AtomicWriter file(path);
     // Whether 32-bit offsets suffice must be known before anything is compressed.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
@@ -140,24 +138,24 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
                  "\nspacing=", digits_of(info.spacing.z), "\nloop=false\n");
     std::vector<std::byte> voxels;
     for (int64_t z = 0; z < size.z; ++z) {
-        writer.set(TIFFTAG_IMAGEWIDTH, static_cast<uint32_t>(size.x));
-        writer.set(TIFFTAG_IMAGELENGTH, static_cast<uint32_t>(size.y));
-        writer.set(TIFFTAG_BITSPERSAMPLE, static_cast<int>(8 * voxel_bytes));
+        writer.set(TIFFTAG_IMAGEWIDTH, uint32_t(size.x));
+        writer.set(TIFFTAG_IMAGELENGTH, uint32_t(size.y));
+        writer.set(TIFFTAG_BITSPERSAMPLE, int(8 * voxel_bytes));
         writer.set(TIFFTAG_SAMPLESPERPIXEL, 1);
         writer.set(TIFFTAG_SAMPLEFORMAT, sample_format(info.type));
         writer.set(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
         writer.set(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
         writer.set(TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
-        writer.set(TIFFTAG_ROWSPERSTRIP, static_cast<uint32_t>(step));
+        writer.set(TIFFTAG_ROWSPERSTRIP, uint32_t(step));
         writer.set(TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE);
         writer.set(TIFFTAG_XRESOLUTION, 1.0 / info.spacing.x);
         writer.set(TIFFTAG_YRESOLUTION, 1.0 / info.spacing.y);
         if (z == 0) writer.set(TIFFTAG_IMAGEDESCRIPTION, description.c_str());
         for (int64_t y = 0; y < size.y; y += step) {
             const VoxelBox box{{0, y, z}, {size.x, std::min(y + step, size.y), z + 1}};
-            voxels.resize(static_cast<size_t>(box.size().x * box.size().y * voxel_bytes));
+            voxels.resize(size_t(box.size().x * box.size().y * voxel_bytes));
             source.read(box, voxels);
-            writer.write_strip(static_cast<uint32_t>(y / step), voxels);
+            writer.write_strip(uint32_t(y / step), voxels);
         }
         writer.end_page();
     }

@@ -22,7 +22,7 @@ std::string form_of(const std::filesystem::path& path)
 
 int64_t export_rows(const VolumeInfo& info)
 {
-    const int64_t row_bytes = info.size.x * static_cast<int64_t>(bytes_of(info.type));
+    const int64_t row_bytes = info.size.x * int64_t(bytes_of(info.type));
     return std::clamp<int64_t>(STRIP_BYTES / row_bytes, 1, info.size.y);
 }
 
@@ -48,7 +48,7 @@ void export_nrrd(const std::filesystem::path& path, const VolumeSource& source)
     for (int64_t z = 0; z < info.size.z; ++z)
         for (int64_t y = 0; y < info.size.y; y += step) {
             const VoxelBox box{{0, y, z}, {info.size.x, std::min(y + step, info.size.y), z + 1}};
-            voxels.resize(static_cast<size_t>(box.size().x * box.size().y) * bytes_of(info.type));
+            voxels.resize(size_t(box.size().x * box.size().y) * bytes_of(info.type));
             source.read(box, voxels);
             writer.append(voxels);
         }

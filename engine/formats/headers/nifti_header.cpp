@@ -47,7 +47,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     for (size_t i = 0; i < 8; ++i) header.dim[i] = fields.at<Side>(places.dim, i);
     for (size_t i = 0; i < 8; ++i) header.pixdim[i] = double{fields.at<Real>(places.pixdim, i)};
     header.datatype = fields.at<int16_t>(places.datatype);
-    header.voxels_at = static_cast<double>(fields.at<Offset>(places.voxels_at));
+    header.voxels_at = double(fields.at<Offset>(places.voxels_at));
     header.slope = double{fields.at<Real>(places.slope)};
     header.intercept = double{fields.at<Real>(places.intercept)};
     header.units = fields.at<Units>(places.units);
@@ -57,7 +57,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     header.qform_origin = fields.vector<Real>(places.qform_origin);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
-            const double number = double{fields.at<Real>(places.sform, static_cast<size_t>(4 * row + column))};
+            const double number = double{fields.at<Real>(places.sform, size_t(4 * row + column))};
             (column < 3 ? header.sform_steps[column][row] : header.sform_origin[row]) = number;
         }
     }
@@ -67,7 +67,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
 /// Whether `head` is big-endian: it must begin with `bytes`, 348 or 540, in one of the byte orders.
 std::optional<bool> byte_order(std::string_view head, int32_t bytes)
 {
-    if (head.size() < static_cast<size_t>(bytes)) return {};
+    if (head.size() < size_t(bytes)) return {};
     for (const bool big_endian : {false, true}) {
         if (Fields(head, big_endian).at<int32_t>(0) == bytes) return big_endian;
     }
@@ -134,7 +134,7 @@ std::optional<NiftiAxes> qform_axes(const NiftiHeader& header)
     axes.steps[1] = {2.0 * (x * y - w * z), w * w + y * y - x * x - z * z, 2.0 * (y * z + w * x)};
     axes.steps[2] = {2.0 * (x * z + w * y), 2.0 * (y * z - w * x), w * w + z * z - x * x - y * y};
     axes.steps[2] *= header.pixdim[0] < 0.0 ? -1.0 : 1.0;  // "qfac"
-    for (int axis = 0; axis < 3; ++axis) axes.steps[axis] *= std::abs(header.pixdim[static_cast<size_t>(axis) + 1]);
+    for (int axis = 0; axis < 3; ++axis) axes.steps[axis] *= std::abs(header.pixdim[size_t(axis) + 1]);
     axes.origin = header.qform_origin;
     return checked(axes);
 }

@@ -43,7 +43,7 @@ std::optional<glm::dvec3> take_vector(std::string_view& rest)
     if (words.size() != 3) return {};
     glm::dvec3 vector(0.0);
     for (int component = 0; component < 3; ++component) {
-        const std::optional<double> number = number_of(words[static_cast<size_t>(component)]);
+        const std::optional<double> number = number_of(words[size_t(component)]);
         if (!number) return {};
         vector[component] = *number;
     }
@@ -112,7 +112,7 @@ glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
     const auto directions = axis_directions(fields, axes.dimension);
     glm::dmat3 steps(0.0);
     for (int axis = 0; axis < 3; ++axis) {
-        const std::optional<glm::dvec3>& direction = directions[axes.first + static_cast<size_t>(axis)];
+        const std::optional<glm::dvec3>& direction = directions[axes.first + size_t(axis)];
         if (!direction) fields.refuse(DIRECTIONS, DIRECTIONS_EXPECTED);
         steps[axis] = *direction;
         if (!(glm::length(steps[axis]) > 0.0) || !std::isfinite(glm::length(steps[axis]))) {
@@ -166,7 +166,7 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
     glm::dmat3 steps(0.0);
     int unknown = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double number = numbers[axes.first + static_cast<size_t>(axis)];
+        const double number = numbers[axes.first + size_t(axis)];
         unknown += std::isnan(number) ? 1 : 0;  // NRRD's value for "unknown"
         steps[axis][axis] = number;
     }
@@ -185,7 +185,7 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
 NrrdAxes read_nrrd_axes(const HeaderFields& fields)
 {
     fields.required("dimension", "3");
-    NrrdAxes axes{.dimension = static_cast<size_t>(fields.whole("dimension", 3, 3, 4))};
+    NrrdAxes axes{.dimension = size_t(fields.whole("dimension", 3, 3, 4))};
     const std::vector<int64_t> sides = fields.sizes("sizes", axes.dimension);
     if (axes.dimension == 4) {
         axes.first = first_is_not_space(fields) ? 1 : 0;

@@ -38,7 +38,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
         const std::string* type = header.fields.find("ObjectType");
         if (type != nullptr && lower_case(*type) != "image") header.fields.refuse("ObjectType", "Image");
     }
-    header.length = static_cast<int64_t>(head.size() - rest.size());
+    header.length = int64_t(head.size() - rest.size());
     header.file_list = rest;
     return header;
 }
@@ -82,7 +82,7 @@ void read_orientation(const HeaderFields& fields, VolumeInfo& info)
     if (fields.has(offset)) {
         const std::vector<double> numbers = fields.numbers(offset, 3);
         for (int axis = 0; axis < 3; ++axis) {
-            origin[axis] = numbers[static_cast<size_t>(axis)];
+            origin[axis] = numbers[size_t(axis)];
             if (!std::isfinite(origin[axis])) fields.refuse(offset, "3 finite numbers");
         }
     }

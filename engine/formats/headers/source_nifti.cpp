@@ -81,14 +81,14 @@ Shape shape_of(const std::string& file, const NiftiHeader& header)
     const int64_t count = header.dim[0];
     if (count < 1 || count > 7) fail(file, ": dim[0] is ", count, "; expected 1 to 7 axes");
     const int64_t most = header.version == 1 ? 32767 : LARGEST_SIDE;
-    for (size_t i = 1; i <= static_cast<size_t>(count); ++i) {
+    for (size_t i = 1; i <= size_t(count); ++i) {
         const int64_t side = header.dim[i];
         if (side >= 1 && side <= most && (i <= 5 || side == 1)) continue;
         const bool overflowed = header.version == 1 && side < 0;
         fail(file, ": dim[", i, "] is ", side, "; expected ", i <= 5 ? sentence("1 to ", most) : std::string("1"),
              overflowed ? ": longer sides need NIfTI-2" : "");
     }
-    const auto side = [&](size_t i) { return static_cast<int64_t>(i) <= count ? header.dim[i] : 1; };
+    const auto side = [&](size_t i) { return int64_t(i) <= count ? header.dim[i] : 1; };
     return {{side(1), side(2), side(3)}, side(4), side(5)};
 }
 
@@ -109,8 +109,7 @@ void choose_volume(const std::string& file, const OpenOptions& options, const Sh
     }
     int64_t bytes = 0;
     int64_t all = 0;
-    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)) * datatype.channels,
-                               &bytes) ||
+    if (__builtin_mul_overflow(voxel_count(info), int64_t(bytes_of(info.type)) * datatype.channels, &bytes) ||
         __builtin_mul_overflow(bytes, shape.frames * shape.components, &all) ||
         __builtin_add_overflow(all, int64_t{1} << 62, &all)) {
         fail(file, ": dim states more voxels than 2^62 bytes hold; expected fewer");
@@ -126,11 +125,11 @@ int64_t voxels_at(const std::string& file, const NiftiHeader& header)
     const double stated = header.voxels_at;
     if (!header.is_pair && stated == 0.0) return header_bytes + 4;
     constexpr double MOST = 4.0e15;
-    const auto least = static_cast<double>(header.is_pair ? 0 : header_bytes);
+    const auto least = double(header.is_pair ? 0 : header_bytes);
     if (!(stated >= least && stated <= MOST) || stated != std::floor(stated)) {
         fail(file, ": vox_offset is ", stated, "; expected a whole number of bytes from ", least);
     }
-    return static_cast<int64_t>(stated);
+    return int64_t(stated);
 }
 
 std::optional<std::string> unit_of(const NiftiHeader& header)
@@ -149,7 +148,7 @@ std::optional<glm::dvec3> spacing_of_pixdim(const NiftiHeader& header, VolumeInf
     glm::dvec3 spacing(1.0);
     int known = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double stated = header.pixdim[static_cast<size_t>(axis) + 1];
+        const double stated = header.pixdim[size_t(axis) + 1];
         const bool is_known = std::isfinite(stated) && stated != 0.0;
         known += is_known ? 1 : 0;
         if (is_known) spacing[axis] = std::abs(stated);
@@ -164,7 +163,7 @@ std::optional<glm::dvec3> spacing_of_pixdim(const NiftiHeader& header, VolumeInf
 void warn_where_forms_disagree(const NiftiHeader& header, const glm::dvec3& spacing, VolumeInfo& info)
 {
     for (int axis = 0; axis < 3; ++axis) {
-        const double stated = std::abs(header.pixdim[static_cast<size_t>(axis) + 1]);
+        const double stated = std::abs(header.pixdim[size_t(axis) + 1]);
         if (!(std::abs(stated - spacing[axis]) > 0.01 * spacing[axis])) continue;
         info.warnings.push_back(sentence("spacing along ", "xyz"[axis], " is ", spacing[axis], " by the sform and ",
                                          stated, " by pixdim; the sform's was taken"));

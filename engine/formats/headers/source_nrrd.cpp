@@ -34,7 +34,7 @@ NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string
         const std::string_view line = take_line(rest);
         if (line.empty()) {
             header.is_attached = true;
-            header.voxels_at = static_cast<int64_t>(head.size() - rest.size());
+            header.voxels_at = int64_t(head.size() - rest.size());
             break;
         }
         if (line.starts_with('#')) continue;
@@ -57,8 +57,8 @@ NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string
 int64_t skip_lines(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, int64_t lines)
 {
     if (lines == 0) return from;
-    const std::string head = read_head(file, static_cast<size_t>(LINE_SKIP_BYTES));
-    auto at = static_cast<size_t>(from);
+    const std::string head = read_head(file, size_t(LINE_SKIP_BYTES));
+    auto at = size_t(from);
     for (int64_t line = 0; line < lines; ++line) {
         const size_t end = at < head.size() ? head.find('\n', at) : std::string::npos;
         if (end == std::string::npos) {
@@ -67,7 +67,7 @@ int64_t skip_lines(const HeaderFields& fields, const std::filesystem::path& file
         }
         at = end + 1;
     }
-    return static_cast<int64_t>(at);
+    return int64_t(at);
 }
 
 bool is_deflated(const HeaderFields& fields)
@@ -140,7 +140,7 @@ void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, con
     }
     int64_t bytes = 0;
     int64_t all = 0;
-    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)), &bytes) ||
+    if (__builtin_mul_overflow(voxel_count(info), int64_t(bytes_of(info.type)), &bytes) ||
         __builtin_mul_overflow(bytes, frames, &all) ||
         __builtin_add_overflow(all, voxels.is_deflated ? voxels.skip_bytes : voxels.offset_bytes, &all)) {
         fields.refuse("sizes", "sizes whose voxels fit in 2^63 bytes");

@@ -44,7 +44,7 @@ bool comes_before(const std::string& a, const std::string& b)
 std::optional<int64_t> slice_file_bytes(const RawLayout& layout)
 {
     int64_t bytes = 0;
-    if (__builtin_mul_overflow(layout.size.x * layout.size.y, static_cast<int64_t>(bytes_of(layout.type)), &bytes) ||
+    if (__builtin_mul_overflow(layout.size.x * layout.size.y, int64_t(bytes_of(layout.type)), &bytes) ||
         __builtin_add_overflow(bytes, layout.offset_bytes, &bytes)) {
         return {};
     }
@@ -55,7 +55,7 @@ int64_t file_bytes(const fs::path& path)
 {
     std::error_code error;
     const uintmax_t bytes = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
-    return error ? 0 : static_cast<int64_t>(bytes);
+    return error ? 0 : int64_t(bytes);
 }
 
 /// The files of a folder that hold a slice, in order.
@@ -69,7 +69,7 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
         names.push_back(name);
     }
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
-    if (static_cast<int64_t>(names.size()) != layout.size.z) {
+    if (int64_t(names.size()) != layout.size.z) {
         fail(folder.string(), ": is a folder with ", names.size(), " files of ", bytes, " bytes; expected ",
              layout.size.z, ", one for each slice");
     }

@@ -48,9 +48,9 @@ VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
 {
     const int64_t count = voxel_count(info);
     std::error_code error;
-    const auto bytes = static_cast<int64_t>(fs::file_size(path, error));
+    const auto bytes = int64_t(fs::file_size(path, error));
     for (const VoxelType type : {VoxelType::uint8, VoxelType::uint16, VoxelType::float32, VoxelType::float64}) {
-        if (!error && bytes % count == 0 && static_cast<size_t>(bytes / count) == bytes_of(type)) return type;
+        if (!error && bytes % count == 0 && size_t(bytes / count) == bytes_of(type)) return type;
     }
     fail(path.string(), ": holds ", bytes, " bytes, which is not 1, 2, 4 or 8 for each of the ", count,
          " voxels in its name; expected --raw WxHxD:TYPE to say what they are");

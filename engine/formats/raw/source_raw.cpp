@@ -31,17 +31,17 @@ public:
     {
         const Size3 size = info().size;
         const Size3 extent = box.size();
-        const auto voxel_bytes = static_cast<int64_t>(bytes_of(info().type));
+        const auto voxel_bytes = int64_t(bytes_of(info().type));
         SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
                    glm::all(glm::lessThanEqual(box.upper, size)) && glm::all(glm::greaterThan(extent, Size3(0))));
-        SHVR_CHECK(static_cast<int64_t>(voxels.size()) == extent.x * extent.y * extent.z * voxel_bytes, voxels.size());
+        SHVR_CHECK(int64_t(voxels.size()) == extent.x * extent.y * extent.z * voxel_bytes, voxels.size());
 
         // Rows that are consecutive in both file and box are read together.
         int64_t rows = 1;
         int64_t slices = 1;
         if (extent.x == size.x) rows = extent.y;
         if (extent.x == size.x && extent.y == size.y) slices = extent.z;
-        const auto run_bytes = static_cast<size_t>(extent.x * rows * slices * voxel_bytes);
+        const auto run_bytes = size_t(extent.x * rows * slices * voxel_bytes);
         std::byte* run = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; z += slices) {
             for (int64_t y = box.lower.y; y < box.upper.y; y += rows) {
@@ -57,20 +57,20 @@ private:
     void read_run(int64_t first_voxel, std::span<std::byte> voxels) const
     {
         const size_t voxel_bytes = bytes_of(info().type);
-        const int64_t stride = layout_.channels * static_cast<int64_t>(voxel_bytes);
+        const int64_t stride = layout_.channels * int64_t(voxel_bytes);
         if (layout_.channels == 1) return bytes_->read(first_voxel * stride, voxels);
         constexpr size_t BLOCK_BYTES = size_t{1} << 20;
-        const size_t block_voxels = std::max<size_t>(1, BLOCK_BYTES / static_cast<size_t>(stride));
-        std::vector<std::byte> block(static_cast<size_t>(stride) * std::min(block_voxels, voxels.size() / voxel_bytes));
+        const size_t block_voxels = std::max<size_t>(1, BLOCK_BYTES / size_t(stride));
+        std::vector<std::byte> block(size_t(stride) * std::min(block_voxels, voxels.size() / voxel_bytes));
         while (!voxels.empty()) {
             const size_t count = std::min(block_voxels, voxels.size() / voxel_bytes);
-            bytes_->read(first_voxel * stride, std::span(block).first(count * static_cast<size_t>(stride)));
-            const std::byte* from = block.data() + static_cast<size_t>(layout_.channel) * voxel_bytes;
+            bytes_->read(first_voxel * stride, std::span(block).first(count * size_t(stride)));
+            const std::byte* from = block.data() + size_t(layout_.channel) * voxel_bytes;
             for (size_t i = 0; i < count; ++i, from += stride) {
                 std::memcpy(voxels.data() + i * voxel_bytes, from, voxel_bytes);
             }
             voxels = voxels.subspan(count * voxel_bytes);
-            first_voxel += static_cast<int64_t>(count);
+            first_voxel += int64_t(count);
         }
     }
 
@@ -86,7 +86,7 @@ int64_t bytes_of_voxels(const VolumeInfo& info, const RawVoxels& voxels, int64_t
     SHVR_CHECK(offset >= 0 && voxels.channels >= 1 && voxels.channel >= 0 && voxels.channel < voxels.channels);
     int64_t needed = 0;
     int64_t all = 0;
-    if (__builtin_mul_overflow(voxel_count(info), static_cast<int64_t>(bytes_of(info.type)), &needed) ||
+    if (__builtin_mul_overflow(voxel_count(info), int64_t(bytes_of(info.type)), &needed) ||
         __builtin_mul_overflow(needed, voxels.channels, &needed) ||
         __builtin_add_overflow(needed, voxels.bytes_after, &all) || __builtin_add_overflow(all, offset, &all)) {
         fail(voxels.file.string(), ": offset is ", offset,
@@ -148,7 +148,7 @@ std::unique_ptr<VoxelBytes> open_part(const RawVoxels& voxels, const RawVoxels::
 std::unique_ptr<VoxelBytes> open_parts(const VolumeInfo& info, const RawVoxels& voxels)
 {
     const int64_t needed = bytes_of_voxels(info, voxels, 0);
-    const auto count = static_cast<int64_t>(voxels.parts.size());
+    const auto count = int64_t(voxels.parts.size());
     SHVR_CHECK(needed % count == 0, needed, " ", count);
     const int64_t share = needed / count;
     const std::string of_what =

@@ -34,10 +34,10 @@ public:
     {
         const Size3 size = info().size;
         const Size3 extent = box.size();
-        const auto slice_bytes = static_cast<size_t>(extent.x * extent.y) * bytes_of(info().type);
+        const auto slice_bytes = size_t(extent.x * extent.y) * bytes_of(info().type);
         SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) &&
                    glm::all(glm::lessThanEqual(box.upper, size)) && glm::all(glm::greaterThan(extent, Size3(0))));
-        SHVR_CHECK(voxels.size() == slice_bytes * static_cast<size_t>(extent.z), voxels.size());
+        SHVR_CHECK(voxels.size() == slice_bytes * size_t(extent.z), voxels.size());
 
         TiffRectangle rectangle{box.lower.x, box.lower.y, box.upper.x, box.upper.y};
         if (recipe_.mirrors_x) {
@@ -51,7 +51,7 @@ public:
         for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
             const std::span<std::byte> slice_voxels = voxels.first(slice_bytes);
             voxels = voxels.subspan(slice_bytes);
-            const TiffSlice& slice = slices_[static_cast<size_t>(z)];
+            const TiffSlice& slice = slices_[size_t(z)];
             if (file_) {
                 read_rectangle(*file_, slice, layout_, recipe_, rectangle, cache_, slice_voxels);
             } else {
@@ -116,7 +116,7 @@ public:
             channels_of_pixel(page, volume_.layout, description_, volume_.info.warnings);
         const TiffChoice choice = choose(name_, options_, names_of_channels(of_pixel), description_.frames);
         const size_t colors = of_pixel.size();
-        take_slices(static_cast<int64_t>(choice.channel / colors), choice.frame);
+        take_slices(int64_t(choice.channel / colors), choice.frame);
         volume_.info.name = file_->path().filename().string();
         volume_.info.format = "tiff";
         volume_.info.size = {volume_.layout.width, volume_.layout.height, description_.slices};
@@ -180,7 +180,7 @@ private:
         }
         const auto voxels = [&](const std::pair<size_t, size_t>& run) {
             const TiffLayout& layout = layout_of_page(pages[run.first]);
-            return static_cast<double>(layout.width * layout.height) * static_cast<double>(run.second - run.first);
+            return double(layout.width * layout.height) * double(run.second - run.first);
         };
         const auto main = *std::max_element(runs.begin(), runs.end(),
                                             [&](const auto& a, const auto& b) { return voxels(a) < voxels(b); });
@@ -199,8 +199,7 @@ private:
                          main.second - main.first, main.second - main.first == 1 ? " page of " : " pages of ",
                          in_words(layout_of_page(pages[main.first]))));
         }
-        return {pages.begin() + static_cast<std::ptrdiff_t>(main.first),
-                pages.begin() + static_cast<std::ptrdiff_t>(main.second)};
+        return {pages.begin() + std::ptrdiff_t(main.first), pages.begin() + std::ptrdiff_t(main.second)};
     }
 
     bool is_like(uint32_t a, uint32_t b)
@@ -213,7 +212,7 @@ private:
     void order_planes()
     {
         const int64_t planes = description_.slices * description_.channels * description_.frames;
-        const auto found = static_cast<int64_t>(shown_.size());
+        const auto found = int64_t(shown_.size());
         if (planes > found && found == 1 && directories_.pages.size() == 1) {
             check_contiguous(planes);
         } else if (planes != found) {
@@ -254,7 +253,7 @@ private:
         // `planes` is at most 2^20 and a page has at most 2^40 pixels, whose samples the file holds.
         int64_t needed = 0;
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
-            !file_->holds(static_cast<uint64_t>(first.offset), static_cast<uint64_t>(needed))) {
+            !file_->holds(uint64_t(first.offset), uint64_t(needed))) {
             refuse("and ", file_->size_bytes() - first.offset, " bytes of voxels; expected ", needed,
                    ": it was cut short, or pages are missing");
         }
@@ -272,7 +271,7 @@ private:
             }
             if (shown_.empty() || is_like(plane, shown_.front())) {
                 shown_.push_back(plane);
-                plane = static_cast<uint32_t>(shown_.size() - 1);
+                plane = uint32_t(shown_.size() - 1);
                 continue;
             }
             fail(name_, ": page ", plane + 1, " has ", in_words(layout_of_page(plane)), "; expected ",
@@ -286,7 +285,7 @@ private:
         std::vector<std::string> names;
         for (int64_t channel = 0; channel < description_.channels; ++channel) {
             for (const TiffPixelChannel& part : of_pixel) {
-                const auto index = static_cast<size_t>(channel);
+                const auto index = size_t(channel);
                 const bool has_name = index < description_.channel_names.size();
                 if (of_pixel.size() == 1) {
                     names.push_back(has_name ? description_.channel_names[index] : std::string());
@@ -306,10 +305,10 @@ private:
                 volume_.slices.push_back({0, 1, directories_.pages[0].offset, in_order * volume_.layout.page_bytes()});
                 continue;
             }
-            auto place = static_cast<size_t>(in_order);
+            auto place = size_t(in_order);
             if (!description_.pages.empty()) {
                 const int64_t at = z + description_.slices * (channel + description_.channels * frame);
-                place = description_.pages[static_cast<size_t>(at)];
+                place = description_.pages[size_t(at)];
                 if (place == TiffDescription::NO_PAGE) {
                     fail(name_, ": its OME-XML names no page for slice ", z + 1, "; expected one for each slice");
                 }
@@ -340,7 +339,7 @@ std::vector<uint32_t> pages_to_show(const TiffDirectories& directories)
 {
     std::vector<uint32_t> all, whole;
     for (size_t i = 0; i < directories.pages.size(); ++i) {
-        all.push_back(static_cast<uint32_t>(i));
+        all.push_back(uint32_t(i));
         if (!directories.kinds[directories.pages[i].kind].is_reduced) whole.push_back(all.back());
     }
     return whole.empty() ? all : whole;

@@ -68,8 +68,8 @@ std::vector<SliceName> names_in(const fs::path& folder)
         if ((extension != ".tif" && extension != ".tiff") || path.filename().string().starts_with('.')) continue;
         if (!entry->is_regular_file(unreadable)) continue;
         names.push_back(taken_apart(path));
-        if (names.size() > MOST_TIFF_PAGES) {
-            fail(folder.string(), ": holds more than ", MOST_TIFF_PAGES, " TIFFs; expected at most that many slices");
+        if (names.size() > MAX_TIFF_PAGES) {
+            fail(folder.string(), ": holds more than ", MAX_TIFF_PAGES, " TIFFs; expected at most that many slices");
         }
     }
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
@@ -183,7 +183,7 @@ public:
         const fs::path whole = fs::absolute(folder_).lexically_normal();
         volume_.info.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
         volume_.info.format = "tiff";
-        volume_.info.size = {volume_.layout.width, volume_.layout.height, static_cast<int64_t>(volume_.slices.size())};
+        volume_.info.size = {volume_.layout.width, volume_.layout.height, int64_t(volume_.slices.size())};
         apply_tiff_spacing(volume_.info, description, file, slice.directory, page);
         static_cast<void>(voxel_count(volume_.info));
         return make_tiff_source(std::move(volume_), nullptr);
@@ -219,14 +219,14 @@ private:
             // Bounds the memory that a hostile folder can fill.
             if (layouts_.size() < 64) layouts_.emplace(directories.kinds[directory.kind].fields, layout);
         }
-        volume_.slices.push_back({static_cast<uint32_t>(index), static_cast<uint32_t>(number), directory.offset, 0});
+        volume_.slices.push_back({uint32_t(index), uint32_t(number), directory.offset, 0});
     }
 
     TiffDescription description_of(const TiffFile& file, const TiffPage& page) const
     {
         const TiffDescription description =
             read_description(file, page.text(TIFFTAG_IMAGEDESCRIPTION), volume_.layout.samples, TiffRole::slice);
-        const auto slices = static_cast<int64_t>(volume_.slices.size());
+        const auto slices = int64_t(volume_.slices.size());
         if (description.channels > 1 || description.frames > 1) {
             fail(folder_.string(), ": its first file speaks of ", description.channels, " channels and ",
                  description.frames, " points in time; expected one of each: save one channel of one point in time");

@@ -40,7 +40,7 @@ public:
         if (layout_.compression == COMPRESSION_JPEG) {
             TIFFSetField(page_.handle(), TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
         }
-        const auto rows = static_cast<uint32_t>(layout_.rows_of_block(0));
+        const auto rows = uint32_t(layout_.rows_of_block(0));
         const int64_t row_bytes =
             layout_.is_tiled ? TIFFTileRowSize(page_.handle()) : TIFFVStripSize(page_.handle(), rows) / rows;
         if (row_bytes != layout_.block_row_bytes()) {
@@ -53,7 +53,7 @@ public:
     void read(const TiffRectangle& rectangle, std::span<std::byte> voxels)
     {
         const int64_t width = rectangle.right - rectangle.left;
-        const auto voxel_bytes = static_cast<int64_t>(bytes_of(recipe_.type));
+        const auto voxel_bytes = int64_t(bytes_of(recipe_.type));
         row_pitch_ = width * voxel_bytes;
         const int64_t plane = layout_.is_planar ? recipe_.sample * layout_.blocks_across() * layout_.blocks_down() : 0;
         for (int64_t y = rectangle.top / layout_.block_height; y * layout_.block_height < rectangle.bottom; ++y) {
@@ -83,7 +83,7 @@ private:
     void read_part(const Part& part, bool rows_are_voxels, bool block_is_voxels)
     {
         const TiffExtent extent = extent_of_block(file_, page_, layout_, part.block);
-        const auto bytes = static_cast<size_t>((part.bottom - part.top) * layout_.block_row_bytes());
+        const auto bytes = size_t((part.bottom - part.top) * layout_.block_row_bytes());
         if (layout_.is_bare()) {
             const int64_t offset = extent.offset + slice_.shift_bytes + part.top * layout_.block_row_bytes();
             if (rows_are_voxels) return add_to_run(offset, {part.voxels, bytes});
@@ -93,18 +93,17 @@ private:
         const std::shared_ptr<const TiffBlockCache::Block> block =
             cache_.get({slice_.file, slice_.directory, part.block}, [&] {
                 const int64_t row_of_blocks = part.block / layout_.blocks_across() % layout_.blocks_down();
-                TiffBlockCache::Block decoded(
-                    static_cast<size_t>(layout_.rows_of_block(row_of_blocks) * layout_.block_row_bytes()));
+                TiffBlockCache::Block decoded(size_t(layout_.rows_of_block(row_of_blocks) * layout_.block_row_bytes()));
                 decode(part.block, decoded);
                 return decoded;
             });
-        const auto offset = static_cast<size_t>(part.top * layout_.block_row_bytes());
+        const auto offset = size_t(part.top * layout_.block_row_bytes());
         unpack(part, std::span(*block).subspan(offset, bytes), part.voxels);
     }
 
     void decode(int64_t block, std::span<std::byte> bytes)
     {
-        const auto index = static_cast<uint32_t>(block);
+        const auto index = uint32_t(block);
         const auto size = static_cast<tmsize_t>(bytes.size());
         const tmsize_t count = layout_.is_tiled ? TIFFReadEncodedTile(page_.handle(), index, bytes.data(), size)
                                                 : TIFFReadEncodedStrip(page_.handle(), index, bytes.data(), size);
@@ -116,8 +115,8 @@ private:
     /// Rows that are consecutive in both file and rectangle are read together.
     void add_to_run(int64_t offset, std::span<std::byte> bytes)
     {
-        const bool follows = !run_.empty() && run_offset_ + static_cast<int64_t>(run_.size()) == offset &&
-                             run_.data() + run_.size() == bytes.data();
+        const bool follows =
+            !run_.empty() && run_offset_ + int64_t(run_.size()) == offset && run_.data() + run_.size() == bytes.data();
         if (follows) {
             run_ = {run_.data(), run_.size() + bytes.size()};
             return;
@@ -135,25 +134,24 @@ private:
     void read_bare(Part part, int64_t offset)
     {
         const int64_t row_bytes = layout_.block_row_bytes();
-        const int64_t most_rows = std::clamp<int64_t>(PART_BYTES / row_bytes, 1, part.bottom - part.top);
-        std::vector<std::byte> rows(static_cast<size_t>(most_rows * row_bytes));
+        const int64_t max_rows = std::clamp<int64_t>(PART_BYTES / row_bytes, 1, part.bottom - part.top);
+        std::vector<std::byte> rows(size_t(max_rows * row_bytes));
         const int64_t bottom = part.bottom;
         for (; part.top < bottom; part.top = part.bottom) {
-            part.bottom = std::min(bottom, part.top + most_rows);
-            const std::span<std::byte> read =
-                std::span(rows).first(static_cast<size_t>((part.bottom - part.top) * row_bytes));
+            part.bottom = std::min(bottom, part.top + max_rows);
+            const std::span<std::byte> read = std::span(rows).first(size_t((part.bottom - part.top) * row_bytes));
             file_.read(offset, read);
             if (!is_plain_) put_in_order(read);
             unpack(part, read, part.voxels);
-            offset += static_cast<int64_t>(read.size());
+            offset += int64_t(read.size());
             part.voxels += (part.bottom - part.top) * row_pitch_;
         }
     }
 
     void unpack(const Part& part, std::span<const std::byte> rows, std::byte* voxels) const
     {
-        const auto bytes = static_cast<size_t>(part.right - part.left) * bytes_of(recipe_.type);
-        const auto row_bytes = static_cast<size_t>(layout_.block_row_bytes());
+        const auto bytes = size_t(part.right - part.left) * bytes_of(recipe_.type);
+        const auto row_bytes = size_t(layout_.block_row_bytes());
         for (int64_t row = part.top; row < part.bottom; ++row, voxels += row_pitch_) {
             unpack_row(layout_, recipe_, palette_, rows.first(row_bytes), part.left, {voxels, bytes});
             rows = rows.subspan(row_bytes);
@@ -163,7 +161,7 @@ private:
     /// libtiff decodes to this machine's byte order already.
     void put_in_order(std::span<std::byte> samples) const
     {
-        if (file_.is_big_endian() && layout_.bits % 8 == 0) swap_bytes(samples, static_cast<size_t>(layout_.bits / 8));
+        if (file_.is_big_endian() && layout_.bits % 8 == 0) swap_bytes(samples, size_t(layout_.bits / 8));
     }
 
     const TiffFile& file_;
@@ -193,7 +191,7 @@ void TiffBlockCache::keep(const Key& key, const std::shared_ptr<Entry>& entry)
 {
     const std::lock_guard lock(mutex_);
     // Evicts at random: with least-recently-used eviction, repeated passes through a volume would never hit.
-    while (!kept_.empty() && kept_bytes_ + entry->block.size() > MOST_BYTES) {
+    while (!kept_.empty() && kept_bytes_ + entry->block.size() > MAX_BYTES) {
         random_ = random_ * 1664525u + 1013904223u;
         std::swap(kept_[random_ % kept_.size()], kept_.back());
         entries_.erase(kept_.back().first);

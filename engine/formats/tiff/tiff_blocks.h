@@ -19,11 +19,11 @@ struct TiffSlice {
     int64_t shift_bytes = 0;
 };
 
-/// Caches decoded blocks: at most `MOST_BYTES`, but at least the last one. Any thread may use it; two threads that want
+/// Caches decoded blocks: at most `MAX_BYTES`, but at least the last one. Any thread may use it; two threads that want
 /// the same block decode it once.
 class TiffBlockCache {
 public:
-    static constexpr size_t MOST_BYTES = size_t{64} << 20;
+    static constexpr size_t MAX_BYTES = size_t{64} << 20;
 
     using Key = std::tuple<uint32_t, uint64_t, int64_t>;  ///< file, directory, block
     using Block = std::vector<std::byte>;

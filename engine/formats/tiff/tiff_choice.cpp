@@ -32,7 +32,7 @@ std::string numbers_to(int64_t count)
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
-    if (names.size() > MOST) return numbers_to(static_cast<int64_t>(names.size()));
+    if (names.size() > MOST) return numbers_to(int64_t(names.size()));
     std::string text;
     for (size_t i = 0; i < names.size(); ++i) {
         const bool is_unique = std::count(names.begin(), names.end(), names[i]) == 1;
@@ -71,18 +71,18 @@ size_t chosen_channel(const std::string& subject, const std::string& wanted, con
     const auto found = std::find_if(names.begin(), names.end(), is_wanted);
     if (found != names.end()) {
         if (std::any_of(found + 1, names.end(), is_wanted)) refuse("has several channels ");
-        return static_cast<size_t>(found - names.begin());
+        return size_t(found - names.begin());
     }
     const std::optional<int64_t> number = whole_of(trimmed(wanted));
-    if (!number || *number < 1 || *number > static_cast<int64_t>(names.size())) refuse("has no channel ");
-    return static_cast<size_t>(*number - 1);
+    if (!number || *number < 1 || *number > int64_t(names.size())) refuse("has no channel ");
+    return size_t(*number - 1);
 }
 
 bool is_grey_ramp(const std::vector<uint16_t>& palette)
 {
-    const auto last = static_cast<double>(palette.size() - 1);
+    const auto last = double(palette.size() - 1);
     for (size_t i = 0; i < palette.size(); ++i) {
-        const double expected = static_cast<double>(i) / last;
+        const double expected = double(i) / last;
         // Stored as 8 bits in the higher byte, or as 16 bits.
         if (std::abs(palette[i] / 65535.0 - expected) > 1.0 / 250.0) return false;
     }
@@ -119,7 +119,7 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
         if (is_cmyk) names = {"cyan", "magenta", "yellow", "black"};
     }
     std::vector<TiffPixelChannel> channels;
-    const auto samples = static_cast<size_t>(layout.samples);
+    const auto samples = size_t(layout.samples);
     const size_t extra_from = samples - std::min(samples, layout.extra_samples.size());
     for (size_t sample = 0; sample < samples; ++sample) {
         std::string name;
@@ -129,7 +129,7 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
             const int meaning = layout.extra_samples[sample - extra_from];
             if (meaning == EXTRASAMPLE_ASSOCALPHA || meaning == EXTRASAMPLE_UNASSALPHA) name = "alpha";
         }
-        channels.push_back({name, static_cast<int>(sample)});
+        channels.push_back({name, int(sample)});
     }
     // Some writers do not say what the fourth sample after red, green and blue is; it is almost always alpha.
     const bool is_rgb = layout.photometric == PHOTOMETRIC_RGB || layout.photometric == PHOTOMETRIC_YCBCR;

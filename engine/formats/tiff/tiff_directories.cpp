@@ -14,7 +14,7 @@ namespace shvr {
 namespace {
 
 /// As in libtiff: a larger count is taken for a wrong offset.
-constexpr uint64_t MOST_FIELDS = 4096;
+constexpr uint64_t MAX_FIELDS = 4096;
 
 enum Tag : uint16_t {
     NEW_SUBFILE_TYPE = 254,
@@ -34,7 +34,7 @@ constexpr std::array<bool, 531> TELLS_KIND = [] {
     std::array<bool, 531> tells{};
     for (const int tag :
          {254, 255, 256, 257, 258, 259, 262, 266, 274, 277, 278, 284, 292, 293, 317, 322, 323, 338, 339, 530}) {
-        tells[static_cast<size_t>(tag)] = true;
+        tells[size_t(tag)] = true;
     }
     return tells;
 }();
@@ -63,7 +63,7 @@ public:
         if (!file_.holds(offset, bytes)) return nullptr;
         if (offset < begin_ || offset - begin_ + bytes > held_.size()) {
             held_.resize(std::max(SIZE, bytes));
-            held_.resize(file_.read_some(static_cast<int64_t>(offset), held_));
+            held_.resize(file_.read_some(int64_t(offset), held_));
             begin_ = offset;
             if (held_.size() < bytes) return nullptr;  // truncated meanwhile
         }
@@ -99,17 +99,17 @@ public:
                    " bytes of the file: it was cut short, or is damaged");
         }
         const uint64_t count = number(start, count_bytes_);
-        if (count == 0 || count > MOST_FIELDS) {
-            refuse(" has a directory of ", count, " fields; expected 1 to ", MOST_FIELDS);
+        if (count == 0 || count > MAX_FIELDS) {
+            refuse(" has a directory of ", count, " fields; expected 1 to ", MAX_FIELDS);
         }
-        const size_t bytes = count_bytes_ + static_cast<size_t>(count) * field_bytes_ + offset_bytes_;
+        const size_t bytes = count_bytes_ + size_t(count) * field_bytes_ + offset_bytes_;
         start = window_.at(offset, bytes);
         if (start == nullptr) {
             refuse(" has a directory that ends at byte ", offset + bytes, "; expected at most the ", file_.size_bytes(),
                    " bytes of the file: it was cut short, or is damaged");
         }
         fields_ = start + count_bytes_;
-        count_ = static_cast<size_t>(count);
+        count_ = size_t(count);
         next_ = number(fields_ + count_ * field_bytes_, offset_bytes_);
         bytes_ = bytes;
     }
@@ -121,8 +121,8 @@ public:
     Field field(size_t index) const
     {
         const std::byte* const at = fields_ + index * field_bytes_;
-        return {static_cast<uint16_t>(number(at, 2)), static_cast<uint16_t>(number(at + 2, 2)),
-                number(at + 4, field_bytes_ - offset_bytes_ - 4), at + field_bytes_ - offset_bytes_};
+        return {uint16_t(number(at, 2)), uint16_t(number(at + 2, 2)), number(at + 4, field_bytes_ - offset_bytes_ - 4),
+                at + field_bytes_ - offset_bytes_};
     }
     bool is_inside(const Field& field) const
     {
@@ -170,8 +170,7 @@ public:
         const uint64_t value = reader.value(field);
         if (!reader.is_inside(field)) {
             const size_t bytes = bytes_of_type(field.type);
-            if (bytes != 0 && field.count <= static_cast<uint64_t>(file_.size_bytes()) &&
-                file_.holds(value, field.count * bytes))
+            if (bytes != 0 && field.count <= uint64_t(file_.size_bytes()) && file_.holds(value, field.count * bytes))
                 return;
             fail(file_.path().string(), ": page ", page, ": ", name_of_tag(field.tag), " has ", field.count,
                  " values at byte ", value, "; expected as many as fit into the ", file_.size_bytes(),
@@ -189,7 +188,7 @@ public:
                  " bytes of the file");
         }
         sum_ += bytes_;
-        if (sum_ > static_cast<uint64_t>(file_.size_bytes())) {
+        if (sum_ > uint64_t(file_.size_bytes())) {
             fail(file_.path().string(), ": pages 1 to ", page, " state ", sum_,
                  " bytes of voxels in StripByteCounts; expected at most the ", file_.size_bytes(),
                  " bytes of the file: their strips overlap");
@@ -227,9 +226,9 @@ public:
         if (last_ >= kinds.size() || kinds[last_].fields != fields_) {
             const auto found =
                 std::find_if(kinds.begin(), kinds.end(), [&](const TiffKind& kind) { return kind.fields == fields_; });
-            last_ = static_cast<size_t>(found - kinds.begin());
+            last_ = size_t(found - kinds.begin());
             if (found == kinds.end()) kinds.push_back({page - 1, is_reduced_, fields_});
-            if (kinds.size() > MOST_KINDS) {
+            if (kinds.size() > MAX_KINDS) {
                 fail(file.path().string(), ": its first ", page, " pages differ in ", kinds.size(),
                      " ways; expected pages that are alike");
             }
@@ -238,11 +237,11 @@ public:
         is_reduced_ = false;
         width_.reset();
         length_.reset();
-        return static_cast<uint32_t>(last_);
+        return uint32_t(last_);
     }
 
 private:
-    static constexpr size_t MOST_KINDS = 64;
+    static constexpr size_t MAX_KINDS = 64;
     static constexpr uint64_t OUTSIDE = ~uint64_t{0};
 
     static void check_side(const TiffFile& file, size_t page, const char* name, const std::optional<uint64_t>& side)
@@ -275,8 +274,8 @@ TiffDirectories read_directories(const TiffFile& file)
     uint64_t remembered = 0;
     for (uint64_t offset = file.first_directory(); offset != 0; offset = reader.next()) {
         const size_t page = directories.pages.size() + 1;
-        if (page > MOST_TIFF_PAGES) {
-            fail(file.path().string(), ": holds more than ", MOST_TIFF_PAGES, " pages; expected at most that many");
+        if (page > MAX_TIFF_PAGES) {
+            fail(file.path().string(), ": holds more than ", MAX_TIFF_PAGES, " pages; expected at most that many");
         }
         if (offset == remembered) {
             fail(file.path().string(), ": page ", page, " is an earlier page once more, at byte ", offset,
@@ -285,7 +284,7 @@ TiffDirectories read_directories(const TiffFile& file)
         if ((page & (page - 1)) == 0) remembered = offset;
         reader.read(offset, page);
         directory_bytes += reader.bytes();
-        if (directory_bytes > static_cast<uint64_t>(file.size_bytes())) {
+        if (directory_bytes > uint64_t(file.size_bytes())) {
             fail(file.path().string(), ": the directories of pages 1 to ", page, " take ", directory_bytes,
                  " bytes; expected at most the ", file.size_bytes(), " bytes of the file: they overlap");
         }
@@ -315,12 +314,12 @@ std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint
         } else {
             const uint64_t at = reader.value(field);
             if (!file.holds(at, bytes.size())) return {};
-            file.read(static_cast<int64_t>(at), bytes);
+            file.read(int64_t(at), bytes);
         }
         const uint64_t above = tiff_number(bytes.data(), 4, file.is_big_endian());
         const uint64_t below = tiff_number(bytes.data() + 4, 4, file.is_big_endian());
         if (above == 0 || below == 0) return {};
-        return static_cast<double>(above) / static_cast<double>(below);
+        return double(above) / double(below);
     }
     return {};
 }

@@ -53,12 +53,11 @@ size_t TiffFile::read_some(int64_t offset, std::span<std::byte> bytes) const
 {
     size_t done = 0;
     while (done < bytes.size()) {
-        const ssize_t count =
-            ::pread(file_.number(), bytes.data() + done, bytes.size() - done, offset + static_cast<int64_t>(done));
+        const ssize_t count = ::pread(file_.number(), bytes.data() + done, bytes.size() - done, offset + int64_t(done));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(path_.string(), ": cannot be read: ", reason_of(errno));
         if (count == 0) break;
-        done += static_cast<size_t>(count);
+        done += size_t(count);
     }
     return done;
 }
@@ -67,13 +66,13 @@ void TiffFile::read(int64_t offset, std::span<std::byte> bytes) const
 {
     const size_t done = read_some(offset, bytes);
     if (done == bytes.size()) return;
-    fail(path_.string(), ": ended after ", offset + static_cast<int64_t>(done), " bytes; expected ",
-         offset + static_cast<int64_t>(bytes.size()), ": it was cut short while open");
+    fail(path_.string(), ": ended after ", offset + int64_t(done), " bytes; expected ", offset + int64_t(bytes.size()),
+         ": it was cut short while open");
 }
 
 bool TiffFile::holds(uint64_t offset, uint64_t bytes) const
 {
-    const auto size = static_cast<uint64_t>(size_bytes_);
+    const auto size = uint64_t(size_bytes_);
     return offset <= size && bytes <= size - offset;
 }
 

@@ -16,7 +16,7 @@
 namespace shvr {
 
 /// The maximum number of pages: the longest side of a volume.
-inline constexpr size_t MOST_TIFF_PAGES = size_t{1} << 20;
+inline constexpr size_t MAX_TIFF_PAGES = size_t{1} << 20;
 
 class TiffFile {
 public:
@@ -65,7 +65,7 @@ struct TiffDirectories {
     std::vector<TiffKind> kinds;
 };
 
-/// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MOST_TIFF_PAGES`, or
+/// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MAX_TIFF_PAGES`, or
 /// if the strips that a page states do not fit into the file.
 TiffDirectories read_directories(const TiffFile& file);
 

@@ -27,12 +27,12 @@ std::string without_escapes(std::string_view text)
         }
         // Encoded as UTF-8.
         if (code < 0x800) {
-            plain += static_cast<char>(0xc0 | code >> 6);
+            plain += char(0xc0 | code >> 6);
         } else {
-            plain += static_cast<char>(0xe0 | code >> 12);
-            plain += static_cast<char>(0x80 | (code >> 6 & 0x3f));
+            plain += char(0xe0 | code >> 12);
+            plain += char(0x80 | (code >> 6 & 0x3f));
         }
-        plain += static_cast<char>(0x80 | (code & 0x3f));
+        plain += char(0x80 | (code & 0x3f));
         at += 5;
     }
     return plain;
@@ -62,9 +62,9 @@ public:
         const std::string stated = text(key);
         if (stated.empty()) return 0;
         const std::optional<int64_t> count = whole_of(stated);
-        if (!count || *count < 1 || *count > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+        if (!count || *count < 1 || *count > int64_t(MAX_TIFF_PAGES)) {
             fail(subject_, ": ", key, " is ", in_quotes(stated), "; expected a whole number from 1 to ",
-                 MOST_TIFF_PAGES);
+                 MAX_TIFF_PAGES);
         }
         return *count;
     }

@@ -149,7 +149,7 @@ bool show_the_same(const TiffLayout& a, const TiffLayout& b)
 std::string in_words(const TiffLayout& layout)
 {
     const std::optional<VoxelType> type = voxel_type_of(layout);
-    const std::string sample = type && bytes_of(*type) * 8 == static_cast<size_t>(layout.bits)
+    const std::string sample = type && bytes_of(*type) * 8 == size_t(layout.bits)
                                    ? name_of(*type)
                                    : sentence(layout.bits, " bit", layout.bits == 1 ? "" : "s",
                                               layout.sample_format == SAMPLEFORMAT_INT ? " with sign" : "");
@@ -184,7 +184,7 @@ std::optional<VoxelType> voxel_type_of(const TiffLayout& layout)
 void check_is_supported(const TiffPage& page, const TiffLayout& layout)
 {
     const Compression* const known = find_compression(layout.compression);
-    if (known == nullptr || !known->is_read || TIFFIsCODECConfigured(static_cast<uint16_t>(layout.compression)) == 0) {
+    if (known == nullptr || !known->is_read || TIFFIsCODECConfigured(uint16_t(layout.compression)) == 0) {
         fail(
             page.subject(), ": Compression is ", layout.compression,
             known == nullptr ? std::string() : sentence(" (", known->name, ")"),
@@ -232,7 +232,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
 
 TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const TiffLayout& layout, int64_t block)
 {
-    const auto index = static_cast<uint32_t>(block);
+    const auto index = uint32_t(block);
     const uint64_t offset = TIFFGetStrileOffset(page.handle(), index);
     const uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
     const auto refuse = [&](const auto&... words) {
@@ -247,11 +247,11 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
     }
     const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
     const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
-    if (decoded > most_decoded(layout, static_cast<int64_t>(bytes))) {
+    if (decoded > most_decoded(layout, int64_t(bytes))) {
         refuse(" is ", bytes, " bytes by ", name_of_byte_counts(layout), "; expected enough for ", decoded,
                " bytes of voxels");
     }
-    return {static_cast<int64_t>(offset), static_cast<int64_t>(bytes)};
+    return {int64_t(offset), int64_t(bytes)};
 }
 
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout)
@@ -263,7 +263,7 @@ void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& 
              file.size_bytes(), " bytes of the file");
     }
     std::vector<TiffExtent> extents;
-    extents.reserve(static_cast<size_t>(std::min<int64_t>(layout.blocks(), 65536)));
+    extents.reserve(size_t(std::min<int64_t>(layout.blocks(), 65536)));
     for (int64_t block = 0; block < layout.blocks(); ++block) {
         extents.push_back(extent_of_block(file, page, layout, block));
     }

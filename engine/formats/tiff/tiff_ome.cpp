@@ -71,7 +71,7 @@ public:
         }
         for_each_child(pixels, "Channel", [&](const pugi::xml_node& channel) {
             const int64_t colors = whole_of(channel.attribute("SamplesPerPixel").value()).value_or(1);
-            if (colors == 1 && result_.channel_names.size() < static_cast<size_t>(result_.channels)) {
+            if (colors == 1 && result_.channel_names.size() < size_t(result_.channels)) {
                 result_.channel_names.emplace_back(channel.attribute("Name").value());
             }
         });
@@ -83,9 +83,9 @@ private:
     {
         const char* const stated = pixels.attribute(name).value();
         const std::optional<int64_t> side = whole_of(stated);
-        if (!side || *side < 1 || *side > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+        if (!side || *side < 1 || *side > int64_t(MAX_TIFF_PAGES)) {
             fail(subject_, ": ", name, " is ", in_quotes(stated), "; expected a whole number from 1 to ",
-                 MOST_TIFF_PAGES);
+                 MAX_TIFF_PAGES);
         }
         return *side;
     }
@@ -94,7 +94,7 @@ private:
     {
         pugi::xml_node largest;
         std::string name;
-        double most_voxels = 0.0;
+        double max_voxels = 0.0;
         int count = 0;
         for_each_child(root, "Image", [&](const pugi::xml_node& image) {
             const pugi::xml_node pixels = first_child(image, "Pixels");
@@ -102,10 +102,10 @@ private:
             ++count;
             double voxels = 1.0;
             for (const char* axis : {"SizeX", "SizeY", "SizeZ"}) {
-                voxels *= static_cast<double>(side(pixels, axis));
+                voxels *= double(side(pixels, axis));
             }
-            if (voxels <= most_voxels) return;
-            most_voxels = voxels;
+            if (voxels <= max_voxels) return;
+            max_voxels = voxels;
             largest = pixels;
             name = image.attribute("Name").value();
         });
@@ -130,12 +130,11 @@ private:
         }
         result_.channels /= samples_;
         const int64_t planes = result_.slices * result_.channels;
-        if (planes > static_cast<int64_t>(MOST_TIFF_PAGES) ||
-            planes * result_.frames > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+        if (planes > int64_t(MAX_TIFF_PAGES) || planes * result_.frames > int64_t(MAX_TIFF_PAGES)) {
             fail(subject_, " counts ", result_.slices, " x ", result_.channels, " x ", result_.frames,
-                 " slices, channels and points in time; expected at most ", MOST_TIFF_PAGES, " pages");
+                 " slices, channels and points in time; expected at most ", MAX_TIFF_PAGES, " pages");
         }
-        result_.pages.assign(static_cast<size_t>(planes * result_.frames), TiffDescription::NO_PAGE);
+        result_.pages.assign(size_t(planes * result_.frames), TiffDescription::NO_PAGE);
 
         const std::string order = pixels.attribute("DimensionOrder").value();
         for (const char* known : {"XYZCT", "XYZTC", "XYCTZ", "XYCZT", "XYTCZ", "XYTZC"}) {
@@ -160,7 +159,7 @@ private:
             at[axis == 'Z' ? 0 : axis == 'C' ? 1 : 2] = plane % size(axis);
             plane /= size(axis);
         }
-        return static_cast<size_t>(at[0] + result_.slices * (at[1] + result_.channels * at[2]));
+        return size_t(at[0] + result_.slices * (at[1] + result_.channels * at[2]));
     }
 
     int64_t whole(const pugi::xml_node& node, const char* name, int64_t fallback) const
@@ -168,9 +167,9 @@ private:
         const pugi::xml_attribute attribute = node.attribute(name);
         if (!attribute) return fallback;
         const std::optional<int64_t> number = whole_of(attribute.value());
-        if (!number || *number < 0 || *number > static_cast<int64_t>(MOST_TIFF_PAGES)) {
+        if (!number || *number < 0 || *number > int64_t(MAX_TIFF_PAGES)) {
             fail(subject_, ": ", name, " is ", in_quotes(attribute.value()), "; expected a whole number from 0 to ",
-                 MOST_TIFF_PAGES);
+                 MAX_TIFF_PAGES);
         }
         return *number;
     }
@@ -194,7 +193,7 @@ private:
 
     void read_planes(const pugi::xml_node& pixels)
     {
-        const auto planes = static_cast<int64_t>(result_.pages.size());
+        const auto planes = int64_t(result_.pages.size());
         std::set<std::string> files;
         int64_t stated = 0;
         bool is_stated = false;
@@ -212,14 +211,14 @@ private:
             const int64_t first = first_plane(data);
             const int64_t count = whole(data, "PlaneCount", data.attribute("IFD") ? 1 : planes - first);
             stated += count;
-            if (stated > 2 * static_cast<int64_t>(MOST_TIFF_PAGES)) {
+            if (stated > 2 * int64_t(MAX_TIFF_PAGES)) {
                 fail(subject_, " places ", stated, " planes; expected the ", planes, " there are");
             }
             for (int64_t i = 0; i < std::min(count, planes - first); ++i) {
-                result_.pages[place_of(first + i)] = static_cast<uint32_t>(page + i);
+                result_.pages[place_of(first + i)] = uint32_t(page + i);
             }
         });
-        for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = static_cast<uint32_t>(i);
+        for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = uint32_t(i);
     }
 
     std::string subject_;

@@ -26,14 +26,14 @@ struct TiffPage::Access {
     {
         Access& access = of(handle);
         try {
-            const std::span<std::byte> wanted(static_cast<std::byte*>(bytes), static_cast<size_t>(count));
+            const std::span<std::byte> wanted(static_cast<std::byte*>(bytes), size_t(count));
             const size_t done = access.file.read_some(access.position, wanted);
             for (size_t i = 0; i < done; ++i) {
-                const size_t at = static_cast<size_t>(access.position) + i;
+                const size_t at = size_t(access.position) + i;
                 if (at >= access.header_bytes) break;
                 wanted[i] = access.header[at];
             }
-            access.position += static_cast<int64_t>(done);
+            access.position += int64_t(done);
             return static_cast<tmsize_t>(done);
         } catch (const std::exception& error) {
             access.complaint = error.what();
@@ -44,7 +44,7 @@ struct TiffPage::Access {
     static toff_t seek(thandle_t handle, toff_t offset, int from)
     {
         Access& access = of(handle);
-        const auto distance = static_cast<int64_t>(offset);
+        const auto distance = int64_t(offset);
         if (from == SEEK_SET) access.position = distance;
         if (from == SEEK_CUR) access.position += distance;
         if (from == SEEK_END) access.position = access.file.size_bytes() + distance;
@@ -67,7 +67,7 @@ struct TiffPage::Access {
     }
 };
 
-TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t most_memory_bytes)
+TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t max_memory_bytes)
     : file_(file), page_(page), access_(new Access{file})
 {
     // A few of libtiff's messages bypass a file's handlers.
@@ -82,12 +82,12 @@ TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_
     file.read(0, std::span(access_->header).first(access_->header_bytes));
     for (size_t i = 0; i < offset_bytes; ++i) {
         const size_t place = file.is_big_endian() ? offset_bytes - 1 - i : i;
-        access_->header[offset_bytes + place] = static_cast<std::byte>(directory >> 8 * i);
+        access_->header[offset_bytes + place] = std::byte(directory >> 8 * i);
     }
 
     const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
                                                                                TIFFOpenOptionsFree);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), most_memory_bytes);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), max_memory_bytes);
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Access::complain, access_.get());
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Access::ignore, nullptr);
     // "m": without mapping, so that truncating the file while it is open causes a failed read, not a signal. "O": strip

@@ -18,8 +18,8 @@ inline constexpr int64_t DIRECTORY_MEMORY = int64_t{64} << 20;
 class TiffPage {
 public:
     /// `page` counts from 1 and is for messages. Fails if libtiff cannot read the directory, or would allocate more
-    /// than `most_memory_bytes` at once.
-    TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t most_memory_bytes = DIRECTORY_MEMORY);
+    /// than `max_memory_bytes` at once.
+    TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t max_memory_bytes = DIRECTORY_MEMORY);
     TiffPage(const TiffPage&) = delete;
     ~TiffPage();
 

@@ -17,7 +17,7 @@ uint32_t packed_sample(std::span<const std::byte> row, int64_t index, int bits)
     const int64_t first_bit = index * bits;
     uint32_t taken = 0;
     int have = 0;
-    for (auto at = static_cast<size_t>(first_bit / 8); have < bits + first_bit % 8; ++at, have += 8) {
+    for (auto at = size_t(first_bit / 8); have < bits + first_bit % 8; ++at, have += 8) {
         taken = taken << 8 | std::to_integer<uint32_t>(row[at]);
     }
     return taken >> (have - first_bit % 8 - bits) & ((uint32_t{1} << bits) - 1);
@@ -29,8 +29,8 @@ float float_of_half(uint16_t half)
     const int fraction = half & 1023;
     const float sign = (half & 0x8000) != 0 ? -1.0F : 1.0F;
     if (exponent == 31) return fraction == 0 ? sign * INFINITY : NAN;
-    if (exponent == 0) return sign * std::ldexp(static_cast<float>(fraction), -24);
-    return sign * std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
+    if (exponent == 0) return sign * std::ldexp(float(fraction), -24);
+    return sign * std::ldexp(float(fraction + 1024), exponent - 25);
 }
 
 template <class Voxel, class Value>
@@ -38,7 +38,7 @@ void store_each(std::span<std::byte> voxels, const Value& value)
 {
     const size_t count = voxels.size() / sizeof(Voxel);
     for (size_t i = 0; i < count; ++i) {
-        const auto voxel = static_cast<Voxel>(value(static_cast<int64_t>(i)));
+        const auto voxel = static_cast<Voxel>(value(int64_t(i)));
         std::memcpy(voxels.data() + i * sizeof(Voxel), &voxel, sizeof(Voxel));
     }
 }
@@ -47,8 +47,8 @@ void store_each(std::span<std::byte> voxels, const Value& value)
 template <class Bits>
 void gather(std::span<const std::byte> row, int64_t first, int64_t step, std::span<std::byte> voxels)
 {
-    const std::byte* from = row.data() + static_cast<size_t>(first) * sizeof(Bits);
-    for (size_t at = 0; at < voxels.size(); at += sizeof(Bits), from += static_cast<size_t>(step) * sizeof(Bits)) {
+    const std::byte* from = row.data() + size_t(first) * sizeof(Bits);
+    for (size_t at = 0; at < voxels.size(); at += sizeof(Bits), from += size_t(step) * sizeof(Bits)) {
         std::memcpy(voxels.data() + at, from, sizeof(Bits));
     }
 }
@@ -146,7 +146,7 @@ void exchange_bits(const TiffRecipe& recipe, std::span<std::byte> voxels)
 void mirror(const TiffRecipe& recipe, int64_t width, std::span<std::byte> voxels)
 {
     const size_t voxel_bytes = bytes_of(recipe.type);
-    const size_t row_bytes = static_cast<size_t>(width) * voxel_bytes;
+    const size_t row_bytes = size_t(width) * voxel_bytes;
     const size_t rows = voxels.size() / row_bytes;
     if (recipe.mirrors_y) {
         for (size_t row = 0; row < rows / 2; ++row) {
@@ -157,9 +157,9 @@ void mirror(const TiffRecipe& recipe, int64_t width, std::span<std::byte> voxels
     if (!recipe.mirrors_x) return;
     for (size_t row = 0; row < rows; ++row) {
         std::byte* const begin = voxels.data() + row * row_bytes;
-        for (size_t i = 0; i < static_cast<size_t>(width) / 2; ++i) {
+        for (size_t i = 0; i < size_t(width) / 2; ++i) {
             std::swap_ranges(begin + i * voxel_bytes, begin + (i + 1) * voxel_bytes,
-                             begin + (static_cast<size_t>(width) - 1 - i) * voxel_bytes);
+                             begin + (size_t(width) - 1 - i) * voxel_bytes);
         }
     }
 }

@@ -10,7 +10,7 @@ constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)
 {
-    return static_cast<int64_t>(block.capacity()) + OVERHEAD_BYTES;
+    return int64_t(block.capacity()) + OVERHEAD_BYTES;
 }
 
 }  // namespace

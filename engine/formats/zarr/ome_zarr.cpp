@@ -178,7 +178,7 @@ glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImag
                 fail(path.string(), ": axes are in ", in_quotes(*image.unit), " and in ", in_quotes(*units[along]),
                      "; expected one unit for x, y and z, or units of length");
             }
-            factors[static_cast<int>(along)] = metres / metres_of_image;
+            factors[int(along)] = metres / metres_of_image;
         }
     }
     return factors;

@@ -27,7 +27,7 @@ constexpr char MAGIC[] = "SHVRTAB1";
 /// Enough for the ranges of 10^13 voxels.
 constexpr int64_t LARGEST_TABLE = int64_t{2} << 30;
 /// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
-constexpr int64_t MOST_OUT_OF_A_BYTE = int64_t{32} << 10;
+constexpr int64_t MAX_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
 
@@ -85,8 +85,8 @@ std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes
     std::vector<std::byte> header;
     for (size_t i = 0; i < 8; ++i) put(header, MAGIC[i]);
     for (size_t i = 0; i < 8; ++i) put(header, i < table.kind.size() ? table.kind[i] : '\0');
-    put(header, static_cast<int32_t>(table.level));
-    put(header, static_cast<uint32_t>(table.element_bytes));
+    put(header, int32_t(table.level));
+    put(header, uint32_t(table.element_bytes));
     put(header, table.counts);
     put(header, frame_bytes);
     SHVR_CHECK(header.size() == HEADER_BYTES - sizeof(uint64_t), header.size());
@@ -101,7 +101,7 @@ uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byt
 
 int64_t bytes_of_table(const Path& file, const ProjectTable& table)
 {
-    auto bytes = static_cast<int64_t>(table.element_bytes);
+    auto bytes = int64_t(table.element_bytes);
     for (int axis = 0; axis < 3; ++axis) {
         if (__builtin_mul_overflow(bytes, table.counts[axis], &bytes) || bytes > LARGEST_TABLE) {
             fail(file.string(), ": would hold more than ", LARGEST_TABLE >> 20, " MiB; expected a smaller volume");
@@ -115,7 +115,7 @@ ValueRange range_as(std::span<const std::byte> element)
 {
     T voxels[2];
     std::memcpy(voxels, element.data(), sizeof(voxels));
-    return {static_cast<double>(voxels[0]), static_cast<double>(voxels[1])};
+    return {double(voxels[0]), double(voxels[1])};
 }
 
 }  // namespace
@@ -160,7 +160,7 @@ ProjectRecord read_project_record(const Path& file)
     record.source = root["source"].any_text();
     record.preparation = root["preparation"].any_text();
     record.content_hash = root["content_hash"].any_text();
-    record.levels = static_cast<int>(root["levels"].whole(1, 32));
+    record.levels = int(root["levels"].whole(1, 32));
     VolumeInfo& info = record.info;
     info.size = root["size"].size(LARGEST_SIDE);
     info.type = root["type"].parsed([](const std::string& name) { return voxel_type_of(name); }, VOXEL_TYPE_NAMES);
@@ -188,7 +188,7 @@ Path checksums_path(const Path& project, int level)
 
 std::vector<std::byte> to_bytes(const ProjectTable& table)
 {
-    SHVR_CHECK(table.elements.size() == static_cast<size_t>(bytes_of_table(table.kind, table)), table.elements.size());
+    SHVR_CHECK(table.elements.size() == size_t(bytes_of_table(table.kind, table)), table.elements.size());
     std::vector<std::byte> frame(ZSTD_compressBound(table.elements.size()));
     const size_t made = ZSTD_compress(frame.data(), frame.size(), table.elements.data(), table.elements.size(), 3);
     SHVR_CHECK(ZSTD_isError(made) == 0, ZSTD_getErrorName(made));
@@ -202,7 +202,7 @@ std::vector<std::byte> to_bytes(const ProjectTable& table)
 ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
 {
     const int64_t decoded_bytes = bytes_of_table(file, expected);
-    const auto longest = static_cast<int64_t>(HEADER_BYTES + ZSTD_compressBound(static_cast<size_t>(decoded_bytes)));
+    const auto longest = int64_t(HEADER_BYTES + ZSTD_compressBound(size_t(decoded_bytes)));
     const std::vector<std::byte> bytes = read_file(file, longest);
     if (bytes.size() < HEADER_BYTES || std::memcmp(bytes.data(), MAGIC, 8) != 0) {
         fail(file.string(), ": does not begin with ", MAGIC, "; expected a table of a project");
@@ -213,11 +213,11 @@ ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
         fail(file.string(), ": was made for another volume, or was cut short; expected ", expected.kind, " of ",
              expected.counts.x, "x", expected.counts.y, "x", expected.counts.z, " elements");
     }
-    if (decoded_bytes / MOST_OUT_OF_A_BYTE > static_cast<int64_t>(frame.size())) {
+    if (decoded_bytes / MAX_OUT_OF_A_BYTE > int64_t(frame.size())) {
         fail(file.string(), ": holds ", frame.size(), " compressed bytes; expected enough for ", decoded_bytes);
     }
     ProjectTable table = expected;
-    table.elements.resize(static_cast<size_t>(decoded_bytes));
+    table.elements.resize(size_t(decoded_bytes));
     const size_t made = ZSTD_decompress(table.elements.data(), table.elements.size(), frame.data(), frame.size());
     uint64_t checksum = 0;
     std::memcpy(&checksum, bytes.data() + header.size(), sizeof(checksum));

@@ -41,8 +41,8 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
     try_to(
         [&] {
             ProjectRecord record = read_project_record(file);
-            const bool fits = record.info.size == info.size && record.info.type == info.type &&
-                              record.levels >= static_cast<int>(volumes.size());
+            const bool fits =
+                record.info.size == info.size && record.info.type == info.type && record.levels >= int(volumes.size());
             if (!fits) fail(file.string(), ": describes another volume; expected that of this folder");
             knowledge.record = std::move(record);
         },
@@ -57,8 +57,8 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
         info.warnings = known.warnings;
     }
     knowledge.ranges.resize(volumes.size());
-    for (int level = 0; level < static_cast<int>(volumes.size()); ++level) {
-        const auto index = static_cast<size_t>(level);
+    for (int level = 0; level < int(volumes.size()); ++level) {
+        const auto index = size_t(level);
         try_to(
             [&] {
                 knowledge.ranges[index] =
@@ -85,12 +85,13 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
 std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
                                    const Size3& brick)
 {
-    const auto index = static_cast<size_t>(level);
+    const auto index = size_t(level);
     if (index >= knowledge.ranges.size() || knowledge.ranges[index].empty()) return std::nullopt;
     const ProjectTable table = table_for(info, level);
     const int64_t element = brick.x + table.counts.x * (brick.y + table.counts.y * brick.z);
-    return range_of(info.type, std::span(knowledge.ranges[index])
-                                   .subspan(static_cast<size_t>(element) * table.element_bytes, table.element_bytes));
+    return range_of(
+        info.type,
+        std::span(knowledge.ranges[index]).subspan(size_t(element) * table.element_bytes, table.element_bytes));
 }
 
 }  // namespace shvr

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
-constexpr int MOST_LEVELS = 24;
+constexpr int MAX_LEVELS = 24;
 
 class OmeZarrSource : public VolumeSource {
 public:
@@ -39,14 +39,14 @@ public:
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
 
-    int levels() const override { return static_cast<int>(volumes_.size()); }
+    int levels() const override { return int(volumes_.size()); }
 
     Size3 block() const override { return volumes_[0].chunk(); }
 
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         SHVR_CHECK(level >= 0 && level < levels(), level);
-        const ZarrVolume& volume = volumes_[static_cast<size_t>(level)];
+        const ZarrVolume& volume = volumes_[size_t(level)];
         if (glm::all(glm::lessThanEqual(box.upper, volume.size()))) return read_stored(level, box, voxels);
         read_beyond(level, box, voxels);
     }
@@ -74,7 +74,7 @@ public:
 private:
     void read_stored(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
-        const ZarrVolume& volume = volumes_[static_cast<size_t>(level)];
+        const ZarrVolume& volume = volumes_[size_t(level)];
         volume.read(box, voxels, [&](const Size3& chunk) {
             return cache_.get({level, volume.index_of(chunk)}, [&] { return volume.load(chunk); });
         });
@@ -83,19 +83,19 @@ private:
     /// A level whose size was rounded down lacks its last voxel; the one before is repeated.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
-        const Size3 size = volumes_[static_cast<size_t>(level)].size();
+        const Size3 size = volumes_[size_t(level)].size();
         const VoxelBox stored{glm::min(box.lower, size - int64_t{1}), glm::min(box.upper, size)};
         const Size3 from = stored.size();
         const Size3 to = box.size();
         const size_t bytes = bytes_of(info().type);
-        std::vector<std::byte> inside(static_cast<size_t>(from.x * from.y * from.z) * bytes);
+        std::vector<std::byte> inside(size_t(from.x * from.y * from.z) * bytes);
         read_stored(level, stored, inside);
         std::byte* voxel = voxels.data();
         for (int64_t z = 0; z < to.z; ++z) {
             for (int64_t y = 0; y < to.y; ++y) {
                 for (int64_t x = 0; x < to.x; ++x, voxel += bytes) {
                     const Size3 at = glm::min(Size3(x, y, z), from - int64_t{1});
-                    const auto index = static_cast<size_t>(index_of(at, from));
+                    const auto index = size_t(index_of(at, from));
                     std::memcpy(voxel, inside.data() + index * bytes, bytes);
                 }
             }
@@ -126,15 +126,15 @@ std::string name_of_folder(const fs::path& path)
 int64_t chosen(const fs::path& path, const char* what, const std::string& wanted, int64_t count,
                const std::vector<std::string>& names)
 {
-    for (size_t i = 0; i < names.size() && static_cast<int64_t>(i) < count; ++i) {
-        if (!names[i].empty() && lower_case(names[i]) == lower_case(wanted)) return static_cast<int64_t>(i);
+    for (size_t i = 0; i < names.size() && int64_t(i) < count; ++i) {
+        if (!names[i].empty() && lower_case(names[i]) == lower_case(wanted)) return int64_t(i);
     }
     const std::optional<int64_t> number = whole_of(wanted);
     if (number && *number >= 1 && *number <= count) return *number - 1;
     if (wanted.empty() && count == 1) return 0;
     std::string choices = sentence("1 to ", count);
-    constexpr size_t MOST_NAMES = 16;
-    for (size_t i = 0; i < std::min(names.size(), MOST_NAMES); ++i) {
+    constexpr size_t MAX_NAMES = 16;
+    for (size_t i = 0; i < std::min(names.size(), MAX_NAMES); ++i) {
         if (!names[i].empty()) choices += sentence(i == 0 ? "; " : ", ", i + 1, " is ", in_quotes(names[i]));
     }
     if (wanted.empty()) {
@@ -175,7 +175,7 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     }
     const Size3 size = size_along(first, image.xyz);
     const Size3 coarse = size_along(metadata, image.xyz);
-    const auto factor = static_cast<double>(int64_t{1} << level);
+    const auto factor = double(int64_t{1} << level);
     for (int axis = 0; axis < 3; ++axis) {
         const int64_t floor = std::max<int64_t>(1, size[axis] >> level);
         const int64_t ceiling = size_of_level(size, level)[axis];
@@ -218,12 +218,12 @@ std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& imag
     volumes.emplace_back(array, first, view);
     std::vector<std::string> left_out;
     std::string reason;
-    for (size_t dataset = 1; dataset < image.levels.size() && volumes.size() < MOST_LEVELS; ++dataset) {
+    for (size_t dataset = 1; dataset < image.levels.size() && volumes.size() < MAX_LEVELS; ++dataset) {
         const std::string& path = image.levels[dataset].path;
         std::string why;
         try {
             ZarrMetadata metadata = read_zarr_metadata(folder / path);
-            why = objection(image, first, dataset, metadata, static_cast<int>(volumes.size()));
+            why = objection(image, first, dataset, metadata, int(volumes.size()));
             if (why.empty()) volumes.emplace_back(folder / path, std::move(metadata), view);
         } catch (const Error& error) {
             why = sentence("cannot be read (", error.what(), ")");

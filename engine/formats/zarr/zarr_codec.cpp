@@ -37,7 +37,7 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     }
     // One thread: chunks are decoded in parallel already.
     const int made = blosc_decompress_ctx(stored.data(), chunk.data(), chunk.size(), 1);
-    if (made < 0 || static_cast<size_t>(made) != chunk.size()) {
+    if (made < 0 || size_t(made) != chunk.size()) {
         fail(name, ": cannot be decoded by blosc (error ", made, "); expected a whole chunk");
     }
 }
@@ -130,12 +130,12 @@ void decompress_chunk(ZarrCompressor::Kind kind, Bytes stored, std::span<std::by
 Bytes compress_chunk(const ZarrCompressor& compressor, Bytes chunk, size_t voxel_bytes, std::vector<std::byte>& memory)
 {
     if (compressor.kind == ZarrCompressor::Kind::none) return chunk;
-    SHVR_CHECK(compressor.kind == ZarrCompressor::Kind::blosc, static_cast<int>(compressor.kind));
+    SHVR_CHECK(compressor.kind == ZarrCompressor::Kind::blosc, int(compressor.kind));
     memory.resize(std::max(memory.size(), chunk.size() + BLOSC_MAX_OVERHEAD));
     const int made = blosc_compress_ctx(compressor.level, compressor.shuffle, voxel_bytes, chunk.size(), chunk.data(),
                                         memory.data(), memory.size(), compressor.codec.c_str(), 0, 1);
     SHVR_CHECK(made > 0, made, " ", compressor.codec);
-    return Bytes(memory).first(static_cast<size_t>(made));
+    return Bytes(memory).first(size_t(made));
 }
 
 }  // namespace shvr

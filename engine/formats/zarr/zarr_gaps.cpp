@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 /// One byte each; larger volumes are not checked.
-constexpr int64_t MOST_CHUNKS = int64_t{1} << 24;
+constexpr int64_t MAX_CHUNKS = int64_t{1} << 24;
 
 }  // namespace
 
@@ -20,8 +20,8 @@ ZarrGaps::ZarrGaps(const std::vector<ZarrVolume>& levels) : levels_(levels)
         const Size3 counts = level.counts();
         int64_t chunks = counts.x;
         const bool is_too_much = __builtin_mul_overflow(chunks, counts.y, &chunks) ||
-                                 __builtin_mul_overflow(chunks, counts.z, &chunks) || chunks > MOST_CHUNKS;
-        found_.push_back(is_too_much ? nullptr : std::make_unique<std::atomic<Found>[]>(static_cast<size_t>(chunks)));
+                                 __builtin_mul_overflow(chunks, counts.z, &chunks) || chunks > MAX_CHUNKS;
+        found_.push_back(is_too_much ? nullptr : std::make_unique<std::atomic<Found>[]>(size_t(chunks)));
     }
 }
 
@@ -29,14 +29,14 @@ std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
 {
     int64_t files = 0;
     for (int below = level; below >= 0; --below) {
-        if (!found_[static_cast<size_t>(below)]) return std::nullopt;
+        if (!found_[size_t(below)]) return std::nullopt;
         files += chunks_below(level, box, below).count();
-        if (files > MOST_FILES) return std::nullopt;
+        if (files > MAX_FILES) return std::nullopt;
     }
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
     for (int below = level; below >= 0; --below) {
         if (!are_missing(below, chunks_below(level, box, below))) return std::nullopt;
-        const ZarrVolume& volume = levels_[static_cast<size_t>(below)];
+        const ZarrVolume& volume = levels_[size_t(below)];
         // An array that was removed must not look empty.
         if (!volume.is_there()) return std::nullopt;
         double fill = 0.0;
@@ -50,7 +50,7 @@ std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
 
 ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int below) const
 {
-    const ZarrVolume& volume = levels_[static_cast<size_t>(below)];
+    const ZarrVolume& volume = levels_[size_t(below)];
     const int64_t factor = int64_t{1} << (level - below);
     // A level whose size was rounded down lacks its last voxels; the last existing ones stand for them.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
@@ -73,8 +73,8 @@ bool ZarrGaps::are_missing(int level, const Chunks& chunks) const
 
 bool ZarrGaps::is_missing(int level, const Size3& chunk) const
 {
-    const ZarrVolume& volume = levels_[static_cast<size_t>(level)];
-    std::atomic<Found>& found = found_[static_cast<size_t>(level)][static_cast<size_t>(volume.index_of(chunk))];
+    const ZarrVolume& volume = levels_[size_t(level)];
+    std::atomic<Found>& found = found_[size_t(level)][size_t(volume.index_of(chunk))];
     // Two threads that look at the same time find the same.
     if (found.load(std::memory_order_relaxed) == Found::unknown) {
         found.store(volume.is_missing(chunk) ? Found::missing : Found::stored, std::memory_order_relaxed);

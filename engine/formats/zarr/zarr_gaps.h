@@ -3,7 +3,7 @@
 //
 // In such files levels need not be means of each other, so a part of a coarse level is a gap only if everything below
 // it, down to level 0, is one. That multiplies the chunks by eight per level: a query that would check more than
-// MOST_FILES files is not answered. With chunks of 64^3 voxels that affects bricks of level 4 and above; with chunks of
+// MAX_FILES files is not answered. With chunks of 64^3 voxels that affects bricks of level 4 and above; with chunks of
 // 32^3, of level 3 and above.
 //
 // Each file is looked up once, which takes some microseconds, and the result is kept in one byte per chunk. Any thread
@@ -20,7 +20,7 @@ namespace shvr {
 
 class ZarrGaps {
 public:
-    static constexpr int64_t MOST_FILES = 512;
+    static constexpr int64_t MAX_FILES = 512;
 
     /// `levels` are those of one image, finest first, and must outlive it.
     explicit ZarrGaps(const std::vector<ZarrVolume>& levels);

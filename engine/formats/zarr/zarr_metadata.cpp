@@ -90,7 +90,7 @@ void read_fill_value(const JsonNode& fill, ZarrMetadata& metadata)
             const double value = float_fill(fill);
             if (std::isfinite(value) && std::abs(value) > double{std::numeric_limits<float>::max()})
                 fill.refuse("a number that 32-bit floats hold");
-            return put(static_cast<float>(value), metadata);
+            return put(float(value), metadata);
         }
         case VoxelType::float64: return put(float_fill(fill), metadata);
     }
@@ -112,7 +112,7 @@ void refuse_filters(const JsonNode& filters)
 
 void check_chunk_bytes(const JsonNode& node, const ZarrMetadata& metadata)
 {
-    auto bytes = static_cast<int64_t>(bytes_of(metadata.type));
+    auto bytes = int64_t(bytes_of(metadata.type));
     for (const int64_t side : metadata.chunks) {
         if (!__builtin_mul_overflow(bytes, side, &bytes) && bytes <= LARGEST_CHUNK_BYTES) continue;
         node.refuse(sentence("chunks of at most ", LARGEST_CHUNK_BYTES >> 20, " MiB, which are decoded as a whole"));
@@ -165,7 +165,7 @@ Json compressor_of(const ZarrCompressor& compressor)
 size_t ZarrMetadata::chunk_bytes() const
 {
     size_t bytes = bytes_of(type);
-    for (const int64_t side : chunks) bytes *= static_cast<size_t>(side);
+    for (const int64_t side : chunks) bytes *= size_t(side);
     return bytes;
 }
 

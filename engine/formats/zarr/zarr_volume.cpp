@@ -53,7 +53,7 @@ std::vector<size_t> strides_of(const ZarrMetadata& metadata)
     for (size_t i = 0; i < axes; ++i) {
         const size_t axis = metadata.is_fortran ? i : axes - 1 - i;
         strides[axis] = stride;
-        stride *= static_cast<size_t>(metadata.chunks[axis]);
+        stride *= size_t(metadata.chunks[axis]);
     }
     return strides;
 }
@@ -63,13 +63,13 @@ void gather(const std::byte* from, const Size3& count, const std::array<size_t, 
 {
     for (int64_t z = 0; z < count.z; ++z) {
         for (int64_t y = 0; y < count.y; ++y) {
-            const std::byte* row = from + static_cast<size_t>(z) * stride[2] + static_cast<size_t>(y) * stride[1];
-            const auto bytes = static_cast<size_t>(count.x) * sizeof(Bits);
+            const std::byte* row = from + size_t(z) * stride[2] + size_t(y) * stride[1];
+            const auto bytes = size_t(count.x) * sizeof(Bits);
             if (stride[0] == sizeof(Bits)) {
                 std::memcpy(to, row, bytes);
             } else {
                 for (int64_t x = 0; x < count.x; ++x, row += stride[0]) {
-                    std::memcpy(to + static_cast<size_t>(x) * sizeof(Bits), row, sizeof(Bits));
+                    std::memcpy(to + size_t(x) * sizeof(Bits), row, sizeof(Bits));
                 }
             }
             to += bytes;
@@ -111,7 +111,7 @@ ZarrVolume::ZarrVolume(std::filesystem::path array, ZarrMetadata metadata, ZarrV
 {
     view_.at.resize(metadata_.shape.size());
     for (int axis = 0; axis < 3; ++axis) {
-        const size_t of_array = view_.xyz[static_cast<size_t>(axis)];
+        const size_t of_array = view_.xyz[size_t(axis)];
         size_[axis] = metadata_.shape[of_array];
         chunk_[axis] = metadata_.chunks[of_array];
         counts_[axis] = (size_[axis] - 1) / chunk_[axis] + 1;
@@ -122,7 +122,7 @@ std::filesystem::path ZarrVolume::path_of(const Size3& chunk) const
 {
     std::vector<int64_t> index(view_.at.size());
     for (size_t axis = 0; axis < index.size(); ++axis) index[axis] = view_.at[axis] / metadata_.chunks[axis];
-    for (int axis = 0; axis < 3; ++axis) index[view_.xyz[static_cast<size_t>(axis)]] = chunk[axis];
+    for (int axis = 0; axis < 3; ++axis) index[view_.xyz[size_t(axis)]] = chunk[axis];
     std::string key;
     for (const int64_t number : index) {
         if (!key.empty()) key += metadata_.separator;
@@ -134,9 +134,9 @@ std::filesystem::path ZarrVolume::path_of(const Size3& chunk) const
 Block ZarrVolume::load(const Size3& chunk) const
 {
     const std::filesystem::path path = path_of(chunk);
-    const auto stored = stored_bytes(path, longest_stored(static_cast<int64_t>(metadata_.chunk_bytes())));
+    const auto stored = stored_bytes(path, longest_stored(int64_t(metadata_.chunk_bytes())));
     if (!checksums_.empty()) {
-        const uint64_t expected = checksums_[static_cast<size_t>(index_of(chunk))];
+        const uint64_t expected = checksums_[size_t(index_of(chunk))];
         if (!stored && expected != 0) fail(path.string(), ": is missing; expected the chunk that the import wrote");
         if (stored && checksum_of(*stored) != expected) {
             fail(path.string(), ": is damaged, or another program changed it; expected what the import wrote");
@@ -153,7 +153,7 @@ Block ZarrVolume::load(const Size3& chunk) const
 
 bool ZarrVolume::is_missing(const Size3& chunk) const
 {
-    if (!checksums_.empty()) return checksums_[static_cast<size_t>(index_of(chunk))] == 0;
+    if (!checksums_.empty()) return checksums_[size_t(index_of(chunk))] == 0;
     struct stat status {};
     return ::stat(path_of(chunk).c_str(), &status) != 0 && errno == ENOENT;
 }
@@ -177,15 +177,15 @@ Block ZarrVolume::arranged(Block chunk) const
     const std::vector<size_t> strides = strides_of(metadata_);
     const std::array<size_t, 3> stride{strides[view_.xyz[0]], strides[view_.xyz[1]], strides[view_.xyz[2]]};
     const size_t voxel_bytes = bytes_of(metadata_.type);
-    const auto row = static_cast<size_t>(chunk_.x) * voxel_bytes;
-    const size_t slice = row * static_cast<size_t>(chunk_.y);
-    const size_t bytes = slice * static_cast<size_t>(chunk_.z);
+    const auto row = size_t(chunk_.x) * voxel_bytes;
+    const size_t slice = row * size_t(chunk_.y);
+    const size_t bytes = slice * size_t(chunk_.z);
     if (bytes == chunk.size() && stride == std::array<size_t, 3>{voxel_bytes, row, slice}) return chunk;
 
     size_t first = 0;
     for (size_t axis = 0; axis < strides.size(); ++axis) {
         if (std::ranges::find(view_.xyz, axis) != view_.xyz.end()) continue;
-        first += static_cast<size_t>(view_.at[axis] % metadata_.chunks[axis]) * strides[axis];
+        first += size_t(view_.at[axis] % metadata_.chunks[axis]) * strides[axis];
     }
     Block block(bytes);
     const std::byte* const from = chunk.data() + first;
@@ -199,12 +199,12 @@ Block ZarrVolume::arranged(Block chunk) const
 void ZarrVolume::read(const VoxelBox& box, std::span<std::byte> voxels,
                       const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const
 {
-    const auto voxel_bytes = static_cast<int64_t>(bytes_of(metadata_.type));
-    const std::span<const std::byte> fill(metadata_.fill.data(), static_cast<size_t>(voxel_bytes));
+    const auto voxel_bytes = int64_t(bytes_of(metadata_.type));
+    const std::span<const std::byte> fill(metadata_.fill.data(), size_t(voxel_bytes));
     const Size3 extent = box.size();
     SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) && glm::all(glm::lessThanEqual(box.upper, size_)) &&
                glm::all(glm::greaterThan(extent, Size3(0))));
-    SHVR_CHECK(static_cast<int64_t>(voxels.size()) == extent.x * extent.y * extent.z * voxel_bytes, voxels.size());
+    SHVR_CHECK(int64_t(voxels.size()) == extent.x * extent.y * extent.z * voxel_bytes, voxels.size());
 
     const Size3 first = box.lower / chunk_;
     const Size3 end = (box.upper - int64_t{1}) / chunk_ + int64_t{1};
@@ -216,14 +216,14 @@ void ZarrVolume::read(const VoxelBox& box, std::span<std::byte> voxels,
                 const Size3 origin = at * chunk_;
                 const Size3 lower = glm::max(box.lower, origin);
                 const Size3 upper = glm::min(box.upper, origin + chunk_);
-                const auto run = static_cast<size_t>((upper.x - lower.x) * voxel_bytes);
+                const auto run = size_t((upper.x - lower.x) * voxel_bytes);
                 for (int64_t z = lower.z; z < upper.z; ++z) {
                     for (int64_t y = lower.y; y < upper.y; ++y) {
                         const int64_t to =
                             lower.x - box.lower.x + extent.x * (y - box.lower.y + extent.y * (z - box.lower.z));
                         std::byte* const row = voxels.data() + to * voxel_bytes;
                         if (block->empty()) {
-                            fill_voxels(row, run / static_cast<size_t>(voxel_bytes), fill);
+                            fill_voxels(row, run / size_t(voxel_bytes), fill);
                             continue;
                         }
                         const int64_t from = lower.x - origin.x + chunk_.x * (y - origin.y + chunk_.y * (z - origin.z));

@@ -85,7 +85,7 @@ public:
 
 private:
     /// Distributions of the standard library differ between machines.
-    size_t below(size_t end) { return end == 0 ? 0 : static_cast<size_t>(random_() % end); }
+    size_t below(size_t end) { return end == 0 ? 0 : size_t(random_() % end); }
     size_t place() { return below(below(2) == 0 ? std::min(bytes_.size(), HEAD_BYTES) : bytes_.size()); }
 
     void change()
@@ -105,7 +105,7 @@ private:
     {
         if (bytes_.empty()) return;
         char& byte = bytes_[place()];
-        byte = static_cast<char>(byte ^ (1 << below(8)));
+        byte = char(byte ^ (1 << below(8)));
     }
     void set_integer()
     {
@@ -114,7 +114,7 @@ private:
         const size_t at = place();
         const bool is_big = below(2) == 0;
         for (size_t i = 0; i < width && at + i < bytes_.size(); ++i) {
-            bytes_[at + i] = static_cast<char>(value >> 8 * (is_big ? width - 1 - i : i) & 0xff);
+            bytes_[at + i] = char(value >> 8 * (is_big ? width - 1 - i : i) & 0xff);
         }
     }
     void double_integer()
@@ -122,9 +122,9 @@ private:
         const size_t at = place();
         if (at + 4 > bytes_.size()) return;
         uint32_t value = 0;
-        for (size_t i = 4; i-- > 0;) value = value << 8 | static_cast<uint8_t>(bytes_[at + i]);
+        for (size_t i = 4; i-- > 0;) value = value << 8 | uint8_t(bytes_[at + i]);
         value *= 2;
-        for (size_t i = 0; i < 4; ++i) bytes_[at + i] = static_cast<char>(value >> 8 * i & 0xff);
+        for (size_t i = 0; i < 4; ++i) bytes_[at + i] = char(value >> 8 * i & 0xff);
     }
     void exchange_number()
     {
@@ -180,11 +180,11 @@ std::vector<size_t> cuts_of(size_t length, size_t most)
 
 std::vector<std::string> nested(std::string_view seed)
 {
-    constexpr size_t MOST_VALUES = 16;
+    constexpr size_t MAX_VALUES = 16;
     constexpr size_t DEPTH = 50000;
     static const std::string deep = std::string(DEPTH, '[') + std::string(DEPTH, ']');
     std::vector<std::string> inputs;
-    for (size_t at = seed.find("\":"); at != std::string_view::npos && inputs.size() < MOST_VALUES;
+    for (size_t at = seed.find("\":"); at != std::string_view::npos && inputs.size() < MAX_VALUES;
          at = seed.find("\":", at + 2)) {
         inputs.push_back(std::string(seed.substr(0, at + 2)) + deep + ", \"x\":" + std::string(seed.substr(at + 2)));
     }

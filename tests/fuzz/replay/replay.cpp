@@ -2,7 +2,7 @@
 // AddressSanitizer and UndefinedBehaviorSanitizer:  shvr_fuzz_replay TARGET [FILE...]
 //
 // FILE...: only these, unchanged. A seed named "claims_..." claims to be far larger than it is: it must be refused
-// before more than MOST_BYTES_OF_A_CLAIM are allocated. --prove KIND proves that the replay finds such faults.
+// before more than MAX_BYTES_OF_A_CLAIM are allocated. --prove KIND proves that the replay finds such faults.
 
 #include <algorithm>
 #include <cstdio>
@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t MOST_CUTS = 4000;  ///< of all seeds together
-constexpr size_t MOST_NESTED = 48;
+constexpr size_t MAX_CUTS = 4000;  ///< of all seeds together
+constexpr size_t MAX_NESTED = 48;
 constexpr size_t CHANGED_INPUTS = 3000;
-constexpr int64_t MOST_BYTES_OF_A_CLAIM = int64_t{8} << 20;
+constexpr int64_t MAX_BYTES_OF_A_CLAIM = int64_t{8} << 20;
 /// It takes a hundredth of a second; sanitizers and busy machines are slow.
-constexpr double MOST_SECONDS_OF_A_CLAIM = 10.0;
+constexpr double MAX_SECONDS_OF_A_CLAIM = 10.0;
 
 struct Seed {
     std::string name, bytes;
@@ -87,13 +87,13 @@ bool replay(const Target& target, const std::vector<Seed>& seeds)
         const Watched watched = run(target, seed.name, seed.bytes, totals);
         accepted_seeds += last_outcome().was_accepted ? 1 : 0;
         if (!seed.name.starts_with("claims_")) continue;
-        const bool holds = !last_outcome().was_accepted && watched.peak_bytes <= MOST_BYTES_OF_A_CLAIM &&
-                           watched.seconds <= MOST_SECONDS_OF_A_CLAIM;
+        const bool holds = !last_outcome().was_accepted && watched.peak_bytes <= MAX_BYTES_OF_A_CLAIM &&
+                           watched.seconds <= MAX_SECONDS_OF_A_CLAIM;
         if (!holds) {
             std::fprintf(stderr, "%s: %s: %s with %lld bytes in %.3f s; expected a refusal with at most %lld bytes\n",
                          target.name, seed.name.c_str(), last_outcome().was_accepted ? "accepted" : "refused",
                          static_cast<long long>(watched.peak_bytes), watched.seconds,
-                         static_cast<long long>(MOST_BYTES_OF_A_CLAIM));
+                         static_cast<long long>(MAX_BYTES_OF_A_CLAIM));
         }
         claims_hold = claims_hold && holds;
         ++claims;
@@ -101,13 +101,13 @@ bool replay(const Target& target, const std::vector<Seed>& seeds)
         most_of_claims.seconds = std::max(most_of_claims.seconds, watched.seconds);
     }
     for (const Seed& seed : seeds) {
-        for (const size_t cut : cuts_of(seed.bytes.size(), MOST_CUTS / seeds.size())) {
+        for (const size_t cut : cuts_of(seed.bytes.size(), MAX_CUTS / seeds.size())) {
             run(target, seed.name + " cut to " + std::to_string(cut), seed.bytes.substr(0, cut), totals);
         }
     }
     size_t nested_inputs = 0;
     for (const Seed& seed : seeds) {
-        if (nested_inputs > MOST_NESTED) break;
+        if (nested_inputs > MAX_NESTED) break;
         for (const std::string& input : nested(seed.bytes)) {
             run(target, seed.name + " nested " + std::to_string(nested_inputs++), input, totals);
         }
@@ -118,11 +118,11 @@ bool replay(const Target& target, const std::vector<Seed>& seeds)
         run(target, seed.name + " change " + std::to_string(i), mutated(seed.bytes, other.bytes, i), totals);
     }
     std::printf("%s: %zu seeds, %zu inputs, %zu of them accepted; at most %.1f MiB (%s) and %.3f s each\n", target.name,
-                seeds.size(), totals.inputs, totals.accepted, static_cast<double>(totals.most.peak_bytes) / (1 << 20),
+                seeds.size(), totals.inputs, totals.accepted, double(totals.most.peak_bytes) / (1 << 20),
                 totals.most_of.c_str(), totals.most.seconds);
     if (claims > 0) {
         std::printf("%s: %zu seeds claim too much; each is refused within %.3f s, with at most %.1f KiB\n", target.name,
-                    claims, most_of_claims.seconds, static_cast<double>(most_of_claims.peak_bytes) / 1024);
+                    claims, most_of_claims.seconds, double(most_of_claims.peak_bytes) / 1024);
     }
     if (accepted_seeds == 0) std::fprintf(stderr, "%s: accepts none of its seeds; expected some\n", target.name);
     return accepted_seeds > 0 && claims_hold;
@@ -135,7 +135,7 @@ int prove(const std::string& kind)
     const Target target{"prove", [](const uint8_t* data, size_t size) {
                             if (what == "address") return data[size] == 1 ? 1 : 0;
                             volatile int largest = INT32_MAX;
-                            if (what == "undefined") return largest + static_cast<int>(size);
+                            if (what == "undefined") return largest + int(size);
                             if (what == "memory") return std::vector<char>(size_t{300} << 20).back() == 1 ? 1 : 0;
                             if (what == "exception") throw std::string("not an Error");
                             for (volatile uint64_t i = 0; what == "time";) i = i + 1;

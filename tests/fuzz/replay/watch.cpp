@@ -29,7 +29,7 @@ namespace shvr::fuzz {
 namespace {
 
 // Allocations come from any thread, and from before main.
-std::atomic<int64_t> live_bytes{0}, peak_bytes{0}, most_bytes{INT64_MAX};
+std::atomic<int64_t> live_bytes{0}, peak_bytes{0}, max_bytes{INT64_MAX};
 
 std::string watched_target, watched_name;  // NOLINT: read when the program ends
 std::span<const uint8_t> watched_input;
@@ -39,10 +39,10 @@ double seconds_before = 0.0;
 
 void on_malloc(const volatile void* /*memory*/, size_t bytes)
 {
-    const int64_t live = live_bytes.fetch_add(static_cast<int64_t>(bytes)) + static_cast<int64_t>(bytes);
+    const int64_t live = live_bytes.fetch_add(int64_t(bytes)) + int64_t(bytes);
     if (live > peak_bytes.load()) peak_bytes.store(live);
-    if (live > most_bytes.load()) {
-        most_bytes.store(INT64_MAX);
+    if (live > max_bytes.load()) {
+        max_bytes.store(INT64_MAX);
         std::fprintf(stderr, "FINDING: the input takes more than its share of memory, with %zu bytes at once\n", bytes);
         std::abort();
     }
@@ -51,14 +51,14 @@ void on_malloc(const volatile void* /*memory*/, size_t bytes)
 void on_free(const volatile void* memory)
 {
     if (memory == nullptr) return;
-    live_bytes.fetch_sub(static_cast<int64_t>(__sanitizer_get_allocated_size(memory)));
+    live_bytes.fetch_sub(int64_t(__sanitizer_get_allocated_size(memory)));
 }
 
 void keep_input()
 {
     if (!is_watching) return;
     is_watching = false;
-    most_bytes.store(INT64_MAX);
+    max_bytes.store(INT64_MAX);
     ::mkdir("build", 0777);
     ::mkdir("build/fuzz", 0777);
     const std::string path = "build/fuzz/finding-" + watched_target;
@@ -79,7 +79,7 @@ double processor_seconds()
 {
     timespec time{};
     ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 void set_timer(int seconds)
@@ -107,18 +107,18 @@ void begin_watch(const std::string& target, const std::string& input_name, std::
     watched_target = target;
     watched_name = input_name;
     watched_input = input;
-    set_timer(limits.most_seconds);
+    set_timer(limits.max_seconds);
     seconds_before = processor_seconds();
     bytes_before = live_bytes.load();
     peak_bytes.store(bytes_before);
-    most_bytes.store(bytes_before + limits.most_bytes);
+    max_bytes.store(bytes_before + limits.max_bytes);
     is_watching = true;
 }
 
 Watched end_watch()
 {
     is_watching = false;
-    most_bytes.store(INT64_MAX);
+    max_bytes.store(INT64_MAX);
     set_timer(0);
     return {peak_bytes.load() - bytes_before, processor_seconds() - seconds_before};
 }

@@ -10,8 +10,8 @@
 namespace shvr::fuzz {
 
 struct Limits {
-    int64_t most_bytes = int64_t{64} << 20;  ///< peak memory while one input is read
-    int most_seconds = 5;                    ///< of processor time
+    int64_t max_bytes = int64_t{64} << 20;  ///< peak memory while one input is read
+    int max_seconds = 5;                    ///< of processor time
 };
 
 /// Begins an input, which lasts until `end_watch`.

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t MOST_FILES = 64;
+constexpr size_t MAX_FILES = 64;
 constexpr size_t LONGEST_NAME = 64;
 
 bool is_inside(const std::string& name)
@@ -36,7 +36,7 @@ std::map<std::string, std::string> unpacked(std::span<const uint8_t> input)
     std::string name;
     // The mark may be at the very beginning, without a line end before it.
     bool is_first = true;
-    while (files.size() < MOST_FILES) {
+    while (files.size() < MAX_FILES) {
         size_t end = std::min(rest.size(), rest.find(FILE_MARK));
         size_t skip = FILE_MARK.size();
         if (is_first && rest.starts_with(FILE_MARK.substr(1))) {
@@ -82,7 +82,7 @@ fs::path InputFolder::write(const std::string& name, std::string_view content) c
     fs::create_directories((path_ / name).parent_path(), ignored);
     // A packed file may have the same name as the folder of another: then it is not written.
     std::ofstream file(path_ / name, std::ios::binary);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.write(content.data(), std::streamsize(content.size()));
     return path_ / name;
 }
 

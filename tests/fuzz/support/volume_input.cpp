@@ -12,10 +12,10 @@
 namespace shvr::fuzz {
 namespace {
 
-constexpr int64_t MOST_SIDE = int64_t{1} << 20;
+constexpr int64_t MAX_SIDE = int64_t{1} << 20;
 /// Larger volumes are read in a few places only.
-constexpr int64_t MOST_VOXELS_READ = int64_t{1} << 16;
-constexpr int MOST_LEVELS_READ = 4;
+constexpr int64_t MAX_VOXELS_READ = int64_t{1} << 16;
+constexpr int MAX_LEVELS_READ = 4;
 constexpr int64_t BOX_SIDE = 8;
 
 bool is_plain(const std::string& text)
@@ -29,13 +29,13 @@ bool is_plain(const std::string& text)
 /// Few enough voxels to go through; never overflows.
 bool is_small(const Size3& size)
 {
-    return size.x * size.y <= MOST_VOXELS_READ && size.x * size.y * size.z <= MOST_VOXELS_READ;
+    return size.x * size.y <= MAX_VOXELS_READ && size.x * size.y * size.z <= MAX_VOXELS_READ;
 }
 
 void check_info(const VolumeInfo& info)
 {
     for (int axis = 0; axis < 3; ++axis) {
-        expect(info.size[axis] >= 1 && info.size[axis] <= MOST_SIDE, sentence("a side of ", info.size[axis]));
+        expect(info.size[axis] >= 1 && info.size[axis] <= MAX_SIDE, sentence("a side of ", info.size[axis]));
         expect(info.spacing[axis] >= 1e-12 && info.spacing[axis] <= 1e12,
                sentence("a spacing of ", info.spacing[axis]));
         expect(is_finite(info.directions[axis]), "a direction that is not finite");
@@ -53,7 +53,7 @@ void check_info(const VolumeInfo& info)
 std::vector<std::byte> read(const VolumeSource& source, int level, const VoxelBox& box)
 {
     const Size3 size = box.size();
-    std::vector<std::byte> voxels(static_cast<size_t>(size.x * size.y * size.z) * bytes_of(source.info().type));
+    std::vector<std::byte> voxels(size_t(size.x * size.y * size.z) * bytes_of(source.info().type));
     source.read_level(level, box, voxels);
     return voxels;
 }
@@ -63,7 +63,7 @@ void check_part(const VolumeSource& source, const std::vector<std::byte>& whole,
 {
     const Size3 size = source.info().size;
     const std::vector<std::byte> part = read(source, 0, box);
-    const auto voxel_bytes = static_cast<int64_t>(bytes_of(source.info().type));
+    const auto voxel_bytes = int64_t(bytes_of(source.info().type));
     const int64_t row_bytes = box.size().x * voxel_bytes;
     auto row = part.begin();
     for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
@@ -109,7 +109,7 @@ void try_source(const VolumeSource& source)
     const std::string record = to_text(kept);
     expect(passes([&] { read_project_record(input_folder().write("record of the import", record)); }),
            "a record that cannot be read: " + last_outcome().refusal);
-    for (int level = 0; level < std::min(source.levels(), MOST_LEVELS_READ); ++level) try_level(source, level);
+    for (int level = 0; level < std::min(source.levels(), MAX_LEVELS_READ); ++level) try_level(source, level);
     if (is_small(source.info().size)) {
         passes([&] { warnings_of(measure(source)); });
     }

@@ -21,7 +21,7 @@ constexpr Color BLACK{}, WHITE{255, 255, 255}, RED{255, 0, 0}, GREEN{0, 255, 0},
 
 Color grey(int level)
 {
-    const auto value = static_cast<uint8_t>(level);
+    const auto value = uint8_t(level);
     return {value, value, value};
 }
 
@@ -46,7 +46,7 @@ Image8 noise(int width, int height, unsigned seed)
 {
     std::mt19937 random(seed);
     return painted(width, height, [&](int, int) {
-        const auto level = [&] { return static_cast<uint8_t>(random()); };
+        const auto level = [&] { return uint8_t(random()); };
         return Color{level(), level(), level()};
     });
 }
@@ -61,7 +61,7 @@ struct FlipAnchor {
 double ssim_by_definition(const Image8& a, const Image8& b)
 {
     const auto luma = [](const Image8& image, int x, int y) {
-        const uint8_t* const rgba = &image.rgba[4 * static_cast<size_t>(y * image.width + x)];
+        const uint8_t* const rgba = &image.rgba[4 * size_t(y * image.width + x)];
         return 0.2126 * rgba[0] + 0.7152 * rgba[1] + 0.0722 * rgba[2];
     };
     double total = 0.0;
@@ -170,7 +170,7 @@ TEST_CASE("SSIM agrees with its definition")
     const Image8 a = noise(24, 19, 4);
     Image8 b = a;
     std::mt19937 random(5);
-    for (uint8_t& value : b.rgba) value = static_cast<uint8_t>(std::clamp(value + int(random() % 61) - 30, 0, 255));
+    for (uint8_t& value : b.rgba) value = uint8_t(std::clamp(value + int(random() % 61) - 30, 0, 255));
     CHECK(compare(a, b).ssim == doctest::Approx(ssim_by_definition(a, b)).epsilon(1e-10));
     // Constant pictures: only the first factor is left.
     const double c1 = 6.5025;
@@ -236,7 +236,7 @@ TEST_CASE("99 % of the pixels, and no fewer, are at or below the 99th percentile
         const double p99 = compare(a, b).flip_p99;
         const std::vector<double> map = flip_map(a, b);
         const auto share = [&](auto is_counted) {
-            return static_cast<double>(std::ranges::count_if(map, is_counted)) / static_cast<double>(map.size());
+            return double(std::ranges::count_if(map, is_counted)) / double(map.size());
         };
         CHECK(share([&](double value) { return value <= p99; }) >= 0.99);
         CHECK(share([&](double value) { return value < p99; }) < 0.99);

@@ -28,7 +28,7 @@ std::vector<std::byte> png_of(png_uint_32 format, int width, int height, const v
     image.height = static_cast<png_uint_32>(height);
     image.format = format;
     image.colormap_entries = palette_entries;
-    std::vector<std::byte> file(4096 + 16 * static_cast<size_t>(width * height));
+    std::vector<std::byte> file(4096 + 16 * size_t(width * height));
     png_alloc_size_t bytes = file.size();
     REQUIRE(png_image_write_to_memory(&image, file.data(), &bytes, 0, pixels, 0, palette) != 0);
     file.resize(bytes);
@@ -37,19 +37,19 @@ std::vector<std::byte> png_of(png_uint_32 format, int width, int height, const v
 
 void append_number(std::vector<std::byte>& file, uint32_t number)
 {
-    for (const int shift : {24, 16, 8, 0}) file.push_back(static_cast<std::byte>(number >> shift));
+    for (const int shift : {24, 16, 8, 0}) file.push_back(std::byte(number >> shift));
 }
 
 void append_chunk(std::vector<std::byte>& file, const std::string& type, const std::string& data)
 {
-    append_number(file, static_cast<uint32_t>(data.size()));
+    append_number(file, uint32_t(data.size()));
     const std::string content = type + data;
     uint32_t crc = 0xffffffffu;
     for (const char c : content) {
-        crc ^= static_cast<uint8_t>(c);
+        crc ^= uint8_t(c);
         for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
     }
-    for (const char c : content) file.push_back(static_cast<std::byte>(c));
+    for (const char c : content) file.push_back(std::byte(c));
     append_number(file, ~crc);
 }
 
@@ -58,7 +58,7 @@ std::vector<std::byte> bare_png(uint32_t width, uint32_t height, char depth, cha
                                 const std::string& transparency = {})
 {
     std::vector<std::byte> file;
-    for (const char c : {'\x89', 'P', 'N', 'G', '\r', '\n', '\x1a', '\n'}) file.push_back(static_cast<std::byte>(c));
+    for (const char c : {'\x89', 'P', 'N', 'G', '\r', '\n', '\x1a', '\n'}) file.push_back(std::byte(c));
     std::vector<std::byte> sizes;
     append_number(sizes, width);
     append_number(sizes, height);
@@ -67,11 +67,11 @@ std::vector<std::byte> bare_png(uint32_t width, uint32_t height, char depth, cha
     if (!transparency.empty()) append_chunk(file, "tRNS", transparency);
     uint32_t a = 1, b = 0;
     for (const char c : rows) {
-        a = (a + static_cast<uint8_t>(c)) % 65521;
+        a = (a + uint8_t(c)) % 65521;
         b = (b + a) % 65521;
     }
-    const auto low = [](size_t number) { return static_cast<char>(number & 0xff); };
-    const auto high = [](size_t number) { return static_cast<char>(number >> 8 & 0xff); };
+    const auto low = [](size_t number) { return char(number & 0xff); };
+    const auto high = [](size_t number) { return char(number >> 8 & 0xff); };
     const std::string block{
         '\x78', '\x01', '\x01', low(rows.size()), high(rows.size()), low(~rows.size()), high(~rows.size())};
     append_chunk(file, "IDAT", block + rows + std::string{high(b), low(b), high(a), low(a)});
@@ -83,7 +83,7 @@ Image8 noise(int width, int height, unsigned seed)
 {
     std::mt19937 random(seed);
     Image8 image{width, height, {}};
-    for (int value = 0; value < 4 * width * height; ++value) image.rgba.push_back(static_cast<uint8_t>(random()));
+    for (int value = 0; value < 4 * width * height; ++value) image.rgba.push_back(uint8_t(random()));
     return image;
 }
 
@@ -131,8 +131,8 @@ TEST_CASE("decoding undoes encoding")
 TEST_CASE("256 greys come back from linear light as they were")
 {
     for (int level = 0; level < 256; ++level) {
-        const auto linear = static_cast<float>(srgb_decode(level / 255.0));
-        const auto grey = static_cast<uint8_t>(level);
+        const auto linear = float(srgb_decode(level / 255.0));
+        const auto grey = uint8_t(level);
         CHECK(bytes_of(linear, linear, linear, 1.0f) == std::vector<uint8_t>{grey, grey, grey, 255});
     }
 }
@@ -220,8 +220,8 @@ TEST_CASE("16-bit values without a word on light are sRGB and rounded to nearest
     for (int level = 0; level < 256; ++level) {
         // The outermost 16-bit values that are nearest to this level: 257 * level -+ 128.
         const int offset = level % 2 == 0 ? std::max(-128, -257 * level) : std::min(128, 257 * (255 - level));
-        row += static_cast<char>((257 * level + offset) >> 8);
-        row += static_cast<char>((257 * level + offset) & 0xff);
+        row += char((257 * level + offset) >> 8);
+        row += char((257 * level + offset) & 0xff);
     }
     const Image8 image = decode_png(bare_png(256, 1, 16, 0, row), "test");
     for (size_t level = 0; level < 256; ++level) CHECK(image.rgba[4 * level] == level);
@@ -243,10 +243,10 @@ TEST_CASE("a PNG file with changed bytes is read or refused, and nothing else")
     int refused = 0;
     for (int round = 0; round < 2000; ++round) {
         auto changed = file;
-        changed[random() % changed.size()] ^= static_cast<std::byte>(1u << random() % 8);
+        changed[random() % changed.size()] ^= std::byte(1u << random() % 8);
         try {
             const Image8 image = decode_png(changed, "changed");
-            CHECK(image.rgba.size() == 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+            CHECK(image.rgba.size() == 4 * size_t(image.width) * size_t(image.height));
         } catch (const Error&) {
             ++refused;
         }

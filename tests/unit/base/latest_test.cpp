@@ -45,12 +45,12 @@ TEST_CASE("between two threads values are whole, never go back, and the last one
     struct Value {
         std::array<uint64_t, 32> words{};
     };
-    constexpr uint64_t LEAST_TAKEN = 2'000;
+    constexpr uint64_t MIN_TAKEN = 2'000;
     Latest<Value> latest;
     std::atomic<uint64_t> taken{0}, last_published{0};
     std::thread writer([&] {
         uint64_t i = 0;
-        for (; i < 10 * LEAST_TAKEN || taken < LEAST_TAKEN; ++i) {
+        for (; i < 10 * MIN_TAKEN || taken < MIN_TAKEN; ++i) {
             latest.writing().words.fill(i + 1);
             latest.publish();
             if (i % 16 == 0) std::this_thread::yield();  // the two may share a core

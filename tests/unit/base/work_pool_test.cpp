@@ -17,7 +17,7 @@ TEST_CASE("every task of a batch runs once, and what one fails with is thrown")
     std::vector<std::atomic<int>> runs(1000);
     pool.run(1000, [&](int64_t task, int worker) {
         CHECK_UNARY(worker >= 0 && worker < pool.workers());
-        ++runs[static_cast<size_t>(task)];
+        ++runs[size_t(task)];
     });
     for (const auto& count : runs) REQUIRE(count == 1);
     pool.run(0, [](int64_t, int) { fail("not called"); });

@@ -24,7 +24,7 @@ template <class T>
 std::vector<T> random_voxels(const Size3& size, uint32_t seed)
 {
     std::mt19937 random(seed);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     for (T& voxel : voxels) {
         if constexpr (std::is_floating_point_v<T>) {
             voxel = random() % 20 == 0 ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(random() % 1000) / T{7};
@@ -38,7 +38,7 @@ std::vector<T> random_voxels(const Size3& size, uint32_t seed)
 uint16_t expected_code(double voxel, const IntensityWindow& window)
 {
     if (std::isnan(voxel)) return 0;
-    return static_cast<uint16_t>(std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, 65535.0));
+    return uint16_t(std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, 65535.0));
 }
 
 /// Builds with `threads` and compares every brick with one built voxel by voxel.
@@ -58,14 +58,14 @@ void check_against_brute_force(const Size3& size, VoxelType type, int threads)
         const auto code_at = [&](const Size3& texel) {
             const Size3 voxel =
                 glm::clamp(Size3(brick) * int64_t{gpu::BRICK_SIZE} + texel - int64_t{1}, Size3(0), size - int64_t{1});
-            return expected_code(voxels[static_cast<size_t>(voxel.x + size.x * (voxel.y + size.y * voxel.z))], window);
+            return expected_code(voxels[size_t(voxel.x + size.x * (voxel.y + size.y * voxel.z))], window);
         };
         const auto range_of = [&](const Size3& lower, const Size3& upper) {
             BrickTexels::Range range{65535, 0};
             for (int64_t z = lower.z; z < upper.z; ++z) {
                 for (int64_t y = lower.y; y < upper.y; ++y) {
                     for (int64_t x = lower.x; x < upper.x; ++x) {
-                        const uint16_t code = texels.codes[static_cast<size_t>(x + TEXELS * (y + TEXELS * z))];
+                        const uint16_t code = texels.codes[size_t(x + TEXELS * (y + TEXELS * z))];
                         range.minimum = std::min(range.minimum, code);
                         range.maximum = std::max(range.maximum, code);
                     }
@@ -82,7 +82,7 @@ void check_against_brute_force(const Size3& size, VoxelType type, int threads)
         for (int64_t cell = 0; cell < CELLS * CELLS * CELLS; ++cell) {
             const Size3 lower =
                 Size3(cell % CELLS, cell / CELLS % CELLS, cell / (CELLS * CELLS)) * int64_t{gpu::CELL_SIZE};
-            wrong_ranges += texels.cell_ranges[static_cast<size_t>(cell)] != range_of(lower, lower + int64_t{6});
+            wrong_ranges += texels.cell_ranges[size_t(cell)] != range_of(lower, lower + int64_t{6});
         }
         wrong_ranges += texels.range != range_of(Size3(0), Size3(TEXELS));
     });
@@ -95,7 +95,7 @@ void check_against_brute_force(const Size3& size, VoxelType type, int threads)
 class CountingSource : public VolumeSource {
 public:
     explicit CountingSource(const Size3& size, int64_t broken_slice = -1)
-        : VolumeSource(info_of(size)), reads(static_cast<size_t>(size.z)), broken_slice_(broken_slice)
+        : VolumeSource(info_of(size)), reads(size_t(size.z)), broken_slice_(broken_slice)
     {}
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
@@ -103,11 +103,10 @@ public:
         const std::lock_guard lock(mutex_);
         if (box.lower.z <= broken_slice_ && broken_slice_ < box.upper.z) fail("slice ", broken_slice_, " is broken");
         largest_read = std::max(largest_read, voxels.size());
-        const size_t slice_bytes = static_cast<size_t>(info().size.x * info().size.y);
+        const size_t slice_bytes = size_t(info().size.x * info().size.y);
         for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
-            ++reads[static_cast<size_t>(z)];
-            std::memset(voxels.data() + static_cast<size_t>(z - box.lower.z) * slice_bytes, static_cast<int>(z % 256),
-                        slice_bytes);
+            ++reads[size_t(z)];
+            std::memset(voxels.data() + size_t(z - box.lower.z) * slice_bytes, int(z % 256), slice_bytes);
             farthest_slice = std::max(farthest_slice, z);
         }
     }
@@ -177,8 +176,7 @@ TEST_CASE("codes are the rounded map of the window, clamped to it")
     const auto check = [&]<class T>(VoxelType type, T least, T most) {
         std::vector<T> voxels;
         for (int i = 0; i <= 500; ++i) {
-            voxels.push_back(static_cast<T>(static_cast<double>(least) +
-                                            (static_cast<double>(most) - static_cast<double>(least)) * i / 500.0));
+            voxels.push_back(static_cast<T>(double(least) + (double(most) - double(least)) * i / 500.0));
         }
         for (const IntensityWindow& window :
              {IntensityWindow{0.0, 257.0}, IntensityWindow{-128.0, 257.0}, IntensityWindow{10.0, 3.0},
@@ -226,7 +224,7 @@ TEST_CASE("every slice is read once, a few at a time and not far ahead")
         build_bricks(source, {0.0, 257.0}, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
             // At most the slab after those with rows waiting to be taken: threads + 2 rows, two per slab.
             CHECK(source.farthest() <= (brick.z + (threads + 2) / 2 + 2) * 32 + 32);
-            CHECK(texels.codes[static_cast<size_t>(TEXELS * TEXELS)] == 257 * (brick.z * 32 % 256));
+            CHECK(texels.codes[size_t(TEXELS * TEXELS)] == 257 * (brick.z * 32 % 256));
         });
         CHECK(source.reads == std::vector<int>(400, 1));
         CHECK(source.largest_read <= 40 * 33 * 34);

@@ -32,7 +32,7 @@ public:
             order_.push_back(brick);
         }
         if (brick == broken) fail("row.raw: brick ", brick, " is torn");
-        std::ranges::fill(voxels, static_cast<std::byte>(brick));
+        std::ranges::fill(voxels, std::byte(brick));
     }
     std::vector<int> order() const
     {

@@ -200,7 +200,7 @@ TEST_CASE("small components are left out, and all but the largest; the others ke
     const auto sizes = [&](int64_t fewest, int64_t most) {
         ComponentOptions options = options_of(6, 1);
         options.fewest_voxels = fewest;
-        options.most_components = most;
+        options.max_components = most;
         const auto components = find_components(source, options);
         const Components::Counts& counts = components->counts();
         CHECK(counts.found == 7);

@@ -138,10 +138,10 @@ TEST_CASE("a voxel does not shadow itself, and a radius below one voxel sees not
 
 TEST_CASE("looks cover the radius without gaps, within the bricks that are at hand")
 {
-    for (double radius = 0.1; radius <= OCCLUSION_MOST_RADIUS; radius += 0.37) {
+    for (double radius = 0.1; radius <= OCCLUSION_MAX_RADIUS; radius += 0.37) {
         CAPTURE(radius);
         const OcclusionTaps taps = occlusion_taps(radius);
-        CHECK(taps.taps.size() <= gpu::OCCLUSION_MOST_TAPS);
+        CHECK(taps.taps.size() <= gpu::OCCLUSION_MAX_TAPS);
         CHECK(taps.end[2] == taps.taps.size());
         double sum = taps.first;
         for (const gpu::OcclusionTap& tap : taps.taps) {

@@ -42,8 +42,8 @@ std::string noisy_bytes(size_t count)
     std::mt19937 random(1);  // seed 1
     std::string bytes(count, '\0');
     for (size_t i = 0; i < count; ++i) {
-        const auto bits = static_cast<unsigned>(random());
-        bytes[i] = bits % 3 == 0 && i > 30000 ? bytes[i - 30000 + bits % 7] : static_cast<char>(bits >> 28);
+        const auto bits = unsigned(random());
+        bytes[i] = bits % 3 == 0 && i > 30000 ? bytes[i - 30000 + bits % 7] : char(bits >> 28);
     }
     return bytes;
 }
@@ -75,9 +75,9 @@ TEST_CASE("any part of compressed bytes is what was compressed there, from sever
                                                       deflated(all.substr(third + 7), GZIP) + "left alone");
     for (const fs::path& path : {one, zlib, many}) {
         CAPTURE(path.filename().string());
-        const auto bytes = opened(path, static_cast<int64_t>(count) - 100, 100);
+        const auto bytes = opened(path, int64_t(count) - 100, 100);
         // Backwards first, while nothing is known of the file yet.
-        CHECK(read_from(*bytes, static_cast<int64_t>(count) - 300, 200) == all.substr(count - 200));
+        CHECK(read_from(*bytes, int64_t(count) - 300, 200) == all.substr(count - 200));
         CHECK(read_from(*bytes, 0, 1000) == all.substr(100, 1000));
         size_t wrong[3] = {};
         const auto check = [&](unsigned seed) {
@@ -85,8 +85,7 @@ TEST_CASE("any part of compressed bytes is what was compressed there, from sever
             for (int i = 0; i < 40; ++i) {
                 const size_t offset = random() % (count - 100);
                 const size_t length = std::min<size_t>(count - 100 - offset, random() % 100000);
-                wrong[seed] +=
-                    read_from(*bytes, static_cast<int64_t>(offset), length) != all.substr(100 + offset, length);
+                wrong[seed] += read_from(*bytes, int64_t(offset), length) != all.substr(100 + offset, length);
             }
         };
         {
@@ -108,7 +107,7 @@ TEST_CASE("compressed bytes that are damaged, cut short or too few are an error 
         const fs::path path = folder.write("a.gz", file);
         return error_of([&] {
             const auto bytes = opened(path, wanted);
-            read_from(*bytes, 0, static_cast<size_t>(wanted));
+            read_from(*bytes, 0, size_t(wanted));
         });
     };
     const std::string at = (folder.path / "a.gz").string();
@@ -119,7 +118,7 @@ TEST_CASE("compressed bytes that are damaged, cut short or too few are an error 
                    "is cut short: its compressed data ends after"));
     CHECK(contains(refusal_of(packed.substr(0, packed.size() - 1), 3000000), "is cut short"));
     std::string damaged = packed;
-    damaged[damaged.size() - 6] = static_cast<char>(damaged[damaged.size() - 6] ^ 1);
+    damaged[damaged.size() - 6] = char(damaged[damaged.size() - 6] ^ 1);
     CHECK(contains(refusal_of(damaged, 3000000), "is damaged after 3000000 decompressed bytes: incorrect data check"));
     const size_t sound = 2000000;
     const std::string first = deflated(all.substr(0, sound), GZIP);

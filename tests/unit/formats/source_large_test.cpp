@@ -33,7 +33,7 @@ std::string voxels_of_box(const VolumeSource& source, const VoxelBox& box)
 std::string little(uint64_t number, size_t bytes)
 {
     std::string text;
-    for (size_t i = 0; i < bytes; ++i) text += static_cast<char>(number >> 8 * i & 255);
+    for (size_t i = 0; i < bytes; ++i) text += char(number >> 8 * i & 255);
     return text;
 }
 

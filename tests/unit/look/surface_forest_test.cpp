@@ -94,8 +94,8 @@ struct Watched {
         for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
         sent_nodes = forest.nodes();
         sent_list = forest.list();
-        sent_nodes.resize(forest.most_nodes());
-        sent_list.resize(forest.most_surfaces());
+        sent_nodes.resize(forest.max_nodes());
+        sent_list.resize(forest.max_surfaces());
     }
 
     bool replace(const std::vector<uint64_t>& keys, const std::vector<KeyedSurface>& surfaces)
@@ -180,12 +180,12 @@ TEST_CASE("a leaf may lose all of its surfaces, and they may come again")
 TEST_CASE("what would cost as much as a new forest is left to one, and what is refused changes nothing")
 {
     Random random(73);  // seed 73
-    CHECK(!Watched(rods(2 * SurfaceForest::MOST_ADDED, random)).replace({}, rods(1, random)));
+    CHECK(!Watched(rods(2 * SurfaceForest::MAX_SURFACES_ADDED, random)).replace({}, rods(1, random)));
     CHECK(!Watched({}).replace({}, rods(1, random)));
 
     Watched watched(rods(5000, random));
     std::vector<KeyedSurface> many;
-    for (uint32_t i = 0; i <= SurfaceForest::MOST_ADDED; ++i)
+    for (uint32_t i = 0; i <= SurfaceForest::MAX_SURFACES_ADDED; ++i)
         many.push_back({surface_key(SurfaceKind::session, i), random.rod()});
     CHECK(!watched.replace({}, many));
     const KeyedSurface last = many.back();

@@ -43,7 +43,7 @@ SurfaceTree tree_of(const std::vector<SurfaceLook>& surfaces)
 }
 
 /// Checks that every surface is in one leaf and inside the boxes above it, and children inside their parent, in order.
-void check_tree(const SurfaceTree& tree, size_t most_in_leaf)
+void check_tree(const SurfaceTree& tree, size_t max_in_leaf)
 {
     REQUIRE(!tree.nodes.empty());
     size_t next_surface = 0, wrong = 0;
@@ -55,7 +55,7 @@ void check_tree(const SurfaceTree& tree, size_t most_in_leaf)
         const bool is_leaf = box.end > box.begin;
         CHECK((is_leaf ? box.skip == node + 1 : box.skip > node + 2));
         if (is_leaf) {
-            wrong += box.begin != next_surface || box.end - box.begin > most_in_leaf;
+            wrong += box.begin != next_surface || box.end - box.begin > max_in_leaf;
             next_surface = box.end;
             for (size_t i = box.begin; i < box.end; ++i) {
                 const gpu::Surface& surface = tree.list[i];
@@ -153,5 +153,5 @@ TEST_CASE("surfaces that cannot be drawn are refused with what is wrong about th
     CHECK(refusal({.radius_to = INFINITY}).starts_with("surface 1: a radius is inf; expected"));
     CHECK(refusal({.color = {0, NAN, 0}}).starts_with("surface 1: its colour is not finite"));
     CHECK(refusal({}) == "(accepted)");
-    CHECK_THROWS_AS(tree_of(std::vector<SurfaceLook>(MOST_SURFACES + 1)), Error);
+    CHECK_THROWS_AS(tree_of(std::vector<SurfaceLook>(MAX_SURFACES + 1)), Error);
 }

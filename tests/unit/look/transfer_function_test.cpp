@@ -144,11 +144,11 @@ TEST_CASE("a table starts and ends on the function's ends and holds corrected op
     const TransferFunction function({grey(-3.7, 0.25, 0.1), grey(91.3, 0.75, 1.0)});
     const std::vector<glm::vec4> table = bake_table(function, 0.25, 1000);
     REQUIRE(table.size() == 1000);
-    CHECK(table.front() == glm::vec4(0.25f, 0.25f, 0.25f, static_cast<float>(opacity_of_step(0.1, 0.25))));
+    CHECK(table.front() == glm::vec4(0.25f, 0.25f, 0.25f, float(opacity_of_step(0.1, 0.25))));
     CHECK(table.back() == glm::vec4(0.75f, 0.75f, 0.75f, 1.0f));
     for (uint32_t entry = 0; entry < 1000; ++entry) {
         const double exact = opacity_of_step(0.1 + 0.9 * entry / 999.0, 0.25);
-        CHECK(std::abs(static_cast<double>(table[entry].a) - exact) <= 1e-7 * exact);
+        CHECK(std::abs(double(table[entry].a) - exact) <= 1e-7 * exact);
     }
 }
 

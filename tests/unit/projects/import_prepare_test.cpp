@@ -37,7 +37,7 @@ struct Block {
     Size3 size{0};
     std::vector<double> values;
 
-    size_t index(int64_t x, int64_t y, int64_t z) const { return static_cast<size_t>(x + size.x * (y + size.y * z)); }
+    size_t index(int64_t x, int64_t y, int64_t z) const { return size_t(x + size.x * (y + size.y * z)); }
     double at(int64_t x, int64_t y, int64_t z) const
     {
         return values[index(std::clamp<int64_t>(x, 0, size.x - 1), std::clamp<int64_t>(y, 0, size.y - 1),
@@ -57,14 +57,14 @@ Block random_block(const Size3& size, uint32_t seed)
 {
     std::mt19937 numbers(seed);
     Block block{size, {}};
-    block.values.resize(static_cast<size_t>(size.x * size.y * size.z));
+    block.values.resize(size_t(size.x * size.y * size.z));
     for (double& value : block.values) {
-        const double share = static_cast<double>(numbers()) / 4294967296.0;
+        const double share = double(numbers()) / 4294967296.0;
         if constexpr (std::is_integral_v<T>) {
             using Limits = std::numeric_limits<T>;
             value = std::floor(double{Limits::min()} + share * (double{Limits::max()} - double{Limits::min()} + 1.0));
         } else {
-            value = static_cast<double>(static_cast<T>(share));
+            value = double(static_cast<T>(share));
         }
     }
     return block;
@@ -87,13 +87,13 @@ Block prepared(const VolumeSource& source, const PreparationOptions& options, in
     const Size3 size = preparation->info().size;
     if (slices == 0) slices = size.z;
     if (rows == 0) rows = size.y;
-    Block result{size, std::vector<double>(static_cast<size_t>(size.x * size.y * size.z))};
+    Block result{size, std::vector<double>(size_t(size.x * size.y * size.z))};
     WorkPool pool(threads);
     for (int64_t y = 0; y < size.y; y += rows) {
         for (int64_t z = 0; z < size.z; z += slices) {
             const Preparation::Slab slab{z, std::min(size.z, z + slices), y, std::min(size.y, y + rows)};
             const Size3 extent(size.x, slab.upper_row - slab.lower_row, slab.upper - slab.lower);
-            std::vector<T> voxels(static_cast<size_t>(extent.x * extent.y * extent.z));
+            std::vector<T> voxels(size_t(extent.x * extent.y * extent.z));
             preparation->read(slab, std::as_writable_bytes(std::span(voxels)), pool);
             const Block part{extent, {voxels.begin(), voxels.end()}};
             part.for_each([&](int64_t i, int64_t j, int64_t k) {
@@ -109,25 +109,24 @@ Block convolved(const Block& block, const glm::dvec3& sigma)
 {
     std::array<std::vector<double>, 3> weights;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto reach = static_cast<int64_t>(4.0 * sigma[axis] + 0.5);
+        const auto reach = int64_t(4.0 * sigma[axis] + 0.5);
         double sum = 0.0;
         for (int64_t k = -reach; k <= reach; ++k) {
-            const double distance = k == 0 ? 0.0 : static_cast<double>(k) / sigma[axis];
-            weights[static_cast<size_t>(axis)].push_back(std::exp(-0.5 * distance * distance));
-            sum += weights[static_cast<size_t>(axis)].back();
+            const double distance = k == 0 ? 0.0 : double(k) / sigma[axis];
+            weights[size_t(axis)].push_back(std::exp(-0.5 * distance * distance));
+            sum += weights[size_t(axis)].back();
         }
-        for (double& weight : weights[static_cast<size_t>(axis)]) weight /= sum;
+        for (double& weight : weights[size_t(axis)]) weight /= sum;
     }
-    const auto reach = [&](size_t axis) { return static_cast<int64_t>(weights[axis].size() / 2); };
+    const auto reach = [&](size_t axis) { return int64_t(weights[axis].size() / 2); };
     Block result = block;
     block.for_each([&](int64_t x, int64_t y, int64_t z) {
         double sum = 0.0;
         for (int64_t k = -reach(2); k <= reach(2); ++k)
             for (int64_t j = -reach(1); j <= reach(1); ++j)
                 for (int64_t i = -reach(0); i <= reach(0); ++i)
-                    sum += weights[0][static_cast<size_t>(i + reach(0))] *
-                           weights[1][static_cast<size_t>(j + reach(1))] *
-                           weights[2][static_cast<size_t>(k + reach(2))] * block.at(x + i, y + j, z + k);
+                    sum += weights[0][size_t(i + reach(0))] * weights[1][size_t(j + reach(1))] *
+                           weights[2][size_t(k + reach(2))] * block.at(x + i, y + j, z + k);
         result.values[block.index(x, y, z)] = sum;
     });
     return result;
@@ -167,13 +166,13 @@ TEST_CASE("blur: weights are a sampled Gaussian that sums to 1")
 {
     for (const double sigma : {0.3, 0.5, 1.0, 1.5, 2.0, 5.0, 100.0}) {
         const std::vector<double> weights = gaussian_weights(sigma);
-        REQUIRE(weights.size() == static_cast<size_t>(4.0 * sigma + 0.5) + 1);
+        REQUIRE(weights.size() == size_t(4.0 * sigma + 0.5) + 1);
         double sum = weights[0], variance = 0.0;
-        float sum_of_floats = static_cast<float>(weights[0]);
+        float sum_of_floats = float(weights[0]);
         for (size_t k = 1; k < weights.size(); ++k) {
             sum += 2.0 * weights[k];
-            sum_of_floats += 2.0f * static_cast<float>(weights[k]);
-            variance += 2.0 * weights[k] * static_cast<double>(k * k);
+            sum_of_floats += 2.0f * float(weights[k]);
+            variance += 2.0 * weights[k] * double(k * k);
         }
         CHECK(std::abs(sum - 1.0) < 1e-15);
         if (sigma <= 5.0) CHECK(std::abs(sum_of_floats - 1.0f) <= 1.3e-7f);
@@ -273,7 +272,7 @@ TEST_CASE("blur: slabs, bands, threads and blocks of the source do not matter, b
         const Block whole = prepared<uint16_t>(source_of<uint16_t>(block), options);
         for (const int64_t slices : {1, 2, 7}) {
             for (const int64_t rows : {0, 1, 5}) {
-                const int threads = 1 + static_cast<int>(rows);
+                const int threads = 1 + int(rows);
                 CHECK(prepared<uint16_t>(source_of<uint16_t>(block), options, slices, rows, threads).values ==
                       whole.values);
                 CHECK(prepared<uint16_t>(Blocked(source_of<uint16_t>(block)), options, slices, rows, threads).values ==

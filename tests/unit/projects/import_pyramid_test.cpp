@@ -23,10 +23,7 @@ template <class T>
 struct Block {
     Size3 size{0};
     std::vector<T> voxels;
-    const T& at(int64_t x, int64_t y, int64_t z) const
-    {
-        return voxels[static_cast<size_t>(x + size.x * (y + size.y * z))];
-    }
+    const T& at(int64_t x, int64_t y, int64_t z) const { return voxels[size_t(x + size.x * (y + size.y * z))]; }
 };
 
 template <class T>
@@ -35,7 +32,7 @@ Block<T> random_block(const Size3& size, uint32_t seed, double share_of_nan = 0.
     std::mt19937 numbers(seed);
     Block<T> block{size, {}};
     for (int64_t i = 0; i < size.x * size.y * size.z; ++i) {
-        const double share = static_cast<double>(numbers()) / 4294967296.0;
+        const double share = double(numbers()) / 4294967296.0;
         if constexpr (std::is_integral_v<T>) {
             using Limits = std::numeric_limits<T>;
             block.voxels.push_back(static_cast<T>(
@@ -55,8 +52,7 @@ void for_each_finite(const Block<T>& block, const Size3& lower, const Size3& upp
     for (int64_t z = std::max<int64_t>(0, lower.z); z < std::min(block.size.z, upper.z); ++z)
         for (int64_t y = std::max<int64_t>(0, lower.y); y < std::min(block.size.y, upper.y); ++y)
             for (int64_t x = std::max<int64_t>(0, lower.x); x < std::min(block.size.x, upper.x); ++x)
-                if (std::isfinite(static_cast<double>(block.at(x, y, z))))
-                    function(static_cast<double>(block.at(x, y, z)));
+                if (std::isfinite(double(block.at(x, y, z)))) function(double(block.at(x, y, z)));
 }
 
 template <class T>
@@ -84,9 +80,9 @@ void check_levels(const Block<T>& block, VoxelType type)
 {
     const auto pyramid = make_import_pyramid(block.size, type, 2);
     std::vector<Block<T>> levels{block};
-    while (static_cast<int>(levels.size()) < pyramid->levels()) levels.push_back(halved(levels.back()));
+    while (int(levels.size()) < pyramid->levels()) levels.push_back(halved(levels.back()));
     const auto expect_chunk = [&](int level, const Size3& chunk) {
-        const Block<T>& expected = levels[static_cast<size_t>(level)];
+        const Block<T>& expected = levels[size_t(level)];
         const std::span<const std::byte> bytes = pyramid->gather(level, chunk, 1);
         const auto* const found = reinterpret_cast<const T*>(bytes.data());
         REQUIRE(bytes.size() == 64 * 64 * 64 * sizeof(T));
@@ -94,19 +90,18 @@ void check_levels(const Block<T>& block, VoxelType type)
             const Size3 at = chunk * int64_t{64} + Size3(i % 64, i / 64 % 64, i / 4096);
             const bool is_inside = glm::all(glm::lessThan(at, expected.size));
             const T value = is_inside ? expected.at(at.x, at.y, at.z) : T{};
-            const bool is_equal =
-                found[i] == value || (value != value && found[i] != found[i]) ||
-                (!std::is_integral_v<T> && std::abs(static_cast<double>(found[i]) - static_cast<double>(value)) < 1e-7);
+            const bool is_equal = found[i] == value || (value != value && found[i] != found[i]) ||
+                                  (!std::is_integral_v<T> && std::abs(double(found[i]) - double(value)) < 1e-7);
             if (!is_equal) FAIL_CHECK("level ", level, " voxel ", at.x, " ", at.y, " ", at.z);
         }
     };
     const auto expect_layer = [&](int level, int64_t layer) {
-        const Size3 chunks = size_of_level(levels[static_cast<size_t>(level)].size, 6);
+        const Size3 chunks = size_of_level(levels[size_t(level)].size, 6);
         for (int64_t y = 0; y < chunks.y; ++y)
             for (int64_t x = 0; x < chunks.x; ++x) expect_chunk(level, {x, y, layer});
     };
 
-    const size_t row_bytes = static_cast<size_t>(block.size.x) * sizeof(T);
+    const size_t row_bytes = size_t(block.size.x) * sizeof(T);
     const Size3 chunks = size_of_level(block.size, 6);
     for (int64_t z = 0; z < chunks.z; ++z) {
         for (int64_t i = 0; i < chunks.x * chunks.y; ++i) {
@@ -115,7 +110,7 @@ void check_levels(const Block<T>& block, VoxelType type)
                           .extent = glm::min(Size3(64), block.size - origin),
                           .voxels = reinterpret_cast<const std::byte*>(&block.at(origin.x, origin.y, origin.z)),
                           .row_bytes = row_bytes,
-                          .slice_bytes = row_bytes * static_cast<size_t>(block.size.y)},
+                          .slice_bytes = row_bytes * size_t(block.size.y)},
                          0);
         }
         const int64_t slices = std::min(block.size.z, 64 * (z + 1));
@@ -130,8 +125,8 @@ void check_levels(const Block<T>& block, VoxelType type)
 
     for (int level = 0; level < pyramid->levels(); ++level) {
         const std::vector<std::byte> ranges = pyramid->ranges(level);
-        const Size3 bricks = size_of_level(levels[static_cast<size_t>(level)].size, 5);
-        REQUIRE(ranges.size() == static_cast<size_t>(bricks.x * bricks.y * bricks.z) * 2 * sizeof(T));
+        const Size3 bricks = size_of_level(levels[size_t(level)].size, 5);
+        REQUIRE(ranges.size() == size_t(bricks.x * bricks.y * bricks.z) * 2 * sizeof(T));
         for (int64_t i = 0; i < bricks.x * bricks.y * bricks.z; ++i) {
             const Size3 brick(i % bricks.x, i / bricks.x % bricks.y, i / bricks.x / bricks.y);
             const int64_t side = int64_t{1} << level;
@@ -142,7 +137,7 @@ void check_levels(const Block<T>& block, VoxelType type)
                                 expected.upper = std::max(expected.upper, value);
                             });
             const ValueRange found =
-                range_of(type, std::span(ranges).subspan(static_cast<size_t>(i) * 2 * sizeof(T), 2 * sizeof(T)));
+                range_of(type, std::span(ranges).subspan(size_t(i) * 2 * sizeof(T), 2 * sizeof(T)));
             if (expected.lower > expected.upper) {
                 CHECK(found.lower > found.upper);
             } else if (!(found == expected)) {
@@ -251,7 +246,7 @@ TEST_CASE("a state that was cut short or changed is refused")
     }
     for (size_t at = 0; at < whole.size() * 8; ++at) {
         std::string spoiled = whole;
-        spoiled[at / 8] = static_cast<char>(spoiled[at / 8] ^ static_cast<char>(1 << at % 8));
+        spoiled[at / 8] = char(spoiled[at / 8] ^ char(1 << at % 8));
         // A changed bit of the frame's header may mean the same; the result must still equal what was written.
         try {
             StateReader reader(folder.write("spoiled", spoiled));

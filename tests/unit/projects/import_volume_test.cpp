@@ -37,7 +37,7 @@ MemorySource noise(const Size3& size, VoxelType type, uint32_t seed)
         for (int64_t y = 0; y < size.y; ++y)
             for (int64_t x = 0; x < size.x; ++x) {
                 const bool is_empty = x < 64 && y < 64 && z >= 64;
-                voxels.push_back(is_empty ? T{0} : static_cast<T>(static_cast<int>(numbers() % 3000) - 500));
+                voxels.push_back(is_empty ? T{0} : static_cast<T>(int(numbers() % 3000) - 500));
             }
     MemorySource plain = memory_source<T>(size, type, voxels);
     VolumeInfo info = plain.info();
@@ -89,7 +89,7 @@ template <class T>
 std::vector<T> level_of(const VolumeSource& source, int level)
 {
     const Size3 size = size_of_level(source.info().size, level);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     source.read_level(level, {Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
     return voxels;
 }
@@ -124,8 +124,7 @@ TEST_CASE("a project holds the voxels of its source, and knows what else can be 
     CHECK_FALSE(report.was_resumed);
     CHECK_FALSE(fs::exists(folder.path / "project.part"));
     int64_t bytes = 0;
-    for (const auto& [name, content] : content_of(folder.path / "project"))
-        bytes += static_cast<int64_t>(content.size());
+    for (const auto& [name, content] : content_of(folder.path / "project")) bytes += int64_t(content.size());
     CHECK(report.bytes == bytes);
 
     const auto project = open_volume(folder.path / "project");
@@ -193,7 +192,7 @@ TEST_CASE("NaN, infinities and outliers survive a project, and are told of")
 {
     const Folder folder;
     std::vector<float> voxels(50 * 40 * 30);
-    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<float>(i % 97);
+    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = float(i % 97);
     voxels[7] = std::numeric_limits<float>::quiet_NaN();
     voxels[99] = std::numeric_limits<float>::infinity();
     folder.import(memory_source<float>({50, 40, 30}, VoxelType::float32, voxels));
@@ -409,7 +408,7 @@ TEST_CASE("one wrong bit in a stored chunk is found, the chunk is named, and the
     std::mt19937 numbers(10);
     for (int i = 0; i < 300; ++i) {
         std::string spoiled = whole;
-        spoiled[numbers() % whole.size()] ^= static_cast<char>(1 << numbers() % 8);
+        spoiled[numbers() % whole.size()] ^= char(1 << numbers() % 8);
         folder.write("project/0/0/0/1", spoiled);
         const auto project = open_volume(folder.path / "project");
         REQUIRE(error_of([&] { voxels_of<uint8_t>(*project); }) ==

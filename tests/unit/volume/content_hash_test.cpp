@@ -27,7 +27,7 @@ template <class T>
 MemorySource noise(VoxelType type, const Size3& size)
 {
     std::mt19937 numbers(11);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     for (T& voxel : voxels) voxel = static_cast<T>(numbers() % 1000);
     return memory_source(size, type, voxels);
 }

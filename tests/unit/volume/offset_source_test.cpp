@@ -26,7 +26,7 @@ template <class T>
 std::vector<T> level_of(const VolumeSource& source, int level)
 {
     const Size3 size = size_of_level(source.info().size, level);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     source.read_level(level, {Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
     return voxels;
 }
@@ -35,7 +35,7 @@ template <class T>
 std::vector<T> noise(const Size3& size, uint32_t seed)
 {
     std::mt19937 random(seed);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     for (T& voxel : voxels) voxel = static_cast<T>(random());
     return voxels;
 }
@@ -46,11 +46,8 @@ struct Field {
     Size3 size;
     std::vector<Offset> offsets;
 
-    explicit Field(const Size3& of_size) : size(of_size), offsets(static_cast<size_t>(size.x * size.y * size.z)) {}
-    Offset& at(const Size3& voxel)
-    {
-        return offsets[static_cast<size_t>(voxel.x + size.x * (voxel.y + size.y * voxel.z))];
-    }
+    explicit Field(const Size3& of_size) : size(of_size), offsets(size_t(size.x * size.y * size.z)) {}
+    Offset& at(const Size3& voxel) { return offsets[size_t(voxel.x + size.x * (voxel.y + size.y * voxel.z))]; }
     OffsetSource::Brick brick(const glm::ivec3& where)
     {
         auto brick = std::make_shared<OffsetBrick>(OffsetBrick{});
@@ -59,7 +56,7 @@ struct Field {
                 for (int64_t x = 0; x < SIDE; ++x) {
                     const Size3 voxel = SIDE * Size3(where) + Size3(x, y, z);
                     if (glm::all(glm::lessThan(voxel, size)))
-                        (*brick)[static_cast<size_t>(x + SIDE * (y + SIDE * z))] = std::bit_cast<uint32_t>(at(voxel));
+                        (*brick)[size_t(x + SIDE * (y + SIDE * z))] = std::bit_cast<uint32_t>(at(voxel));
                 }
         return {where, brick};
     }
@@ -72,7 +69,7 @@ struct Field {
                 HalvingRows<Offset> rows;
                 for (int64_t slice = 2 * z; slice < std::min(2 * z + 2, size.z); ++slice)
                     for (int64_t line = 2 * y; line < std::min(2 * y + 2, size.y); ++line)
-                        rows.first[static_cast<size_t>(rows.count++)] = &at({0, line, slice});
+                        rows.first[size_t(rows.count++)] = &at({0, line, slice});
                 halve_rows(rows, size.x, &above.at({0, y, z}));
             }
         *this = above;
@@ -145,8 +142,7 @@ void check_levels(VoxelType type, Offset most)
     for (int64_t z = box.lower.z; z < box.upper.z; ++z)
         for (int64_t y = box.lower.y; y < box.upper.y; ++y)
             for (int64_t x = box.lower.x; x < box.upper.x; ++x, ++index)
-                wrong += std::memcmp(&part[index], &whole[static_cast<size_t>(x + size.x * (y + size.y * z))],
-                                     sizeof(T)) != 0;
+                wrong += std::memcmp(&part[index], &whole[size_t(x + size.x * (y + size.y * z))], sizeof(T)) != 0;
     CHECK(wrong == 0);
     // Taken away again, nothing is left.
     for (OffsetSource::Brick& brick : bricks) brick.offsets = nullptr;
@@ -188,7 +184,7 @@ public:
             const Size3 lower = glm::max(side * brick - apron, Size3(0));
             const Size3 upper = glm::min(side * (brick + int64_t{1}) + apron, size);
             const VoxelBox box{lower, upper};
-            std::vector<uint8_t> voxels(static_cast<size_t>(box.size().x * box.size().y * box.size().z));
+            std::vector<uint8_t> voxels(size_t(box.size().x * box.size().y * box.size().z));
             source.read_level(below, box, std::as_writable_bytes(std::span(voxels)));
             for (const uint8_t voxel : voxels)
                 range = {std::min(range.lower, double(voxel)), std::max(range.upper, double(voxel))};
@@ -240,7 +236,7 @@ TEST_CASE("ranges hold every voxel with its offset, of all levels below and one 
 {
     const Size3 size(130, 70, 100);
     std::vector<uint8_t> voxels = noise<uint8_t>(size, 5);
-    for (uint8_t& voxel : voxels) voxel = static_cast<uint8_t>(100 + voxel / 8);
+    for (uint8_t& voxel : voxels) voxel = uint8_t(100 + voxel / 8);
     const auto base = std::make_shared<Known>(
         with_levels(std::make_shared<MemorySource>(memory_source(size, VoxelType::uint8, voxels)), 1 << 24));
     OffsetSource source(base);

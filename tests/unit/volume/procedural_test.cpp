@@ -78,12 +78,12 @@ TEST_CASE("gradients are the derivatives of the field")
     for (const std::string& kind : procedural_kinds()) {
         CAPTURE(kind);
         const ScalarField field = procedural_field(spec_of(kind, {30, 40, 50}));
-        CHECK(static_cast<bool>(field.gradient) == (kind != "speckles"));
+        CHECK(bool(field.gradient) == (kind != "speckles"));
         if (!field.gradient) continue;
         std::mt19937 random(5);  // seed 5
         int smooth = 0;
         for (int i = 0; i < 3000; ++i) {
-            const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+            const auto unit = [&] { return double(random()) / 4294967296.0; };
             const glm::dvec3 p = glm::dvec3(unit(), unit(), unit()) * glm::dvec3(30, 40, 50);
             const glm::dvec3 gradient = field.gradient(p);
             bool has_kink = false;
@@ -170,15 +170,15 @@ TEST_CASE("tubes are bright, few and in noise of 3 percent")
     const double mean = sum / dark;
     CHECK(mean == doctest::Approx(40.0).epsilon(0.02));
     CHECK(std::sqrt(squares / dark - mean * mean) == doctest::Approx(5.4).epsilon(0.1));
-    CHECK(bright > static_cast<int>(voxels.size()) / 100);
-    CHECK(dark > static_cast<int>(voxels.size()) / 2);
+    CHECK(bright > int(voxels.size()) / 100);
+    CHECK(dark > int(voxels.size()) / 2);
     for (int64_t z = 0; z < size.z; ++z) {
         const auto first = voxels.begin() + z * size.x * size.y;
         CHECK(*std::max_element(first, first + size.x * size.y) > 195);
     }
     CHECK(bytes_of_kind("tubes", size, 2) != voxels);
     for (const Size3& odd : {Size3(1), Size3(2, 1, 3), Size3(100, 7, 65)}) {
-        CHECK(bytes_of_kind("tubes", odd).size() == static_cast<size_t>(odd.x * odd.y * odd.z));
+        CHECK(bytes_of_kind("tubes", odd).size() == size_t(odd.x * odd.y * odd.z));
     }
 }
 

@@ -20,9 +20,9 @@ template <class T>
 std::vector<T> halved(const std::vector<std::vector<T>>& rows)
 {
     HalvingRows<T> from;
-    for (const std::vector<T>& row : rows) from.first[static_cast<size_t>(from.count++)] = row.data();
+    for (const std::vector<T>& row : rows) from.first[size_t(from.count++)] = row.data();
     std::vector<T> to((rows[0].size() + 1) / 2);
-    halve_rows(from, static_cast<int64_t>(rows[0].size()), to.data());
+    halve_rows(from, int64_t(rows[0].size()), to.data());
     return to;
 }
 
@@ -30,7 +30,7 @@ template <class T>
 std::shared_ptr<const VolumeSource> noise(VoxelType type, const Size3& size)
 {
     std::mt19937 numbers(5);
-    std::vector<T> voxels(static_cast<size_t>(size.x * size.y * size.z));
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
     for (T& voxel : voxels) voxel = static_cast<T>(numbers());
     if constexpr (std::is_floating_point_v<T>) {
         for (size_t i = 0; i < voxels.size(); i += 3) voxels[i] = std::numeric_limits<T>::quiet_NaN();
@@ -72,9 +72,9 @@ TEST_CASE("the most frequent label stays, of several one that is not 0, and of t
 {
     const auto label = [](const std::vector<std::vector<int16_t>>& rows) {
         HalvingRows<int16_t> from;
-        for (const auto& row : rows) from.first[static_cast<size_t>(from.count++)] = row.data();
+        for (const auto& row : rows) from.first[size_t(from.count++)] = row.data();
         std::vector<int16_t> to((rows[0].size() + 1) / 2);
-        halve_rows(from, static_cast<int64_t>(rows[0].size()), to.data(), Halving::label);
+        halve_rows(from, int64_t(rows[0].size()), to.data(), Halving::label);
         return to;
     };
     CHECK(label({{1, 9}, {9, 2}}) == std::vector<int16_t>{9});
@@ -100,7 +100,7 @@ TEST_CASE("levels made in memory are those of a project, bit for bit")
         REQUIRE(levels->levels() == project->levels());
         for (int level = 0; level < levels->levels(); ++level) {
             const VoxelBox all{Size3(0), size_of_level(size, level)};
-            std::vector<std::byte> ours(static_cast<size_t>(all.upper.x * all.upper.y * all.upper.z) *
+            std::vector<std::byte> ours(size_t(all.upper.x * all.upper.y * all.upper.z) *
                                         bytes_of(source->info().type));
             std::vector<std::byte> theirs(ours.size());
             levels->read_level(level, all, ours);

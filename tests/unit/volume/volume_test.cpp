@@ -15,7 +15,7 @@ namespace {
 
 uint32_t code(const IntensityWindow& window, double intensity)
 {
-    return static_cast<uint32_t>(std::lround(window.code_of(intensity)));
+    return uint32_t(std::lround(window.code_of(intensity)));
 }
 
 VolumeInfo info_of_size(const Size3& size)
@@ -125,12 +125,12 @@ TEST_CASE("measuring agrees with counting by hand, for every type")
     const auto check = [&]<class T>(VoxelType type, T first, T step) {
         std::vector<T> voxels(105);
         for (size_t i = 0; i < voxels.size(); ++i)
-            voxels[i] = static_cast<T>(static_cast<double>(first) + double(i * 37 % 105) * static_cast<double>(step));
+            voxels[i] = static_cast<T>(double(first) + double(i * 37 % 105) * double(step));
         const VolumeStatistics found = measure(memory_source(size, type, voxels));
-        const double maximum = static_cast<double>(first) + 104.0 * static_cast<double>(step);
-        CHECK(found.minimum == static_cast<double>(first));
+        const double maximum = double(first) + 104.0 * double(step);
+        CHECK(found.minimum == double(first));
         CHECK(found.maximum == maximum);
-        CHECK(found.mean == doctest::Approx(0.5 * (static_cast<double>(first) + maximum)));
+        CHECK(found.mean == doctest::Approx(0.5 * (double(first) + maximum)));
         CHECK(found.not_finite == 0);
         REQUIRE(found.histogram.size() == 256);
         CHECK(std::accumulate(found.histogram.begin(), found.histogram.end(), int64_t{0}) == 105);
@@ -178,7 +178,7 @@ TEST_CASE("one outlier of 1e30 takes neither precision nor the histogram from th
 {
     const Size3 size(64, 64, 64);
     std::vector<float> voxels(64 * 64 * 64);
-    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<float>(i % 4096) - 1024.0f;
+    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = float(i % 4096) - 1024.0f;
     const VolumeStatistics plain = measure(memory_source(size, VoxelType::float32, voxels));
     CHECK_FALSE(plain.bulk.has_value());
     CHECK(plain.range() == ValueRange{-1024.0, 3071.0});
@@ -211,7 +211,7 @@ TEST_CASE("what is rare but all there is to see is no outlier")
     const VolumeStatistics found = measure(memory_source({100, 100, 100}, VoxelType::float64, voxels));
     CHECK(found.range() == ValueRange{-5.0, 1e6});
     std::vector<int32_t> labels(1000000);
-    for (size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<int32_t>(i % 7);
+    for (size_t i = 0; i < labels.size(); ++i) labels[i] = int32_t(i % 7);
     labels[500] = 65000;  // all codes are exact: nothing is gained by leaving it out
     CHECK(measure(memory_source({100, 100, 100}, VoxelType::int32, labels)).range().upper == 65000.0);
     labels[500] = -2147483647;
@@ -254,7 +254,7 @@ TEST_CASE("measuring reads at most 32 MiB at a time, also where one slice is lar
         {
             largest = std::max(largest, voxels.size());
             total += voxels.size();
-            CHECK(box.size().x * box.size().y * box.size().z == static_cast<int64_t>(voxels.size()));
+            CHECK(box.size().x * box.size().y * box.size().z == int64_t(voxels.size()));
             std::memset(voxels.data(), 1, voxels.size());
         }
         static VolumeInfo wide_info()
@@ -281,7 +281,7 @@ TEST_CASE("of a volume too large to go through, a coarser level is measured and 
         int levels() const override { return 2; }
         void read_level(int level, const VoxelBox&, std::span<std::byte> voxels) const override
         {
-            const auto value = static_cast<uint16_t>(level == 0 ? 7 : 9);
+            const auto value = uint16_t(level == 0 ? 7 : 9);
             for (size_t i = 0; i < voxels.size(); i += 2) std::memcpy(&voxels[i], &value, 2);
         }
         static VolumeInfo info_of(int64_t side)
@@ -297,7 +297,7 @@ TEST_CASE("of a volume too large to go through, a coarser level is measured and 
     CHECK(fits.mean == 7.0);
     CHECK(window_for(VoxelType::uint16, fits).lower == 7.0);
 
-    static_assert(2 * ((int64_t{1} << 13) + 2) * ((int64_t{1} << 13) + 2) > MOST_MEASURED);
+    static_assert(2 * ((int64_t{1} << 13) + 2) * ((int64_t{1} << 13) + 2) > MAX_VOXELS_MEASURED);
     const VolumeStatistics large = measure(Levels((int64_t{1} << 13) + 2));
     CHECK(large.measured_level == 1);
     CHECK(large.mean == 9.0);

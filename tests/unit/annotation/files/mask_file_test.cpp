@@ -22,8 +22,7 @@ std::string random_groups(const Size3& size, uint32_t seed)
     std::mt19937 random(seed);
     const auto count = size_t(size.x * size.y * size.z);
     std::string groups;
-    while (groups.size() < count)
-        groups.append(1 + random() % 50, random() % 2 == 0 ? '\0' : static_cast<char>(random() % 256));
+    while (groups.size() < count) groups.append(1 + random() % 50, random() % 2 == 0 ? '\0' : char(random() % 256));
     groups.resize(count);
     return groups;
 }
@@ -41,8 +40,7 @@ int64_t differing(const Mask& mask, const std::string& groups)
     size_t index = 0;
     for (int64_t z = 0; z < mask.size().z; ++z)
         for (int64_t y = 0; y < mask.size().y; ++y)
-            for (int64_t x = 0; x < mask.size().x; ++x)
-                wrong += mask.at({x, y, z}) != static_cast<uint8_t>(groups[index++]);
+            for (int64_t x = 0; x < mask.size().x; ++x) wrong += mask.at({x, y, z}) != uint8_t(groups[index++]);
     return wrong;
 }
 

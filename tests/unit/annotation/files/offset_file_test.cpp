@@ -41,7 +41,7 @@ void check_file(VoxelType type, double most)
                 for (int64_t x = 0; x < size.x; ++x, ++index) {
                     Offset offset{};
                     std::memcpy(&offset, content.data() + index * sizeof(Offset), sizeof(Offset));
-                    wrong += field.at({x, y, z}) != static_cast<double>(offset);
+                    wrong += field.at({x, y, z}) != double(offset);
                 }
         CHECK(wrong == 0);
         save_offsets(folder.path / "b.offset", field);

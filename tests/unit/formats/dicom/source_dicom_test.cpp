@@ -28,13 +28,13 @@ constexpr const char* EXPLICIT_BIG = "1.2.840.10008.1.2.2";
 /// The phantom's voxel at x, y, z.
 int phantom(int64_t x, int64_t y, int64_t z)
 {
-    return static_cast<int>(x + 10 * y + 100 * z - 99);
+    return int(x + 10 * y + 100 * z - 99);
 }
 
 std::string little(uint64_t number, size_t bytes)
 {
     std::string text;
-    for (size_t i = 0; i < bytes; ++i) text += static_cast<char>(number >> (8 * i) & 255);
+    for (size_t i = 0; i < bytes; ++i) text += char(number >> (8 * i) & 255);
     return text;
 }
 
@@ -124,7 +124,7 @@ Dicom image_of(int64_t z)
     dicom.number(0x00280002, 1).text(0x00280004, "CS", "MONOCHROME2").number(0x00280010, 4).number(0x00280011, 5);
     dicom.number(0x00280100, 16).number(0x00280101, 16).number(0x00280102, 15).number(0x00280103, 1);
     std::string pixels;
-    for (int64_t i = 0; i < 20; ++i) pixels += little(static_cast<uint16_t>(phantom(i % 5, i / 5, z)), 2);
+    for (int64_t i = 0; i < 20; ++i) pixels += little(uint16_t(phantom(i % 5, i / 5, z)), 2);
     dicom.elements[PIXELS] = {"OW", pixels};
     return dicom;
 }
@@ -133,7 +133,7 @@ Dicom image_of(int64_t z)
 Dicom slice_of(int64_t z)
 {
     Dicom dicom = image_of(z);
-    dicom.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * static_cast<double>(z)));
+    dicom.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * double(z)));
     dicom.text(ORIENTATION, "DS", "1\\0\\0\\0\\1\\0").text(SPACING, "DS", "0.5\\0.5");
     return dicom;
 }
@@ -156,7 +156,7 @@ std::string refusal(const fs::path& path, const OpenOptions& options = {})
 {
     return error_of([&] {
         const auto source = open_volume(path, options);
-        std::vector<std::byte> voxels(static_cast<size_t>(voxel_count(source->info())) * bytes_of(source->info().type));
+        std::vector<std::byte> voxels(size_t(voxel_count(source->info())) * bytes_of(source->info().type));
         source->read({Size3(0), source->info().size}, voxels);
     });
 }
@@ -201,7 +201,7 @@ TEST_CASE("wherever the axes of DICOM slices run, every voxel stays at its place
         const glm::dvec3 normal = glm::cross(flat->info().directions[0], flat->info().directions[1]);
         for (const double sign : {1.0, -1.0}) {
             for (size_t z = 0; z < 3; ++z) {
-                const glm::dvec3 p = glm::dvec3(10, 20, 30) + sign * 1.25 * static_cast<double>(z) * normal;
+                const glm::dvec3 p = glm::dvec3(10, 20, 30) + sign * 1.25 * double(z) * normal;
                 slices[z].text(POSITION, "DS", sentence(p.x, "\\", p.y, "\\", p.z));
             }
             const auto source = open_volume(folder_of(folder, slices));
@@ -217,7 +217,7 @@ TEST_CASE("wherever the axes of DICOM slices run, every voxel stays at its place
                 const int64_t z = std::llround(sign * glm::dot(away, normal) / 1.25);
                 const int64_t x = std::llround(glm::dot(away, flat->info().directions[0]) / 0.5);
                 const int64_t y = std::llround(glm::dot(away, flat->info().directions[1]) / 0.5);
-                wrong += voxels[static_cast<size_t>(i)] != phantom(x, y, z);
+                wrong += voxels[size_t(i)] != phantom(x, y, z);
             }
             CHECK(wrong == 0);
         }
@@ -231,7 +231,7 @@ TEST_CASE("compressed DICOM slices equal the ones they were made of")
     for (Dicom& slice : slices) {  // GDCM's own JPEG 2000 encoder crashes on tiny images
         slice.number(0x00280010, 64).number(0x00280011, 96);
         std::string pixels;
-        for (int i = 0; i < 64 * 96; ++i) pixels += little(static_cast<uint16_t>(i * i % 1999 - 500), 2);
+        for (int i = 0; i < 64 * 96; ++i) pixels += little(uint16_t(i * i % 1999 - 500), 2);
         slice.elements[PIXELS].bytes = pixels;
     }
     folder_of(plain, slices);
@@ -239,7 +239,7 @@ TEST_CASE("compressed DICOM slices equal the ones they were made of")
     for (const gdcm::TransferSyntax::TSType syntax :
          {gdcm::TransferSyntax::JPEGLosslessProcess14_1, gdcm::TransferSyntax::JPEG2000Lossless,
           gdcm::TransferSyntax::JPEGLSLossless, gdcm::TransferSyntax::RLELossless}) {
-        CAPTURE(static_cast<int>(syntax));
+        CAPTURE(int(syntax));
         const TemporaryFolder folder;
         for (const char* name : {"dicom_0", "dicom_1", "dicom_2"}) {
             gdcm::ImageReader reader;
@@ -315,7 +315,7 @@ TEST_CASE("missing, doubled and odd DICOM slices are told")
             times.push_back(slice_of(z));
             times.back().text(0x00080018, "UI", sentence("1.", time, ".", z));
             times.back().text(0x00200013, "IS", sentence(100 - 10 * time - z)).text(0x00200100, "IS", sentence(time));
-            times.back().elements[PIXELS].bytes[0] = static_cast<char>(time);
+            times.back().elements[PIXELS].bytes[0] = char(time);
         }
     }
     const TemporaryFolder moving;
@@ -384,7 +384,7 @@ TEST_CASE("a DICOM file of many frames is a volume, in the order of their places
     for (const int64_t z : {1, 2, 0}) {
         pixels += image_of(z).elements[PIXELS].bytes;
         Dicom place;
-        place.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * static_cast<double>(z)));
+        place.text(POSITION, "DS", sentence("10\\20\\", 30.0 + 1.25 * double(z)));
         frames.push_back(Dicom().sequence(0x00209113, {place}));
     }
     file.elements[PIXELS].bytes = pixels;

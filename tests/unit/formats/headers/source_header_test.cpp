@@ -264,12 +264,10 @@ TEST_CASE("one channel, or one point in time, is taken from voxels that have sev
 {
     const Folder folder;
     std::string mixed;
-    for (int i = 0; i < 60; ++i) mixed += {static_cast<char>(i), static_cast<char>(i + 60), static_cast<char>(i + 120)};
+    for (int i = 0; i < 60; ++i) mixed += {char(i), char(i + 60), char(i + 120)};
     folder.write("a.voxels", mixed);
     const auto first_of = [](const VolumeSource& source) { return voxels_in<uint8_t>(source, {{1, 2, 1}, {3, 3, 2}}); };
-    const auto expected = [](int add) {
-        return std::vector<uint8_t>{static_cast<uint8_t>(31 + add), static_cast<uint8_t>(32 + add)};
-    };
+    const auto expected = [](int add) { return std::vector<uint8_t>{uint8_t(31 + add), uint8_t(32 + add)}; };
     const std::string colors =
         with_line(with_line(with_line(NHDR, "sizes:", "sizes: 3 5 4 3\nkinds: RGB-color domain domain domain"),
                             "dimension:", "dimension: 4"),
@@ -285,7 +283,7 @@ TEST_CASE("one channel, or one point in time, is taken from voxels that have sev
     CHECK(first_of(*open_volume(mhd, {.channel = "blue"})) == expected(120));
 
     std::string in_turn;
-    for (int i = 0; i < 180; ++i) in_turn += static_cast<char>(i);
+    for (int i = 0; i < 180; ++i) in_turn += char(i);
     folder.write("a.voxels", in_turn);
     const std::string times = with_line(with_line(NHDR, "sizes:", "sizes: 5 4 3 3"), "dimension:", "dimension: 4");
     const fs::path moving =
@@ -435,7 +433,7 @@ TEST_CASE("headers of noise are refused, with nothing but printable characters i
         std::string noise = i % 3 == 0 ? "NRRD0005\n" : i % 3 == 1 ? "NDims = 3\n" : "Resolution: 5 4 3\n";
         for (int j = 0; j < 200; ++j) {
             state = state * 1664525u + 1013904223u;
-            noise += j % 7 == 0 ? ":= \n"[state >> 30] : static_cast<char>(state >> 24);
+            noise += j % 7 == 0 ? ":= \n"[state >> 30] : char(state >> 24);
         }
         const std::string said = refusal(folder.write("noise.dat", noise));
         REQUIRE(!said.empty());

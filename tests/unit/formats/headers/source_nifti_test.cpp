@@ -167,12 +167,12 @@ TEST_CASE("the type of rescaled voxels holds every intensity that can be stored"
     CHECK(rescaled_type(VoxelType::int32, {1.0, 0.0}) == VoxelType::int32);
 
     std::vector<uint8_t> stored(3000);
-    for (size_t i = 0; i < stored.size(); ++i) stored[i] = static_cast<uint8_t>(i * 7);
+    for (size_t i = 0; i < stored.size(); ++i) stored[i] = uint8_t(i * 7);
     const auto source = rescaled(std::make_unique<MemorySource>(memory_source({3000, 1, 1}, VoxelType::uint8, stored)),
                                  {.slope = 0.5, .intercept = 1.0});
     const std::vector<float> found = voxels_of<float>(*source);
     size_t wrong = 0;
-    for (size_t i = 0; i < stored.size(); ++i) wrong += found[i] != 0.5f * static_cast<float>(stored[i]) + 1.0f;
+    for (size_t i = 0; i < stored.size(); ++i) wrong += found[i] != 0.5f * float(stored[i]) + 1.0f;
     CHECK(wrong == 0);
 }
 
@@ -206,7 +206,7 @@ TEST_CASE("spacing, unit and axes of a NIfTI are those it states, and what it le
 TEST_CASE("one point in time, component or colour of a NIfTI is chosen in words")
 {
     std::string bytes;
-    for (int i = 0; i < 180; ++i) bytes += static_cast<char>(i);
+    for (int i = 0; i < 180; ++i) bytes += char(i);
     const auto second = [](const VolumeSource& source) { return voxels_of<uint8_t>(source)[1]; };
     Nifti moving;
     moving.datatype(2).dim({4, 5, 4, 3, 3}).voxels(bytes);

@@ -31,7 +31,7 @@ Sample<T> sample_of(size_t count, bool big_endian)
     Sample<T> sample;
     std::mt19937 random(1);  // seed 1
     for (size_t i = 0; i < count; ++i) {
-        const auto bits = static_cast<uint32_t>(random());
+        const auto bits = uint32_t(random());
         T voxel;
         if constexpr (std::is_floating_point_v<T>) {
             voxel = static_cast<T>(bits) / T{1000} - T{5e5};
@@ -55,7 +55,7 @@ std::string refusal(const fs::path& path)
 std::string marked_bytes()
 {
     std::string bytes;
-    for (int i = 0; i < 60; ++i) bytes += static_cast<char>(i + 1);
+    for (int i = 0; i < 60; ++i) bytes += char(i + 1);
     return bytes;
 }
 
@@ -78,8 +78,7 @@ TEST_CASE("every type and byte order comes back from a raw file as it was writte
         for (const bool big_endian : {false, true}) {
             for (const int64_t offset : {0, 13}) {
                 const Sample<T> sample = sample_of<T>(105, big_endian);
-                const fs::path path =
-                    folder.write("a.raw", std::string(static_cast<size_t>(offset), '?') + sample.file);
+                const fs::path path = folder.write("a.raw", std::string(size_t(offset), '?') + sample.file);
                 const auto source = open_raw(path, {{7, 5, 3}, type, big_endian, offset});
                 CHECK(source->info().type == type);
                 CHECK(source->info().format == "raw");
@@ -110,18 +109,17 @@ TEST_CASE("any box of a raw file is what the whole holds there, from several thr
         for (int i = 0; i < 200; ++i) {
             VoxelBox box;
             for (int axis = 0; axis < 3; ++axis) {
-                const auto side = static_cast<unsigned>(size[axis]);
+                const auto side = unsigned(size[axis]);
                 const bool whole = random() % 3 == 0;
                 box.lower[axis] = whole ? 0 : random() % side;
-                box.upper[axis] =
-                    whole ? side : box.lower[axis] + 1 + random() % (side - static_cast<unsigned>(box.lower[axis]));
+                box.upper[axis] = whole ? side : box.lower[axis] + 1 + random() % (side - unsigned(box.lower[axis]));
             }
             const std::vector<uint16_t> found = voxels_in<uint16_t>(*source, box);
             size_t at = 0;
             for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
                 for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
                     for (int64_t x = box.lower.x; x < box.upper.x; ++x) {
-                        wrong += found[at++] != sample.voxels[static_cast<size_t>(x + size.x * (y + size.y * z))];
+                        wrong += found[at++] != sample.voxels[size_t(x + size.x * (y + size.y * z))];
                     }
                 }
             }
@@ -274,8 +272,8 @@ TEST_CASE("where nobody states the byte order, what neighbours suggest is said, 
     std::string big;
     for (int i = 0; i < 40 * 30 * 20; ++i) {
         const int voxel = 1000 + 7 * (i % 40) + 3 * (i / 40 % 30);
-        little += {static_cast<char>(voxel % 256), static_cast<char>(voxel / 256)};
-        big += {static_cast<char>(voxel / 256), static_cast<char>(voxel % 256)};
+        little += {char(voxel % 256), char(voxel / 256)};
+        big += {char(voxel / 256), char(voxel % 256)};
     }
     const RawLayout layout{{40, 30, 20}, VoxelType::uint16};
     const auto plain = open_raw(folder.write("a.raw", little), layout);

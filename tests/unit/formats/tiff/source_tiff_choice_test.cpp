@@ -27,7 +27,7 @@ std::vector<uint16_t> ramp(size_t entries, double scale)
 {
     std::vector<uint16_t> palette;
     for (int color = 0; color < 3; ++color) {
-        for (size_t i = 0; i < entries; ++i) palette.push_back(static_cast<uint16_t>(scale * static_cast<double>(i)));
+        for (size_t i = 0; i < entries; ++i) palette.push_back(uint16_t(scale * double(i)));
     }
     return palette;
 }
@@ -93,7 +93,7 @@ TEST_CASE("a palette is read by its numbers or by its colours, and a grey one ne
     write_tiff(path, spec, {std::string("\0\1\xff", 3)});
     CHECK(voxels_for(path, "") == std::vector<uint8_t>{0, 1, 255});
 
-    for (size_t i = 0; i < 256; ++i) spec.palette[i] = static_cast<uint16_t>(257 * (255 - i));  // red falls
+    for (size_t i = 0; i < 256; ++i) spec.palette[i] = uint16_t(257 * (255 - i));  // red falls
     write_tiff(path, spec, {std::string("\0\1\xff", 3)});
     CHECK(refusal(path) ==
           ": has 4 channels (index, red, green, blue); expected one: choose with --channel index, red, green or blue");

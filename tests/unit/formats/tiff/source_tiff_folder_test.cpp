@@ -25,7 +25,7 @@ public:
         std::string order;
         const auto source = open_volume(path);
         for (int64_t z = 0; z < source->info().size.z; ++z) {
-            order += static_cast<char>(voxels_in<uint8_t>(*source, {{0, 0, z}, {1, 1, z + 1}})[0]);
+            order += char(voxels_in<uint8_t>(*source, {{0, 0, z}, {1, 1, z + 1}})[0]);
         }
         return order;
     }
@@ -195,7 +195,7 @@ TEST_CASE("a folder of one TIFF is that TIFF, and one without TIFFs is no volume
 TEST_CASE("a folder of many slices keeps few files open")
 {
     const Slices slices;
-    for (int i = 0; i < 2000; ++i) slices.add(sentence("s", i, ".tif"), static_cast<char>(i % 256));
+    for (int i = 0; i < 2000; ++i) slices.add(sentence("s", i, ".tif"), char(i % 256));
     const auto open_files = [] {
         return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
     };

@@ -64,7 +64,7 @@ public:
 
     void add(uint64_t number, size_t bytes)
     {
-        for (size_t i = 0; i < bytes; ++i) bytes_ += static_cast<char>(number >> 8 * i);
+        for (size_t i = 0; i < bytes; ++i) bytes_ += char(number >> 8 * i);
     }
     void directory(const std::vector<Field>& fields, uint32_t next)
     {
@@ -77,7 +77,7 @@ public:
         }
         add(next, 4);
     }
-    uint32_t size() const { return static_cast<uint32_t>(bytes_.size()); }
+    uint32_t size() const { return uint32_t(bytes_.size()); }
     const std::string& bytes() const { return bytes_; }
 
 private:
@@ -113,7 +113,7 @@ public:
     std::string refusal(const Fields& changes) const
     {
         HandMade tiff(72);
-        for (int i = 0; i < 64; ++i) tiff.add(static_cast<uint64_t>(i), 1);
+        for (int i = 0; i < 64; ++i) tiff.add(uint64_t(i), 1);
         tiff.directory(with(page_fields(), changes), 0);
         return refusal_of(tiff.bytes() + std::string(1024 - tiff.size(), '\0'));
     }
@@ -123,8 +123,7 @@ public:
         const Effort effort;
         std::string said = error_of([&] {
             const auto source = open_volume(file);
-            std::vector<std::byte> voxels(static_cast<size_t>(voxel_count(source->info())) *
-                                          bytes_of(source->info().type));
+            std::vector<std::byte> voxels(size_t(voxel_count(source->info())) * bytes_of(source->info().type));
             source->read({Size3(0), source->info().size}, voxels);
         });
         CHECK(effort.is_below(AT_ONCE_BYTES));
@@ -186,14 +185,14 @@ TEST_CASE("a damaged TIFF is read or refused, and libtiff says nothing to the te
         for (int i = 0; i < 1500; ++i) {
             std::string bytes = sample.bytes;
             for (auto changes = random() % 3 + 1; changes > 0; --changes) {
-                const char values[] = {'\0', '\xff', '\x7f', '\x01', static_cast<char>(random())};
+                const char values[] = {'\0', '\xff', '\x7f', '\x01', char(random())};
                 bytes[random() % bytes.size()] = values[random() % std::size(values)];
             }
             try {
                 const auto source = open_volume(folder.write("a.tif", bytes));
                 const int64_t voxels = voxel_count(source->info());
                 if (voxels > 1 << 20) continue;
-                std::vector<std::byte> memory(static_cast<size_t>(voxels) * bytes_of(source->info().type));
+                std::vector<std::byte> memory(size_t(voxels) * bytes_of(source->info().type));
                 source->read({Size3(0), source->info().size}, memory);
             } catch (const Error& error) {
                 ++refused;
@@ -309,7 +308,7 @@ TEST_CASE("chains of pages that do not end are refused")
     const Fields many(400, {256, 4, 1, 8});
     woven.directory(many, 0);
     std::string bytes_of_woven = woven.bytes();
-    for (size_t i = 10; i + 24 < bytes_of_woven.size(); i += 24) bytes_of_woven[i] = static_cast<char>(i);
+    for (size_t i = 10; i + 24 < bytes_of_woven.size(); i += 24) bytes_of_woven[i] = char(i);
     CHECK(contains(hostile.refusal_of(bytes_of_woven), "expected"));
     CHECK(hostile.refusal_of(std::string("II*\0\0\0\0\0", 8)) == ": holds no page; expected at least one");
     CHECK(hostile.refusal_of(std::string("MM\0*\0\0\1", 7)) == ": holds 7 bytes; expected a TIFF's header of 8");
@@ -351,7 +350,7 @@ TEST_CASE("a bomb of zeros is read piece by piece, without more memory than the 
     const tmsize_t length = TIFFReadRawStrip(bomb, 0, strip.data(), 4096);
     TIFFClose(bomb);
     REQUIRE(length > 0);
-    TiffWriter(path, "wl").raw_page(spec, strip.substr(0, static_cast<size_t>(length)));
+    TiffWriter(path, "wl").raw_page(spec, strip.substr(0, size_t(length)));
     CHECK(voxels_of<uint8_t>(*open_volume(path)) == std::vector<uint8_t>(64 * 64, 0));
 }
 
@@ -361,7 +360,7 @@ TEST_CASE("a TIFF cut short while it is open is an error, not a signal")
     for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW}) {
         TiffSpec spec{.width = 256, .height = 256, .bits = 16, .compression = compression};
         std::string page;
-        for (size_t i = 0; i < spec.page_bytes(); ++i) page += static_cast<char>(i * i >> 7);
+        for (size_t i = 0; i < spec.page_bytes(); ++i) page += char(i * i >> 7);
         const fs::path path = write_tiff(folder.path / "a.tif", spec, {page, page});
         const auto source = open_volume(path);
         fs::resize_file(path, 1000);

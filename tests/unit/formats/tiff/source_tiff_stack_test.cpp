@@ -23,7 +23,7 @@ fs::path numbered(const fs::path& path, int pages, const std::string& descriptio
     TiffWriter writer(path, "wl");
     for (int page = 0; page < pages; ++page) {
         spec.description = page == 0 ? description : std::string();
-        writer.page(spec, std::string(1, static_cast<char>(page + 1)));
+        writer.page(spec, std::string(1, char(page + 1)));
     }
     return path;
 }
@@ -62,7 +62,7 @@ TEST_CASE("an ImageJ stack keeps its hand, its spacing, its unit and its sign")
     std::vector<std::string> pages;
     for (const std::string& page : chirality_pages()) {
         pages.push_back(page);
-        for (size_t i = 1; i < page.size(); i += 2) pages.back()[i] = static_cast<char>(page[i] ^ '\x80');
+        for (size_t i = 1; i < page.size(); i += 2) pages.back()[i] = char(page[i] ^ '\x80');
     }
     TiffSpec spec{.description =
                       "ImageJ=1.53t\nimages=3\nslices=3\nunit=mm\nspacing=1.25\nloop=false\ncf=0\nc0=-32768.0\n"

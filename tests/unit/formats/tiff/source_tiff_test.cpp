@@ -22,8 +22,7 @@ std::string noise(size_t bytes, uint32_t seed)
     std::mt19937 random(seed);
     std::string noise(bytes, '\0');
     // Runs, so that every compression has something to compress.
-    for (size_t i = 0; i < bytes; ++i)
-        noise[i] = random() % 4 == 0 || i == 0 ? static_cast<char>(random()) : noise[i - 1];
+    for (size_t i = 0; i < bytes; ++i) noise[i] = random() % 4 == 0 || i == 0 ? char(random()) : noise[i - 1];
     return noise;
 }
 
@@ -31,10 +30,9 @@ std::string noise(size_t bytes, uint32_t seed)
 std::string samples_of(const TiffSpec& spec, const std::vector<std::string>& pages, int sample)
 {
     std::string samples;
-    const auto bytes = static_cast<size_t>(spec.bits / 8);
+    const auto bytes = size_t(spec.bits / 8);
     for (const std::string& page : pages) {
-        for (size_t at = bytes * static_cast<size_t>(sample); at < page.size();
-             at += bytes * static_cast<size_t>(spec.samples)) {
+        for (size_t at = bytes * size_t(sample); at < page.size(); at += bytes * size_t(spec.samples)) {
             samples += page.substr(at, bytes);
         }
     }
@@ -44,7 +42,7 @@ std::string samples_of(const TiffSpec& spec, const std::vector<std::string>& pag
 std::string bytes_in(const VolumeSource& source, const VoxelBox& box)
 {
     const Size3 extent = box.size();
-    std::string bytes(static_cast<size_t>(extent.x * extent.y * extent.z) * bytes_of(source.info().type), '\0');
+    std::string bytes(size_t(extent.x * extent.y * extent.z) * bytes_of(source.info().type), '\0');
     source.read(box, std::as_writable_bytes(std::span(bytes)));
     return bytes;
 }
@@ -60,8 +58,8 @@ std::string part_of(const std::string& voxels, const Size3& size, const VoxelBox
     std::string part;
     for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
         for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
-            const auto first = static_cast<size_t>(box.lower.x + size.x * (y + size.y * z));
-            part += voxels.substr(first * voxel_bytes, static_cast<size_t>(box.size().x) * voxel_bytes);
+            const auto first = size_t(box.lower.x + size.x * (y + size.y * z));
+            part += voxels.substr(first * voxel_bytes, size_t(box.size().x) * voxel_bytes);
         }
     }
     return part;
@@ -71,10 +69,10 @@ VoxelBox random_box(const Size3& size, std::mt19937& random)
 {
     VoxelBox box;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto side = static_cast<uint32_t>(size[axis]);
-        const auto lower = static_cast<int64_t>(random() % side);
+        const auto side = uint32_t(size[axis]);
+        const auto lower = int64_t(random() % side);
         box.lower[axis] = lower;
-        box.upper[axis] = lower + 1 + static_cast<int64_t>(random() % static_cast<uint32_t>(size[axis] - lower));
+        box.upper[axis] = lower + 1 + int64_t(random() % uint32_t(size[axis] - lower));
     }
     return box;
 }
@@ -119,7 +117,7 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
     for (const SampleType& sample : SAMPLE_TYPES) {
         for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
                                       COMPRESSION_PACKBITS, COMPRESSION_ZSTD, COMPRESSION_LZMA}) {
-            if (TIFFIsCODECConfigured(static_cast<uint16_t>(compression)) == 0) continue;
+            if (TIFFIsCODECConfigured(uint16_t(compression)) == 0) continue;
             for (const int variant : {0, 1, 2, 3, 4, 5, 6, 7}) {
                 TiffSpec spec{.width = 37, .height = 21, .bits = sample.bits, .format = sample.format};
                 spec.compression = compression;
@@ -136,8 +134,7 @@ TEST_CASE("every layout, byte order, compression and sample type holds the same 
                                                   spec.predictor, ", variant ", variant, ", ", mode);
                 CAPTURE(what);
                 std::vector<std::string> pages;
-                for (uint32_t page = 0; page < 3; ++page)
-                    pages.push_back(noise(spec.page_bytes(), static_cast<uint32_t>(random())));
+                for (uint32_t page = 0; page < 3; ++page) pages.push_back(noise(spec.page_bytes(), uint32_t(random())));
                 const fs::path path = write_tiff(folder.path / "a.tif", spec, pages, mode);
                 for (int channel = 0; channel < spec.samples; ++channel) {
                     OpenOptions options;
@@ -167,15 +164,15 @@ TEST_CASE("floats with a predictor are read in either byte order")
     for (const int samples : {1, 3}) {
         TiffSpec spec{.width = 7, .height = 1, .bits = 32, .format = SAMPLEFORMAT_IEEEFP, .samples = samples};
         std::vector<float> row;
-        for (int i = 0; i < 7 * samples; ++i) row.push_back(0.37F * static_cast<float>(i * i) - 3.0F);
+        for (int i = 0; i < 7 * samples; ++i) row.push_back(0.37F * float(i * i) - 3.0F);
         const std::string bytes = bytes_of_numbers(row);
         std::string planes;
         for (size_t byte = 4; byte-- > 0;) {
             for (size_t at = byte; at < bytes.size(); at += 4) planes += bytes[at];
         }
-        const auto step = static_cast<size_t>(samples);
-        for (size_t i = planes.size(); i-- > step;) planes[i] = static_cast<char>(planes[i] - planes[i - step]);
-        TiffSpec plain{.width = static_cast<int>(planes.size()), .height = 1, .bits = 8};
+        const auto step = size_t(samples);
+        for (size_t i = planes.size(); i-- > step;) planes[i] = char(planes[i] - planes[i - step]);
+        TiffSpec plain{.width = int(planes.size()), .height = 1, .bits = 8};
         plain.compression = spec.compression = COMPRESSION_LZW;
         TIFF* const compressed = TIFFOpen(write_tiff(folder.path / "plain.tif", plain, {planes}).c_str(), "r");
         std::string strip(1000, '\0');
@@ -187,7 +184,7 @@ TEST_CASE("floats with a predictor are read in either byte order")
         for (const char* mode : {"wl", "wb"}) {
             const fs::path path = folder.path / "a.tif";
             fs::remove(path);
-            TiffWriter(path, mode).raw_page(spec, strip.substr(0, static_cast<size_t>(length)));
+            TiffWriter(path, mode).raw_page(spec, strip.substr(0, size_t(length)));
             const auto source = open_volume(path, {.channel = sentence(samples)});
             const std::vector<float> voxels = voxels_of<float>(*source);
             for (size_t i = 0; i < 7; ++i) CHECK(voxels[i] == row[i * step + step - 1]);
@@ -208,12 +205,12 @@ TEST_CASE("samples of odd bits become the next larger type, with their own value
             const uint32_t largest = (uint32_t{1} << bits) - 1;
             for (int y = 0; y < 5; ++y) {
                 for (int x = 0; x < 13; ++x) {
-                    const uint32_t value = static_cast<uint32_t>(977 * (x + 13 * y) + 5) & largest;
-                    values.push_back(static_cast<uint16_t>(is_min_white ? largest - value : value));
+                    const uint32_t value = uint32_t(977 * (x + 13 * y) + 5) & largest;
+                    values.push_back(uint16_t(is_min_white ? largest - value : value));
                     for (int bit = 0; bit < bits; ++bit) {
-                        const auto at = static_cast<size_t>(x * bits + bit);
+                        const auto at = size_t(x * bits + bit);
                         if ((value >> (bits - 1 - bit) & 1) == 0) continue;
-                        page[static_cast<size_t>(y) * spec.row_bytes() + at / 8] |= static_cast<char>(0x80 >> at % 8);
+                        page[size_t(y) * spec.row_bytes() + at / 8] |= char(0x80 >> at % 8);
                     }
                 }
             }
@@ -323,11 +320,11 @@ TEST_CASE("JPEG inside TIFF is decoded, grey and colour")
     TiffSpec grey{.width = 40, .height = 24, .bits = 8, .compression = COMPRESSION_JPEG};
     grey.rows_per_strip = 8;
     std::string page;
-    for (int i = 0; i < 40 * 24; ++i) page += static_cast<char>(3 * (i % 40) + 2 * (i / 40));
+    for (int i = 0; i < 40 * 24; ++i) page += char(3 * (i % 40) + 2 * (i / 40));
     const auto source = open_volume(write_tiff(folder.path / "a.tif", grey, {page, page}));
     const std::vector<uint8_t> voxels = voxels_of<uint8_t>(*source);
     for (size_t i = 0; i < voxels.size(); ++i) {
-        CHECK(std::abs(voxels[i] - static_cast<uint8_t>(page[i % page.size()])) < 12);
+        CHECK(std::abs(voxels[i] - uint8_t(page[i % page.size()])) < 12);
     }
 
     TiffSpec color{.width = 40, .height = 24, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_YCBCR};
@@ -335,7 +332,7 @@ TEST_CASE("JPEG inside TIFF is decoded, grey and colour")
     color.rows_per_strip = 16;
     color.more = [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB); };
     std::string pixels;
-    for (int i = 0; i < 40 * 24; ++i) pixels += {static_cast<char>(200), static_cast<char>(2 * (i / 40)), '\x10'};
+    for (int i = 0; i < 40 * 24; ++i) pixels += {char(200), char(2 * (i / 40)), '\x10'};
     const fs::path path = write_tiff(folder.path / "b.tif", color, {pixels});
     const std::vector<uint8_t> red = voxels_of<uint8_t>(*open_volume(path, {.channel = "red"}));
     CHECK(std::all_of(red.begin(), red.end(), [](uint8_t v) { return std::abs(v - 200) < 12; }));
@@ -347,7 +344,7 @@ TEST_CASE("faxes are read as 0 and 1")
 {
     const TemporaryFolder folder;
     for (const int compression : {COMPRESSION_CCITTRLE, COMPRESSION_CCITTFAX3, COMPRESSION_CCITTFAX4}) {
-        if (TIFFIsCODECConfigured(static_cast<uint16_t>(compression)) == 0) continue;
+        if (TIFFIsCODECConfigured(uint16_t(compression)) == 0) continue;
         TiffSpec spec{.width = 16, .height = 3, .bits = 1, .photometric = PHOTOMETRIC_MINISWHITE};
         spec.compression = compression;
         const auto source =

@@ -33,7 +33,7 @@ std::string text_of(const fs::path& path)
 
 int phantom(int64_t x, int64_t y, int64_t z)
 {
-    return static_cast<int>(x + 10 * y + 100 * z - 99);
+    return int(x + 10 * y + 100 * z - 99);
 }
 
 /// Compares every voxel with `expected(x, y, z)` cast to T.
@@ -44,7 +44,7 @@ bool holds(const VolumeSource& source, const std::function<double(int64_t x, int
     const std::vector<T> voxels = voxels_of<T>(source);
     for (int64_t i = 0; i < 60; ++i) {
         const double value = expected(i % 5, i / 5 % 4, i / 20);
-        const auto voxel = static_cast<double>(voxels[static_cast<size_t>(i)]);
+        const auto voxel = double(voxels[size_t(i)]);
         if (voxel != value && !(std::isnan(voxel) && std::isnan(value))) return false;
     }
     return true;
@@ -61,8 +61,8 @@ bool holds_low_bits(const VolumeSource& source)
     constexpr int SHIFT = std::is_unsigned_v<T> ? 1 : 0;
     return holds<T>(source, [](int64_t x, int64_t y, int64_t z) {
         const int value = phantom(x, y, z) + SHIFT;
-        if constexpr (std::is_integral_v<T>) return static_cast<double>(static_cast<T>(value));
-        return static_cast<double>(value);
+        if constexpr (std::is_integral_v<T>) return double(static_cast<T>(value));
+        return double(value);
     });
 }
 
@@ -82,8 +82,7 @@ public:
     }
     void write_text(const std::string& file, std::string_view content) const
     {
-        std::ofstream(root / file, std::ios::binary)
-            .write(content.data(), static_cast<std::streamsize>(content.size()));
+        std::ofstream(root / file, std::ios::binary).write(content.data(), std::streamsize(content.size()));
     }
     std::string refusal() const
     {
@@ -101,7 +100,7 @@ public:
 
 std::vector<int16_t> level_of(const VolumeSource& source, int level, const VoxelBox& box)
 {
-    std::vector<int16_t> voxels(static_cast<size_t>(box.size().x * box.size().y * box.size().z));
+    std::vector<int16_t> voxels(size_t(box.size().x * box.size().y * box.size().z));
     source.read_level(level, box, std::as_writable_bytes(std::span(voxels)));
     return voxels;
 }
@@ -212,7 +211,7 @@ TEST_CASE("zarr: a damaged chunk is named, and all others can be read")
         for (size_t at = 0; at < std::min<size_t>(whole.size(), 64); ++at) {
             for (const int bit : {0, 4, 6}) {
                 std::string spoiled = whole;
-                spoiled[at] = static_cast<char>(spoiled[at] ^ static_cast<char>(1 << bit));
+                spoiled[at] = char(spoiled[at] ^ char(1 << bit));
                 copy.write_text("0.0.0", spoiled);
                 static_cast<void>(copy.refusal());  // an error or different voxels, and no more memory than the chunk's
             }
@@ -569,7 +568,7 @@ TEST_CASE("zarr: many threads read one source, each its own boxes")
 TEST_CASE("zarr: what we compress with blosc is decoded, and equal input gives equal bytes")
 {
     std::vector<uint16_t> voxels(32 * 32 * 32);
-    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<uint16_t>(i * i / 7);
+    for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = uint16_t(i * i / 7);
     const auto chunk = std::as_bytes(std::span(voxels));
     for (const int level : {0, 1, 5}) {
         const ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc, .level = level};
