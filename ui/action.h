@@ -96,7 +96,7 @@ struct ScaleProbe {
 };
 /// Everything about the brush but its path and group: shape, radius, threshold, connectivity.
 struct SetBrush {
-    PaintOp brush;
+    BrushSettings brush;
 };
 struct ShowShell {  ///< an iso-surface at the paint threshold around the probe
     bool on = true;

@@ -252,7 +252,7 @@ void App::apply_all()
 TouchSettings App::touch_settings() const
 {
     return {.assistance = document_->assistance,
-            .threshold = document_->haptic_threshold,
+            .threshold = *document_->session.probe.haptic_threshold,
             .probe_radius = document_->probe_radius(),
             .law = document_->law,
             .axes = axes_of(document_->camera),

@@ -100,8 +100,6 @@ Model App::model()
             .cameras = document.cameras(),
             .panes = document.screen.parts(),
             .presets = presets_,
-            .brush = document.brush,
-            .haptic_threshold = document.haptic_threshold,
             .probe_voxel = document.probe_voxel(),
             .is_painting = document.annotator.stroke_is_running(),
             .assistance = document.assistance,

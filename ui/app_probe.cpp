@@ -55,17 +55,18 @@ void App::apply(const PushProbe& action)
 
 void App::apply(const ScaleProbe& action)
 {
-    document_->brush.radius_voxels =
-        std::clamp(document_->brush.radius_voxels * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
-    say(sentence("Probe radius ", std::round(10.0 * document_->brush.radius_voxels) / 10.0, " voxels"));
+    double& radius = document_->session.probe.brush.radius_voxels;
+    radius = std::clamp(radius * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
+    say(sentence("Probe radius ", std::round(10.0 * radius) / 10.0, " voxels"));
 }
 
 void App::apply(const SetBrush& action)
 {
-    const uint8_t group = document_->brush.group;
-    const bool is_other = action.brush.brush != document_->brush.brush;
-    document_->brush = action.brush;
-    document_->brush.group = group;
+    BrushSettings& brush = document_->session.probe.brush;
+    const uint8_t group = brush.group;
+    const bool is_other = action.brush.brush != brush.brush;
+    brush = action.brush;
+    brush.group = group;
     if (is_other) say(sentence("Brush: ", row_of(action.brush.brush).name));
 }
 
@@ -86,7 +87,7 @@ void App::apply(const ShowPreview& action)
 
 void App::apply(const ChooseGroup& action)
 {
-    document_->brush.group = action.group;
+    document_->session.probe.brush.group = action.group;
     say(action.group == 0
             ? std::string("Eraser: painting removes voxels from their group")
             : sentence("Group ", int(action.group), ": ", group_of(document_->session.groups, action.group).name));
@@ -94,7 +95,7 @@ void App::apply(const ChooseGroup& action)
 
 void App::apply(const SetHapticThreshold& action)
 {
-    document_->haptic_threshold = action.intensity;
+    document_->session.probe.haptic_threshold = action.intensity;
 }
 
 void App::apply(const Assist& action)
@@ -130,8 +131,8 @@ void App::apply(const Paint& action)
     if (action.on && !annotator.stroke_is_running()) {
         const Previewer& previewer = document_->previewer;
         if (previewer.shown() && previewer.is_current()) report_.previewed(previewer.shown()->voxels);
-        check_radius(document_->brush.radius_voxels, document_->volume().spacing, document_->volume().size);
-        annotator.begin_stroke(with_offset(document_->brush, document_->session.transfer_function));
+        check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
+        annotator.begin_stroke(document_->stroke());
         annotator.extend_stroke(document_->probe_voxel());
     } else if (!action.on && annotator.stroke_is_running()) {
         extend_stroke();
@@ -151,7 +152,7 @@ void App::stroke_ended()
         return say(
             "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted "
             "already");
-    say(painted_sentence(document_->brush, voxels));
+    say(painted_sentence(document_->stroke(), voxels));
 }
 
 /// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.

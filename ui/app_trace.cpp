@@ -34,7 +34,7 @@ void App::apply(const Trace& action)
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) return say("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
-    if (std::holds_alternative<NodeOp>(action.op) && document_->brush.group == 0)
+    if (std::holds_alternative<NodeOp>(action.op) && document_->brush().group == 0)
         return say("Group 0 is the eraser; choose a group from 1 up for the node");
     TraceEffect effect = effect_of(action.op, trace, document_->trace_defaults());
     document_->drags_node = false;

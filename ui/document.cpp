@@ -60,10 +60,9 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     }
     if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
     surfaces = std::exchange(session.surfaces, {});
-    const ProbeSettings& probe = session.probe;
-    brush = dab_of(session, volume(), statistics);
-    brush.path.clear();
-    haptic_threshold = probe.haptic_threshold.value_or(brush.threshold);
+    ProbeSettings& probe = session.probe;
+    probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
+    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
     touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
@@ -82,16 +81,16 @@ void Document::show_again(Renderer& renderer)
 
 ProbeLook Document::probe_look() const
 {
-    ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush.group)};
+    ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush().group)};
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
     }
     if (session.probe.shell) {
         look.ball_share = BALL_IN_SHELL;
-        look.shell = ShellLook{.threshold = brush.threshold,
+        look.shell = ShellLook{.threshold = *brush().threshold,
                                .opacity = session.probe.shell_opacity,
-                               .is_box = brush.region == RegionShape::box};
+                               .is_box = brush().region == RegionShape::box};
     }
     return look;
 }
@@ -111,8 +110,6 @@ Session Document::saved_session() const
     saved.cameras[WINDOW_CAMERA] = camera;
     saved.camera_name = WINDOW_CAMERA;
     saved.probe.voxel = probe_voxel();
-    saved.probe.brush = settings_of(brush);
-    saved.probe.haptic_threshold = haptic_threshold;
     return saved;
 }
 
@@ -187,16 +184,21 @@ void Document::name_trace()
     }
 }
 
+PaintOp Document::stroke() const
+{
+    return with_offset(stroke_of(brush(), *brush().threshold), session.transfer_function);
+}
+
 PaintOp Document::dab() const
 {
-    PaintOp dab = with_offset(brush, session.transfer_function);
+    PaintOp dab = stroke();
     dab.path = {probe_voxel()};
     return dab;
 }
 
 TraceDefaults Document::trace_defaults() const
 {
-    return {.spacing = volume().spacing, .radius_voxels = brush.radius_voxels, .group = brush.group};
+    return {.spacing = volume().spacing, .radius_voxels = brush().radius_voxels, .group = brush().group};
 }
 
 std::optional<uint32_t> Document::nearby_node() const

@@ -27,12 +27,10 @@ struct Document {
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
-    Session session;
+    Session session;                     ///< the probe's thresholds are set, from the volume where the file states none
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;
-    PaintOp brush;  ///< all but its path
-    double haptic_threshold = 0.0;
     bool assistance = false;
     ProxyLaw law = ProxyLaw::potential;
     Annotator annotator;
@@ -49,9 +47,11 @@ struct Document {
 
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
-    double probe_radius() const { return brush.radius_voxels * volume().spacing.x; }
+    const BrushSettings& brush() const { return session.probe.brush; }
+    double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
-    /// The brush at the probe's position, as it would paint now.
+    /// A stroke of the brush as it would paint now, without a path; at the probe's position.
+    PaintOp stroke() const;
     PaintOp dab() const;
     /// The node to select or link with: the nearest unselected one within reach.
     std::optional<uint32_t> nearby_node() const;
@@ -59,7 +59,7 @@ struct Document {
     TraceDefaults trace_defaults() const;
     /// The probe's ball, of at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
-    /// The session as it would be saved: with the current camera, probe and thresholds.
+    /// The session as it would be saved: with the current camera and the probe's position.
     Session saved_session() const;
     /// Closing would lose no work and no setting, except perhaps the camera and the probe's position.
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }

@@ -45,9 +45,8 @@ Action choose(const Model&, double)
 
 Action next_brush(const Model& model, double)
 {
-    PaintOp brush = model.brush;
-    brush.path.clear();
-    brush.brush = BRUSHES[(size_t(model.brush.brush) + 1) % BRUSHES.size()].brush;
+    BrushSettings brush = model.brush();
+    brush.brush = BRUSHES[(size_t(brush.brush) + 1) % BRUSHES.size()].brush;
     return SetBrush{brush};
 }
 

@@ -26,8 +26,6 @@ struct Model {
     const std::vector<TransferPreset>& presets;
 
     // The probe
-    const PaintOp& brush;  ///< the group it paints, its radius, its threshold
-    double haptic_threshold = 0.0;
     glm::dvec3 probe_voxel{0.0};
     bool is_painting = false;
     bool assistance = false;
@@ -57,6 +55,10 @@ struct Model {
     double relevance_age_ms = 0.0;  ///< of the patch that the servo uses; 0 without assistance
     double ui_frame_ms = 0.0;       ///< median of the last frames
     uint64_t device_bytes = 0, device_budget = 0;
+
+    const BrushSettings& brush() const { return session.probe.brush; }
+    double paint_threshold() const { return brush().threshold.value(); }
+    double haptic_threshold() const { return session.probe.haptic_threshold.value(); }
 };
 
 }  // namespace shvr::ui

@@ -6,7 +6,7 @@ namespace {
 
 double within_voxels(const Model& model)
 {
-    return NEARBY_RADII * model.brush.radius_voxels;
+    return NEARBY_RADII * model.brush().radius_voxels;
 }
 
 class Mean {
@@ -26,7 +26,7 @@ private:
 /// The mean radius (the probe's if there is none), at least half a voxel, times the factor; in voxels along x.
 double scaled_radius(const Model& model, const Mean& mean, double factor)
 {
-    const double probe = model.brush.radius_voxels * model.volume.spacing.x;
+    const double probe = model.brush().radius_voxels * model.volume.spacing.x;
     return std::max(mean.value_or(probe) / model.volume.spacing.x, 0.5) * factor;
 }
 
@@ -34,7 +34,7 @@ double scaled_radius(const Model& model, const Mean& mean, double factor)
 
 TraceOp node_at_probe(const Model& model)
 {
-    return NodeOp{.at = model.probe_voxel, .radius_voxels = model.brush.radius_voxels, .group = model.brush.group};
+    return NodeOp{.at = model.probe_voxel, .radius_voxels = model.brush().radius_voxels, .group = model.brush().group};
 }
 
 TraceOp nearest_selection(const Model& model)
@@ -62,7 +62,8 @@ RadiusOp scaled(const Model& model, double factor)
         for (const uint32_t node : selected.nodes) mean.add(model.trace.node(node).radius);
         return {.of = RadiusOp::Of::selected, .radius_voxels = scaled_radius(model, mean, factor)};
     }
-    const uint8_t group = selected.internode() ? model.trace.internode(*selected.internode()).group : model.brush.group;
+    const uint8_t group =
+        selected.internode() ? model.trace.internode(*selected.internode()).group : model.brush().group;
     for (const auto& [number, internode] : model.trace.internodes())
         if (internode.group == group) mean.add(model.trace.radius_of(internode, 0.5));
     return {.of = RadiusOp::Of::internodes, .radius_voxels = scaled_radius(model, mean, factor), .group = group};
@@ -72,8 +73,9 @@ RadiusOp scaled_nodes_of_group(const Model& model, double factor)
 {
     Mean mean;
     for (const auto& [number, node] : model.trace.nodes())
-        if (node.group == model.brush.group) mean.add(node.radius);
-    return {.of = RadiusOp::Of::nodes, .radius_voxels = scaled_radius(model, mean, factor), .group = model.brush.group};
+        if (node.group == model.brush().group) mean.add(node.radius);
+    return {
+        .of = RadiusOp::Of::nodes, .radius_voxels = scaled_radius(model, mean, factor), .group = model.brush().group};
 }
 
 }  // namespace shvr::ui

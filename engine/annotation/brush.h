@@ -99,10 +99,4 @@ inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::v
             std::move(path), density, paints_group};
 }
 
-inline BrushSettings settings_of(const PaintOp& op)
-{
-    const auto& [brush, region, group, threshold, radius_voxels, connectivity, path, density, paints_group] = op;
-    return {brush, region, group, threshold, radius_voxels, connectivity, density, paints_group};
-}
-
 }  // namespace shvr

@@ -33,7 +33,7 @@ struct Row {
 /// Groups that have a key, are described by the session, are painted or are chosen; each below its parent.
 std::vector<Row> listed_groups(const Model& model)
 {
-    std::set<uint8_t> groups{model.brush.group};
+    std::set<uint8_t> groups{model.brush().group};
     for (uint8_t group = 0; group <= GROUPS_WITH_KEYS; ++group) groups.insert(group);
     for (const auto& [group, settings] : model.session.groups) groups.insert({group, settings.parent});
     for (size_t group = 1; group < model.voxels_by_group.size(); ++group)
@@ -94,7 +94,7 @@ bool name_cell(const Row& row, const Model& model, const ColorGroup& look, Group
     if (indent > 0.0f) ImGui::Indent(indent);
     const std::string label = group == 0 ? "0  eraser" : std::to_string(group) + "  " + look.name;
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
-    if (ImGui::Selectable(label.c_str(), group == model.brush.group)) actions.push_back(ChooseGroup{group});
+    if (ImGui::Selectable(label.c_str(), group == model.brush().group)) actions.push_back(ChooseGroup{group});
     ImGui::PopStyleColor();
     if (indent > 0.0f) ImGui::Unindent(indent);
     if (group == 0) {
@@ -175,7 +175,7 @@ void show_row(const Row& row, const Model& model, Actions& actions)
 /// Chooses a group that has neither a key nor a row.
 void other_group(const Model& model, Actions& actions)
 {
-    int group = model.brush.group;
+    int group = model.brush().group;
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Paint with group");
     ImGui::SameLine();

@@ -168,9 +168,8 @@ void view_menu(const Model& model, Actions& actions)
 
 void brush_item(const BrushRow& row, const Model& model, Actions& actions)
 {
-    if (!ImGui::MenuItem(row.title, nullptr, model.brush.brush == row.brush)) return;
-    PaintOp changed = model.brush;
-    changed.path.clear();
+    if (!ImGui::MenuItem(row.title, nullptr, model.brush().brush == row.brush)) return;
+    BrushSettings changed = model.brush();
     changed.brush = row.brush;
     actions.push_back(SetBrush{changed});
 }
@@ -184,10 +183,10 @@ void paint_menu(const Model& model, Actions& actions)
     for (int group = 1; group <= 9; ++group) {
         const std::string name = group_of(model.session.groups, uint8_t(group)).name;
         const std::string label = name + "##" + std::to_string(group);
-        if (ImGui::MenuItem(label.c_str(), std::to_string(group).c_str(), int{model.brush.group} == group))
+        if (ImGui::MenuItem(label.c_str(), std::to_string(group).c_str(), int{model.brush().group} == group))
             actions.push_back(ChooseGroup{uint8_t(group)});
     }
-    key_item("Eraser", model, actions, {.is_checked = model.brush.group == 0});
+    key_item("Eraser", model, actions, {.is_checked = model.brush().group == 0});
     ImGui::Separator();
     key_item("Preview of the brush", model, actions, {.is_checked = model.session.probe.preview});
     ImGui::EndMenu();

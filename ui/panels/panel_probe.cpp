@@ -31,7 +31,7 @@ bool intensity_slider(const char* id, const Model& model, double& intensity)
 
 // ---- Painting
 
-bool brush_kind(PaintOp& brush)
+bool brush_kind(BrushSettings& brush)
 {
     bool changed = false;
     for (const BrushRow& row : BRUSHES) {
@@ -45,7 +45,7 @@ bool brush_kind(PaintOp& brush)
     return changed;
 }
 
-bool region_shape(PaintOp& brush)
+bool region_shape(BrushSettings& brush)
 {
     const RegionShape was = brush.region;
     label("Shape");
@@ -57,7 +57,7 @@ bool region_shape(PaintOp& brush)
     return brush.region != was;
 }
 
-bool radius(const Model& model, PaintOp& brush)
+bool radius(const Model& model, BrushSettings& brush)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
@@ -71,15 +71,15 @@ bool radius(const Model& model, PaintOp& brush)
     return changed;
 }
 
-bool threshold(const Model& model, PaintOp& brush)
+bool threshold(const Model& model, BrushSettings& brush)
 {
     label("Paint from");
-    const bool changed = intensity_slider("##threshold", model, brush.threshold);
+    const bool changed = intensity_slider("##threshold", model, *brush.threshold);
     hint("Paint threshold, in the file's intensities: only voxels at or above it are painted.");
     return changed;
 }
 
-bool connectivity(PaintOp& brush)
+bool connectivity(BrushSettings& brush)
 {
     const int was = brush.connectivity;
     label("Neighbours");
@@ -92,7 +92,7 @@ bool connectivity(PaintOp& brush)
 }
 
 /// Settings of density painting, which makes faint structures as visible as bright ones.
-bool density(const Model& model, PaintOp& brush)
+bool density(const Model& model, BrushSettings& brush)
 {
     bool is_on = brush.density.has_value();
     label("Density");
@@ -110,7 +110,7 @@ bool density(const Model& model, PaintOp& brush)
     hint("Off: raises intensities and leaves groups as they are.");
 
     label("Raise by");
-    const double automatic = automatic_offset(model.session.transfer_function.lower(), brush.threshold);
+    const double automatic = automatic_offset(model.session.transfer_function.lower(), *brush.threshold);
     bool is_automatic = !brush.density->offset;
     if (ImGui::Checkbox("automatic", &is_automatic)) {
         brush.density->offset = is_automatic ? std::nullopt : std::optional(automatic);
@@ -164,8 +164,7 @@ void preview(const Model& model, Actions& actions)
 
 void painting(const Model& model, Actions& actions)
 {
-    PaintOp brush = model.brush;
-    brush.path.clear();
+    BrushSettings brush = model.brush();
     bool changed = brush_kind(brush);
     changed |= region_shape(brush);
     changed |= radius(model, brush);
@@ -187,7 +186,7 @@ void guidance(const Model& model, Actions& actions)
     hint("Pulls the probe towards the middle of what it touches, so that it stays on a root while you move along.");
 
     label("Feel from");
-    double intensity = model.haptic_threshold;
+    double intensity = model.haptic_threshold();
     if (intensity_slider("##felt", model, intensity)) actions.push_back(SetHapticThreshold{intensity});
     hint("Voxels at or above this intensity are felt.");
 

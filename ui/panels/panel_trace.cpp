@@ -41,11 +41,11 @@ void summary(const Model& model)
     ImGui::Text("%zu", trace.segments);
     hint("A segment is a chain of internodes between two branches or ends.");
     text_label("Length");
-    const auto group = trace.group_length.find(model.brush.group);
+    const auto group = trace.group_length.find(model.brush().group);
     ImGui::Text("%.5g %s", trace.length, spelled(model.volume.unit));
     if (trace.group_length.size() < 2 && group != trace.group_length.end()) return;
     ImGui::SameLine();
-    ImGui::TextDisabled("(group %d: %.5g)", int(model.brush.group),
+    ImGui::TextDisabled("(group %d: %.5g)", int(model.brush().group),
                         group == trace.group_length.end() ? 0.0 : group->second);
 }
 
@@ -148,26 +148,26 @@ void buttons(const Model& model, Actions& actions)
     ImGui::SameLine();
     button("Deselect", !selected.empty(), "Deselects, so that the next node starts a new trace. Key: /", DeselectOp{},
            actions);
-    const std::string group = std::to_string(model.brush.group);
-    ImGui::BeginDisabled(model.brush.group == 0);
+    const std::string group = std::to_string(model.brush().group);
+    ImGui::BeginDisabled(model.brush().group == 0);
     button(("To group " + group).c_str(), !selected.empty(),
-           "Moves the selection to the chosen group. Keys: Ctrl + 1 ... 9", GroupOp{model.brush.group}, actions);
+           "Moves the selection to the chosen group. Keys: Ctrl + 1 ... 9", GroupOp{model.brush().group}, actions);
     ImGui::EndDisabled();
 }
 
 /// Whether the internodes of the chosen group taper from node to node or have their own radius.
 void tapering(const Model& model, Actions& actions)
 {
-    if (model.trace.internodes().empty() || model.brush.group == 0) return;
-    const auto found = model.trace.internode_radii().find(model.brush.group);
+    if (model.trace.internodes().empty() || model.brush().group == 0) return;
+    const auto found = model.trace.internode_radii().find(model.brush().group);
     bool tapers = found == model.trace.internode_radii().end();
     label("Internodes");
-    const std::string text = "of group " + std::to_string(model.brush.group) + " taper";
+    const std::string text = "of group " + std::to_string(model.brush().group) + " taper";
     if (ImGui::Checkbox(text.c_str(), &tapers)) {
         RadiusOp op = scaled(model, 1.0);
         if (tapers) op.radius_voxels.reset();
         op.of = RadiusOp::Of::internodes;
-        op.group = model.brush.group;
+        op.group = model.brush().group;
         actions.push_back(Trace{op});
     }
     hint(

@@ -177,8 +177,8 @@ void draw(const Canvas& canvas, const Model& model, size_t selected)
     draw_histogram(canvas, model.statistics, list);
     draw_area(canvas, model.session.transfer_function, list);
     list.PopClipRect();
-    draw_threshold(canvas, model.haptic_threshold, "feel", 1.0f, FELT_LINE, list);
-    draw_threshold(canvas, model.brush.threshold, "paint", 0.0f, PAINT_LINE, list);
+    draw_threshold(canvas, model.haptic_threshold(), "feel", 1.0f, FELT_LINE, list);
+    draw_threshold(canvas, model.paint_threshold(), "paint", 0.0f, PAINT_LINE, list);
     draw_line(canvas, points, list);
     draw_points(canvas, points, selected, list);
 }
@@ -202,8 +202,8 @@ Found under_mouse(const Canvas& canvas, const Model& model, const ImVec2& mouse)
         if (distance <= nearest) found = {Grip::point, i}, nearest = distance;
     }
     if (found.grip == Grip::point) return found;
-    const float to_paint = std::abs(canvas.x_of(model.brush.threshold) - mouse.x);
-    const float to_felt = std::abs(canvas.x_of(model.haptic_threshold) - mouse.x);
+    const float to_paint = std::abs(canvas.x_of(model.paint_threshold()) - mouse.x);
+    const float to_felt = std::abs(canvas.x_of(model.haptic_threshold()) - mouse.x);
     if (std::min(to_paint, to_felt) > 0.6f * reach) return found;
     // If both lines coincide, the one whose label is hit.
     const bool is_felt_row = mouse.y > canvas.begin.y + 1.25f * ImGui::GetFontSize();
@@ -278,17 +278,16 @@ void drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetS
     const double now = canvas.intensity_at(mouse.x);
     const double held = std::clamp(now, model.statistics.range().lower, model.statistics.range().upper);
     const double threshold = is_float(model.volume.type) ? held : std::round(held);
-    PaintOp brush = model.brush;
+    BrushSettings brush = model.brush();
     switch (state.grip) {
         case Grip::nothing: return;
         case Grip::point: return move_point(canvas, mouse, points_of(model), state.selected, actions);
         case Grip::all_points: return move_all(model, now - std::exchange(state.grabbed_at, now), actions);
         case Grip::paint_threshold:
-            brush.path.clear();
             if (std::exchange(brush.threshold, threshold) != threshold) actions.push_back(SetBrush{brush});
             return;
         case Grip::haptic_threshold:
-            if (model.haptic_threshold != threshold) actions.push_back(SetHapticThreshold{threshold});
+            if (model.haptic_threshold() != threshold) actions.push_back(SetHapticThreshold{threshold});
             return;
     }
 }

@@ -22,14 +22,12 @@ struct World {
     VolumeStatistics statistics;
     std::vector<Screen::Part> panes;
     std::vector<TransferPreset> presets;
-    PaintOp brush;
     TraceGraph trace;
     Model model{.session = session,
                 .volume = volume,
                 .statistics = statistics,
                 .panes = panes,
                 .presets = presets,
-                .brush = brush,
                 .trace = trace,
                 .pass_times = {}};
 };
@@ -137,17 +135,17 @@ TEST_CASE("digits choose colour groups, and F is left to the application")
 TEST_CASE("End goes through all brushes and keeps the rest of the brush")
 {
     World world;
-    world.brush = {.brush = Brush::fill, .group = 7, .threshold = 12.0, .path = {glm::dvec3(1.0)}};
+    BrushSettings& brush = world.session.probe.brush;
+    brush = {.brush = Brush::fill, .group = 7, .threshold = 12.0};
     const int end = 269;
     std::set<Brush> seen;
     for (int i = 0; i < 3; ++i) {
-        world.brush = only<SetBrush>(actions_of(world, end, 0)).brush;
-        seen.insert(world.brush.brush);
+        brush = only<SetBrush>(actions_of(world, end, 0)).brush;
+        seen.insert(brush.brush);
     }
     CHECK(seen.size() == 3);
-    CHECK(world.brush.brush == Brush::fill);
-    CHECK(world.brush.threshold == 12.0);
-    CHECK(world.brush.path.empty());
+    CHECK(brush.brush == Brush::fill);
+    CHECK(brush.threshold == 12.0);
 }
 
 namespace {
@@ -157,8 +155,8 @@ void trace_three(World& world)
 {
     world.volume.size = Size3(64);
     world.volume.spacing = {0.5, 0.5, 0.5};
-    world.brush.radius_voxels = 4.0;
-    world.brush.group = 2;
+    world.session.probe.brush.radius_voxels = 4.0;
+    world.session.probe.brush.group = 2;
     for (uint32_t i = 0; i < 3; ++i)
         world.trace.apply(TraceNodeChange{i, {}, TraceNode{{5.0 + 5.0 * i, 5.0, 5.0}, 1.0, 2}}, Direction::forwards);
     for (uint32_t i = 0; i < 2; ++i)
