@@ -13,6 +13,7 @@
 #include "haptics/force.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"
+#include "tests/support/haptic_scenes.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -24,29 +25,15 @@ constexpr double VESSEL_RADIUS = 4.0;  ///< voxels
 constexpr uint64_t TICK_NS = 1'000'000;
 constexpr int MIRROR_TICKS = 12;  ///< a window queries sixty times a second or more often
 
-/// The vessel's middle line, voxels.
-glm::dvec3 vessel_at(double x)
-{
-    return {x, 48.0 + 14.0 * std::sin(x / 22.0), 48.0 + 9.0 * std::cos(x / 17.0)};
-}
-
-/// Vector from the middle line to a point, by Newton's method from the same x.
-glm::dvec3 away_from_vessel(const glm::dvec3& p)
-{
-    double x = p.x;
-    for (int i = 0; i < 4; ++i) {
-        const glm::dvec3 slope(1.0, 14.0 / 22.0 * std::cos(x / 22.0), -9.0 / 17.0 * std::sin(x / 17.0));
-        x += glm::dot(p - vessel_at(x), slope) / glm::dot(slope, slope);
-    }
-    return p - vessel_at(x);
-}
+/// Voxels.
+constexpr WindingLine VESSEL{48.0, 14.0, 22.0, 9.0, 17.0};
 
 /// A soft-edged vessel, brighter than its noisy surroundings; the threshold lies half-way.
 TestVolume vessel(uint32_t seed)
 {
     std::mt19937 random(seed);
     return volume_of({200, 96, 96}, [&](const glm::dvec3& voxel) {
-        const double edge = VESSEL_RADIUS - glm::length(away_from_vessel(voxel));
+        const double edge = VESSEL_RADIUS - glm::length(VESSEL.towards(voxel));
         const double inside = 1.0 / (1.0 + std::exp(-2.0 * edge));
         return 10000.0 + 30000.0 * inside + 6000.0 * (double(random()) / 4294967296.0 - 0.5);
     });
@@ -86,7 +73,7 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
             return std::min(t, 1.0) * amplitude_mm * glm::sin(2.0 * std::numbers::pi * hertz * t + phases[which]);
         };
         const glm::dvec3 wander = swing(0, 1.5, 0.45) + swing(1, 0.7, 1.1) + swing(2, 0.06, 9.0);
-        const glm::dvec3 wish = vessel_at(20.0 + 8.0 / VOXEL_MM * t) * VOXEL_MM + wander;
+        const glm::dvec3 wish = VESSEL.at(20.0 + 8.0 / VOXEL_MM * t) * VOXEL_MM + wander;
         device->wish().publish({.position_m = wish * 1e-3, .buttons = 0, .jump = 1});
         const ReadResult result = device->read(state);
         const glm::dvec3 probe = settings.workspace.to_point(state.position_m);
@@ -100,7 +87,7 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
         const ForceStep now = step(settings, device->caps(), result, state, *patch, now_ns, memory);
         device->write(now.force_n, uint32_t(tick));
         if (tick < 1500) continue;  // engaged by then
-        const glm::dvec3 away = away_from_vessel(probe / VOXEL_MM) * VOXEL_MM;
+        const glm::dvec3 away = VESSEL.towards(probe / VOXEL_MM) * VOXEL_MM;
         sum += glm::dot(away, away);
         ++count;
     }

@@ -49,6 +49,26 @@ struct Rod {
     }
 };
 
+/// A winding vessel's middle line: y = middle + y_reach sin(x / y_length), z = middle + z_reach cos(x / z_length).
+struct WindingLine {
+    double middle, y_reach, y_length, z_reach, z_length;
+    glm::dvec3 at(double x) const
+    {
+        return {x, middle + y_reach * std::sin(x / y_length), middle + z_reach * std::cos(x / z_length)};
+    }
+    /// From the line's nearest point to `p`, by Newton's method from the same x.
+    glm::dvec3 towards(const glm::dvec3& p) const
+    {
+        double x = p.x;
+        for (int i = 0; i < 4; ++i) {
+            const glm::dvec3 slope(1.0, y_reach / y_length * std::cos(x / y_length),
+                                   -z_reach / z_length * std::sin(x / z_length));
+            x += glm::dot(p - at(x), slope) / glm::dot(slope, slope);
+        }
+        return p - at(x);
+    }
+};
+
 /// Treats relevant voxels as boxes, each integrated along `lines` x `lines` lines parallel to x with exact ends.
 inline BallIntegrals integrate_slowly(const RelevancePatch& patch, const glm::dvec3& centre, double radius, int lines)
 {

@@ -102,6 +102,25 @@ std::vector<T> voxels_of(const VolumeSource& source)
     return voxels_in<T>(source, {Size3(0), source.info().size});
 }
 
+/// All voxels of a level of a pyramid.
+template <class T>
+std::vector<T> level_of(const VolumeSource& source, int level)
+{
+    const Size3 size = size_of_level(source.info().size, level);
+    std::vector<T> voxels(size_t(size.x * size.y * size.z));
+    source.read_level(level, {Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
+    return voxels;
+}
+
+/// A volume without voxels, for what depends on its place and size alone.
+inline VolumeInfo volume_of_size(const Size3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
+{
+    VolumeInfo volume;
+    volume.size = size;
+    volume.spacing = spacing;
+    return volume;
+}
+
 /// 5 x 4 x 3 voxels of 16 bits, x + 10 y + 100 z - 99 each, in many formats; tests run in the repository's root.
 inline const std::filesystem::path CHIRALITY = "tests/data/chirality";
 

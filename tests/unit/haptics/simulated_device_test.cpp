@@ -32,23 +32,9 @@ DeviceState read(SimulatedDevice& device, int ticks)
     return state;
 }
 
-/// The vessel of the following test, millimetres: a winding line along x.
+/// The vessel of the following test, millimetres.
 constexpr double VESSEL_RADIUS = 1.0;
-glm::dvec3 vessel_at(double x)
-{
-    return {x, 30.0 + 6.0 * std::sin(x / 12.0), 30.0 + 4.0 * std::cos(x / 9.0)};
-}
-
-/// From the nearest point of the vessel's middle line to `p`, by Newton's method from the same x.
-glm::dvec3 away_from_vessel(const glm::dvec3& p)
-{
-    double x = p.x;
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 slope(1.0, 0.5 * std::cos(x / 12.0), -4.0 / 9.0 * std::sin(x / 9.0));
-        x += glm::dot(p - vessel_at(x), slope) / glm::dot(slope, slope);
-    }
-    return p - vessel_at(x);
-}
+constexpr WindingLine VESSEL{30.0, 6.0, 12.0, 4.0, 9.0};
 
 struct Following {
     double error_mm = 0.0;   ///< RMS distance from the middle line
@@ -82,7 +68,7 @@ Following follow(const HandModel& hand, bool assistance, uint32_t seed)
             return std::min(t, 1.0) * amplitude * glm::sin(angle);  // it begins on the vessel
         };
         HandWish wish;
-        wish.position_m = vessel_at(10.0 + 20.0 * t) + swing(0, 1.5, 0.45) + swing(1, 0.7, 1.1) + swing(2, 0.06, 9.0);
+        wish.position_m = VESSEL.at(10.0 + 20.0 * t) + swing(0, 1.5, 0.45) + swing(1, 0.7, 1.1) + swing(2, 0.06, 9.0);
         wish.position_m *= 1e-3;
         wish.jump = 1;  // it starts there
         device.wish().publish(wish);
@@ -94,8 +80,8 @@ Following follow(const HandModel& hand, bool assistance, uint32_t seed)
             const glm::ivec3 origin = glm::ivec3(glm::round(probe / spacing)) - 24;
             fill_patch(patch, origin, {48, 48, 48}, spacing, [](const glm::dvec3& p) {
                 // Within its slice the vessel is at most sqrt(1 + 0.5^2 + 0.44^2) times as wide as across.
-                const bool is_far = glm::distance(p, vessel_at(p.x)) > 1.3 * VESSEL_RADIUS;
-                return !is_far && glm::length(away_from_vessel(p)) <= VESSEL_RADIUS;
+                const bool is_far = glm::distance(p, VESSEL.at(p.x)) > 1.3 * VESSEL_RADIUS;
+                return !is_far && glm::length(VESSEL.towards(p)) <= VESSEL_RADIUS;
             });
             patch.volume_size = {1000, 1000, 1000};
         }
@@ -103,7 +89,7 @@ Following follow(const HandModel& hand, bool assistance, uint32_t seed)
         const ForceStep now = step(settings, caps, ReadResult::fresh, state, patch, now_ns, memory);
         device.write(now.force_n, uint32_t(tick));
         if (tick < 1500) continue;  // engaged by then
-        const glm::dvec3 away = away_from_vessel(probe);
+        const glm::dvec3 away = VESSEL.towards(probe);
         sum += glm::dot(away, away);
         ++count;
         result.largest_n = std::max(result.largest_n, glm::length(now.force_n));

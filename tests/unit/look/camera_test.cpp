@@ -7,18 +7,12 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
-
-VolumeInfo volume_of(const Size3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
-{
-    VolumeInfo volume;
-    volume.size = size;
-    volume.spacing = spacing;
-    return volume;
-}
 
 glm::dvec3 centre_of(const VolumeInfo& volume)
 {
@@ -67,7 +61,7 @@ long double miss_of_exact_ray(const Camera& camera, const glm::uvec2& pixels, co
 
 TEST_CASE("the ray of a point's projection passes through the point")
 {
-    const VolumeInfo volume = volume_of({40, 60, 50}, {1.0, 0.5, 2.0});
+    const VolumeInfo volume = volume_of_size({40, 60, 50}, {1.0, 0.5, 2.0});
     Camera camera;
     camera.eye = {-70.0, -90.0, 130.0};
     camera.target = {18.0, 20.0, 45.0};
@@ -104,7 +98,7 @@ TEST_CASE("the ray of a point's projection passes through the point")
 
 TEST_CASE("the ray through the middle of the picture hits the target")
 {
-    const VolumeInfo volume = volume_of({64, 64, 64}, {1.0, 1.0, 20.0});
+    const VolumeInfo volume = volume_of_size({64, 64, 64}, {1.0, 1.0, 20.0});
     for (const std::string& side : camera_sides()) {
         Camera camera = camera_looking(side, volume);
         camera.target += glm::dvec3(3.0, -5.0, 7.0);
@@ -121,7 +115,7 @@ TEST_CASE("the ray through the middle of the picture hits the target")
 
 TEST_CASE("the picture is not mirrored: x to the right and z up from the front")
 {
-    const VolumeInfo volume = volume_of({10, 20, 30}, {3.0, 2.0, 1.0});
+    const VolumeInfo volume = volume_of_size({10, 20, 30}, {3.0, 2.0, 1.0});
     struct Case {
         const char* side;
         glm::dvec3 right, down, forward;
@@ -143,7 +137,7 @@ TEST_CASE("the picture is not mirrored: x to the right and z up from the front")
 
 TEST_CASE("a camera that looks at the volume holds all of it with 5 % to spare")
 {
-    const VolumeInfo volume = volume_of({64, 32, 16}, {1.0, 3.0, 2.0});
+    const VolumeInfo volume = volume_of_size({64, 32, 16}, {1.0, 3.0, 2.0});
     const double radius = glm::length(centre_of(volume));
     for (const std::string& side : camera_sides()) {
         const Camera camera = camera_looking(side, volume);
@@ -155,7 +149,7 @@ TEST_CASE("a camera that looks at the volume holds all of it with 5 % to spare")
 
 TEST_CASE("pixels are square in physical units, whatever the aspect and the spacing")
 {
-    const VolumeInfo volume = volume_of({64, 64, 64}, {1.0, 1.0, 20.0});
+    const VolumeInfo volume = volume_of_size({64, 64, 64}, {1.0, 1.0, 20.0});
     const RayPlanes planes = ray_planes(camera_looking("front", volume), {640, 200}, volume);
     CHECK(glm::length(planes.far_dx * volume.spacing) ==
           doctest::Approx(glm::length(planes.far_dy * volume.spacing)).epsilon(1e-13));
@@ -164,7 +158,7 @@ TEST_CASE("pixels are square in physical units, whatever the aspect and the spac
 
 TEST_CASE("rays are accurate to 1e-9 voxels from 1e-3 to 1e7 volume sizes away")
 {
-    const VolumeInfo volume = volume_of({64, 48, 56}, {1.0, 1.5, 0.75});
+    const VolumeInfo volume = volume_of_size({64, 48, 56}, {1.0, 1.5, 0.75});
     const glm::dvec3 centre = centre_of(volume);
     const double radius = glm::length(centre);
     const glm::dvec3 back = glm::normalize(glm::dvec3(0.31, -0.77, 0.42));
@@ -191,7 +185,7 @@ TEST_CASE("rays are accurate to 1e-9 voxels from 1e-3 to 1e7 volume sizes away")
 
 TEST_CASE("the planes touch the bounding sphere, and give way to tighter clip planes")
 {
-    const VolumeInfo volume = volume_of({10, 10, 10});
+    const VolumeInfo volume = volume_of_size({10, 10, 10});
     const double radius = std::sqrt(75.0);
     Camera camera = camera_looking("front", volume);
     const double distance = glm::distance(camera.eye, camera.target);
@@ -212,7 +206,7 @@ TEST_CASE("the planes touch the bounding sphere, and give way to tighter clip pl
 
 TEST_CASE("an eye inside the volume sees from just before itself")
 {
-    const VolumeInfo volume = volume_of({10, 10, 10}, {0.5, 1.0, 2.0});
+    const VolumeInfo volume = volume_of_size({10, 10, 10}, {0.5, 1.0, 2.0});
     Camera camera;
     camera.eye = centre_of(volume);
     camera.target = camera.eye + glm::dvec3(0, 1, 0);
@@ -226,7 +220,7 @@ TEST_CASE("an eye inside the volume sees from just before itself")
 
 TEST_CASE("nothing is between the planes where near is behind far or the volume out of reach")
 {
-    const VolumeInfo volume = volume_of({10, 10, 10});
+    const VolumeInfo volume = volume_of_size({10, 10, 10});
     for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
         Camera camera = camera_looking("top", volume);
         camera.projection = projection;
@@ -250,7 +244,7 @@ TEST_CASE("nothing is between the planes where near is behind far or the volume 
 
 TEST_CASE("shares tell where the clip range and the target lie, also where the volume is out of reach")
 {
-    const VolumeInfo volume = volume_of({10, 10, 10});
+    const VolumeInfo volume = volume_of_size({10, 10, 10});
     for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic})
         for (const double near : {0.0, 5.0, 28.0, 1000.0}) {
             CAPTURE(near);
@@ -280,7 +274,7 @@ TEST_CASE("shares tell where the clip range and the target lie, also where the v
 
 TEST_CASE("orthographic rays are parallel to the last bit")
 {
-    const VolumeInfo volume = volume_of({64, 64, 64}, {1.0, 1.1, 1.3});
+    const VolumeInfo volume = volume_of_size({64, 64, 64}, {1.0, 1.1, 1.3});
     Camera camera = camera_looking("left", volume);
     camera.eye += glm::dvec3(1e6, 3.0, -17.0);
     camera.projection = Camera::Projection::orthographic;
@@ -293,7 +287,7 @@ TEST_CASE("orthographic rays are parallel to the last bit")
 
 TEST_CASE("degenerate cameras are refused")
 {
-    const VolumeInfo volume = volume_of({10, 10, 10});
+    const VolumeInfo volume = volume_of_size({10, 10, 10});
     const Camera good = camera_looking("front", volume);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
@@ -335,7 +329,7 @@ TEST_CASE("degenerate cameras are refused")
 
 TEST_CASE("a side view turns to the viewer's right, tilts upwards and comes closer")
 {
-    const VolumeInfo volume = volume_of({64, 32, 16}, {1.0, 3.0, 2.0});
+    const VolumeInfo volume = volume_of_size({64, 32, 16}, {1.0, 3.0, 2.0});
     const auto check_equal = [](const Camera& a, const Camera& b) {
         CHECK(glm::distance(a.eye, b.eye) < 1e-9);
         CHECK(glm::distance(a.target, b.target) < 1e-9);

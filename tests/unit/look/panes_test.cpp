@@ -5,19 +5,14 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/volume_files.h"
+
 #include "engine/look/overlay.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
-
-VolumeInfo volume_of(const Size3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
-{
-    VolumeInfo info;
-    info.size = size;
-    info.spacing = spacing;
-    return info;
-}
 
 Camera looking()
 {
@@ -36,7 +31,7 @@ ViewSettings arranged(Arrangement arrangement)
 
 TEST_CASE("panes cover the picture once, the camera's first")
 {
-    const VolumeInfo volume = volume_of({40, 30, 50});
+    const VolumeInfo volume = volume_of_size({40, 30, 50});
     for (const Arrangement arrangement :
          {Arrangement::single, Arrangement::stereo, Arrangement::overview, Arrangement::slices})
         for (const glm::uvec2 pixels : {glm::uvec2(64, 48), glm::uvec2(61, 33), glm::uvec2(16, 200)}) {
@@ -107,7 +102,7 @@ TEST_CASE("eyes at no distance are the camera; orthographic ones turn about the 
 
 TEST_CASE("a slice's plane goes through the probe, half-way between the clip planes")
 {
-    const VolumeInfo volume = volume_of({40, 30, 50}, {0.5, 0.75, 2.0});
+    const VolumeInfo volume = volume_of_size({40, 30, 50}, {0.5, 0.75, 2.0});
     for (const glm::dvec3 probe : {glm::dvec3(3.5, 4.5, 5.5), glm::dvec3(-5.0, 100.0, 49.9), glm::dvec3(20, 15, 25)})
         for (const double zoom : {1.0, 4.0}) {
             ViewSettings settings = arranged(Arrangement::slices);
@@ -153,7 +148,7 @@ TEST_CASE("a ball's silhouette is where rays touch it")
 
 TEST_CASE("a probe out of sight has an arrow at the border, towards it")
 {
-    const VolumeInfo volume = volume_of({40, 30, 50});
+    const VolumeInfo volume = volume_of_size({40, 30, 50});
     const Pane pane = panes_of({}, looking(), {400, 300}, volume, glm::dvec3(0.0))[0];
     OverlayScene scene{.main = looking(), .main_pixels = {400, 300}};
     const CameraAxes axes = axes_of(scene.main);
@@ -178,7 +173,7 @@ TEST_CASE("a probe out of sight has an arrow at the border, towards it")
 
 TEST_CASE("a map shows the frustum: near edges solid, far ones stippled")
 {
-    const VolumeInfo volume = volume_of({40, 30, 50});
+    const VolumeInfo volume = volume_of_size({40, 30, 50});
     Camera main;
     main.eye = {20.0, -20.0, 26.0};
     main.target = {20.5, 15.0, 25.0};

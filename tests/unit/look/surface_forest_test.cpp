@@ -10,17 +10,14 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
 
-VolumeInfo volume()
-{
-    VolumeInfo info;
-    info.size = Size3(1000);
-    return info;
-}
+const VolumeInfo VOLUME = volume_of_size(Size3(1000));
 
 class Random {
 public:
@@ -89,7 +86,7 @@ struct Watched {
     std::vector<gpu::SurfaceNode> sent_nodes;
     std::vector<gpu::Surface> sent_list;
 
-    explicit Watched(const std::vector<KeyedSurface>& surfaces) : forest(surfaces, volume())
+    explicit Watched(const std::vector<KeyedSurface>& surfaces) : forest(surfaces, VOLUME)
     {
         for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
         sent_nodes = forest.nodes();
@@ -100,7 +97,7 @@ struct Watched {
 
     bool replace(const std::vector<uint64_t>& keys, const std::vector<KeyedSurface>& surfaces)
     {
-        if (!forest.replace(keys, surfaces, volume())) return false;
+        if (!forest.replace(keys, surfaces, VOLUME)) return false;
         for (const uint64_t key : keys) truth.erase(key);
         for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
         return true;
@@ -122,7 +119,7 @@ struct Watched {
         std::vector<gpu::Surface> found = found_in(nodes, sent_list);
         std::vector<KeyedSurface> wanted;
         for (const auto& [key, look] : truth) wanted.push_back({key, look});
-        std::vector<gpu::Surface> expected = surface_tree(wanted, volume()).list;
+        std::vector<gpu::Surface> expected = surface_tree(wanted, VOLUME).list;
         std::ranges::sort(found, is_before);
         std::ranges::sort(expected, is_before);
         REQUIRE(found.size() == expected.size());

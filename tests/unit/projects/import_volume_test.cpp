@@ -85,15 +85,6 @@ std::map<std::string, std::string> content_of(const fs::path& folder)
     return content;
 }
 
-template <class T>
-std::vector<T> level_of(const VolumeSource& source, int level)
-{
-    const Size3 size = size_of_level(source.info().size, level);
-    std::vector<T> voxels(size_t(size.x * size.y * size.z));
-    source.read_level(level, {Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
-    return voxels;
-}
-
 class Folder : public TemporaryFolder {
 public:
     ImportReport import(const VolumeSource& source, const std::string& name = "project",

@@ -23,15 +23,6 @@ namespace {
 constexpr int64_t SIDE = gpu::BRICK_SIZE;
 
 template <class T>
-std::vector<T> level_of(const VolumeSource& source, int level)
-{
-    const Size3 size = size_of_level(source.info().size, level);
-    std::vector<T> voxels(size_t(size.x * size.y * size.z));
-    source.read_level(level, {Size3(0), size}, std::as_writable_bytes(std::span(voxels)));
-    return voxels;
-}
-
-template <class T>
 std::vector<T> noise(const Size3& size, uint32_t seed)
 {
     std::mt19937 random(seed);

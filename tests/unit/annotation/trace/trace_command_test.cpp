@@ -13,6 +13,7 @@
 #include "engine/device/trace_surfaces.h"
 #include "engine/live/trace_marks.h"
 #include "tests/support/random_annotation.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 
@@ -43,12 +44,7 @@ SelectOp nearest(const glm::dvec3& voxel, std::optional<double> within = {})
 
 std::string refusal(const Tracing& work, const TraceOp& op)
 {
-    try {
-        static_cast<void>(work.effect(op));
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "(not refused)";
+    return test::error_of([&] { static_cast<void>(work.effect(op)); });
 }
 
 }  // namespace
