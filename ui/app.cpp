@@ -63,7 +63,7 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
     if (document_) document_->screen.clear();
     look_again();
     try {
-        document_ = Document::open(*renderer_, std::move(opened), path, view_options, !settings.empty());
+        document_ = Document::open(*renderer_, std::move(opened), path, view_options, settings);
     } catch (const Error& error) {
         if (!document_) throw;
         bring_back(error.what());
@@ -265,6 +265,7 @@ void App::work()
 {
     if (!document_) return;
     attempt(touching_, [this] { follow_device(); });
+    attempt(recording_, [this] { follow_settings(); });
     attempt(painting_, [this] { follow_stroke(); });
     attempt(previewing_, [this] { show_preview(); });
     attempt(looking_, [this] { follow_look(); });

@@ -42,6 +42,8 @@ private:
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
     [[noreturn]] void bring_back(const std::string& why);
     void note_edit();
+    void follow_settings();
+    void record_settings();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void handle_events(double timeout_s);
     void work();
@@ -138,8 +140,9 @@ private:
     bool shows_help_ = false;
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
+    bool settings_to_record_ = false, was_set_in_this_turn_ = false;
     bool was_asked_to_close_ = false;  ///< and could not save the settings; nothing was done since
-    Attempt events_, touching_, painting_, previewing_, looking_, photographing_, drawing_;
+    Attempt events_, touching_, recording_, painting_, previewing_, looking_, photographing_, drawing_;
     std::optional<double> undrawn_since_s_;  ///< every frame has failed since then
     Screenshots screenshots_;
     bool device_paints_ = false;  ///< its paint button is down

@@ -1,5 +1,7 @@
 // Actions on the work: undo and redo, saving, pictures, opening another scan.
 
+#include <imgui/imgui.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -10,6 +12,7 @@ namespace shvr::ui {
 
 void App::apply(const Undo&)
 {
+    record_settings();
     const Command* command = document_->annotator.undo();
     if (!command) return say("Nothing to undo");
     show_changes(*command);
@@ -18,6 +21,7 @@ void App::apply(const Undo&)
 
 void App::apply(const Redo&)
 {
+    record_settings();
     const Command* command = document_->annotator.redo();
     if (!command) return say("Nothing to redo");
     show_changes(*command);
@@ -31,6 +35,11 @@ void App::show_changes(const Command& command)
     const bool is_traced = std::ranges::any_of(
         command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
     if (is_traced) document.drags_node = false;
+    const bool is_set = std::ranges::any_of(
+        command.changes, [](const Change& change) { return std::holds_alternative<SettingChange>(change); });
+    if (!is_set) return;
+    document.take_settings();
+    look_again();
 }
 
 void App::apply(const Save&)
@@ -72,9 +81,26 @@ void App::save_before_leaving()
     save();
 }
 
+/// Makes a step of the history of what was set, once the hand has let go: one drag is one step.
+void App::follow_settings()
+{
+    const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || ImGui::IsAnyMouseDown();
+    if (!settings_to_record_ || is_being_set || document_->annotator.stroke_is_running()) return;
+    record_settings();
+}
+
+/// Of what follows, undo is to take back that first.
+void App::record_settings()
+{
+    if (document_->annotator.stroke_is_running()) return;
+    settings_to_record_ = false;
+    document_->record_settings();
+}
+
 void App::note_edit()
 {
     document_->note_edit();
+    settings_to_record_ = was_set_in_this_turn_ = true;
     was_asked_to_close_ = false;
 }
 
@@ -111,6 +137,7 @@ std::string App::finish_stroke()
 void App::save()
 {
     const std::string unpainted = finish_stroke();
+    record_settings();
     document_->save();
     const std::filesystem::path& trace = document_->session.trace_path;
     const bool has_trace = !trace.empty() && std::filesystem::exists(trace);

@@ -6,6 +6,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/live/trace_marks.h"
 #include "engine/session/label_looks.h"
+#include "engine/session/lasting_settings.h"
 
 namespace shvr::ui {
 
@@ -32,7 +33,7 @@ void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source,
 }  // namespace
 
 std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                                         const View::Options& view_options, bool overridden)
+                                         const View::Options& view_options, const std::vector<std::string>& overridden)
 {
     load(renderer, opened.source, opened.statistics, opened.session);
     std::unique_ptr<Document> document(
@@ -43,7 +44,7 @@ std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opene
 }
 
 Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
-                   const View::Options& view_options, bool overridden)
+                   const View::Options& view_options, const std::vector<std::string>& overridden)
     : session_path(path),
       session(std::move(opened.session)),
       source(std::move(opened.source)),
@@ -68,7 +69,8 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 
 void Document::load_work(Renderer& renderer)
 {
-    messages = annotator.open(work_files(session, volume()));
+    messages = annotator.open(work_files(session, volume(), overridden_));
+    set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
@@ -150,11 +152,25 @@ void Document::keep_view() const
 {
     const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
     std::error_code ignored;
-    if (is_kept || overridden_ || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored)) return;
+    if (is_kept || !overridden_.empty() || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored))
+        return;
     try {
         write_session();
     } catch (const Error&) {  // a camera position is not worth an error message
     }
+}
+
+void Document::record_settings()
+{
+    const SettingValues now = lasting_settings(session);
+    annotator.change_settings(difference_of(annotator.work().settings(), now), now);
+}
+
+void Document::take_settings()
+{
+    set_lasting_settings(session, annotator.work().settings());
+    annotator.renderer().scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+    note_edit();
 }
 
 void Document::save()
@@ -163,8 +179,7 @@ void Document::save()
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
     annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
-    annotator.work().save(label_looks(session.groups, annotator.document().mask));
-    write_session();
+    annotator.work().save(label_looks(session.groups, annotator.document().mask), [this] { write_session(); });
     note_saved();
 }
 

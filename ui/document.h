@@ -20,10 +20,12 @@
 namespace shvr::ui {
 
 struct Document {
-    /// Loads the volume onto the device, then the saved work. `overridden`: the session differs from its file. Fails if
+    /// Loads the volume onto the device, then the saved work. `overridden`: "key=value" settings in which the session
+    /// differs from its file. Fails if
     /// either cannot be loaded; then the device holds no volume. The mouse moves the probe.
     static std::unique_ptr<Document> open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                                          const View::Options& view_options, bool overridden = false);
+                                          const View::Options& view_options,
+                                          const std::vector<std::string>& overridden = {});
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
@@ -67,6 +69,10 @@ struct Document {
     /// Call after anything that may have changed the session, except the camera and the probe's position: clears the
     /// cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
+    /// Makes a step of the history of what was set since the last one. Not while a stroke is running.
+    void record_settings();
+    /// Takes the settings of the work, after undo and redo.
+    void take_settings();
     /// Writes the mask, the offsets and the trace, then the session; each file appears whole or not at all.
     void save();
     /// Writes the session if only the camera and the probe's position changed and it already has a file. So just
@@ -76,7 +82,7 @@ struct Document {
 
 private:
     Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
-             const View::Options& view_options, bool overridden);
+             const View::Options& view_options, const std::vector<std::string>& overridden);
     void load_work(Renderer& renderer);
     void name_trace();
     void write_session() const;
@@ -84,8 +90,8 @@ private:
     Session edits() const;
     void note_saved();
 
-    bool overridden_;      ///< by settings that are not in the file
-    Session saved_edits_;  ///< edits() of the session last read or written
+    std::vector<std::string> overridden_;  ///< settings that are not in the file
+    Session saved_edits_;                  ///< edits() of the session last read or written
     Camera saved_camera_;
     glm::dvec3 saved_probe_voxel_{0.0};
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()

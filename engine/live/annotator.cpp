@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/session/lasting_settings.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -43,6 +44,14 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume)
             .density = session.density_path,
             .volume_hash = session.volume_hash,
             .volume = volume};
+}
+
+WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden)
+{
+    WorkFiles files = work_files(session, volume);
+    files.settings = without_overridden(lasting_settings(session), overridden);
+    files.normalized = normalized_settings;
+    return files;
 }
 
 Annotator::Annotator(Renderer& renderer)
@@ -239,6 +248,12 @@ const Command* Annotator::edit_trace(std::string label, std::vector<TraceChange>
     const Command* command = work_.perform({std::move(label), as_changes(std::move(changes))});
     if (command) show(*command);
     return command;
+}
+
+const Command* Annotator::change_settings(std::string label, const SettingValues& values)
+{
+    SHVR_CHECK(!stroke_);
+    return work_.change_settings(std::move(label), values);
 }
 
 const Command* Annotator::undo()

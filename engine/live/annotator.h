@@ -21,6 +21,9 @@ PaintOp with_offset(PaintOp op, const TransferFunction& function);
 
 /// The files in which a session keeps its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
+/// And the lasting settings of an `OpenedSession`, but for those that the "key=value" settings in `overridden` set this
+/// time only.
+WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
@@ -71,6 +74,9 @@ public:
     /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
     /// until the history changes; null where `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
+
+    /// As Work::change_settings; not while a stroke is running. The session is the caller's.
+    const Command* change_settings(std::string label, const SettingValues& values);
 
     /// The command undone or redone; null where there is none left, or a stroke is running.
     const Command* undo();

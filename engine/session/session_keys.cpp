@@ -318,6 +318,25 @@ void fields(Fields& f, SurfaceLook& surface)
     f.color("color", surface.color, {"colour"});
 }
 
+namespace {
+
+/// In files, other sections stand between these and the cuts.
+void look_fields(Fields& f, Session& session)
+{
+    f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
+    fields(f, session.groups);
+    f.section("light", session.light);
+    f.section("blend", session.blend);
+}
+
+}  // namespace
+
+void lasting_fields(Fields& f, Session& session)
+{
+    look_fields(f, session);
+    f.section("cut", session.cut);
+}
+
 void fields(Fields& f, Session& session)
 {
     int64_t version = 1;
@@ -325,10 +344,7 @@ void fields(Fields& f, Session& session)
     f.section("volume", [&](Fields& volume) { volume_fields(volume, session); },
               {.meaning = "one of the three forms below", .allowed = "object", .is_required = true});
     camera_fields(f, session);
-    f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
-    fields(f, session.groups);
-    f.section("light", session.light);
-    f.section("blend", session.blend);
+    look_fields(f, session);
     f.section("render", session.render);
     f.section("view", session.view);
     f.section("interaction", session.interaction);

@@ -119,6 +119,8 @@ public:
 
 // session_keys.cpp, session_keys_look.cpp, session_keys_camera.cpp
 void fields(Fields& f, Session& session);
+/// The sections of lasting_settings.h.
+void lasting_fields(Fields& f, Session& session);
 void fields(Fields& f, Groups& groups);
 void fields(Fields& f, SurfaceLook& surface);
 void fields(Fields& f, ProbeSettings& probe);
@@ -158,6 +160,8 @@ inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
 CameraSpec read_camera(const JsonNode& node);
+/// Reads the sections that `lasting_fields` visits into a new session; the others keep their defaults.
+Session read_lasting(const JsonDocument& document);
 /// Whether a camera is given as an object, not by name.
 bool is_camera_object(const std::string& name_or_json);
 glm::dvec3 read_color(const JsonNode& node);

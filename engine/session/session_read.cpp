@@ -235,6 +235,13 @@ Session read_session(const JsonDocument& document, const std::filesystem::path& 
     return session;
 }
 
+Session read_lasting(const JsonDocument& document)
+{
+    Session session;
+    Reader::read(document.root(), {}, [&](Fields& f) { lasting_fields(f, session); });
+    return session;
+}
+
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings)
 {

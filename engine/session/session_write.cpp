@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/look/session_color.h"
+#include "engine/session/lasting_settings.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -127,7 +128,54 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
+/// Whether `value` says more than where to look further.
+std::string leaf_text(const OrderedJson& leaves, const std::string& path)
+{
+    const auto found = leaves.find(path);
+    return found == leaves.end() ? std::string() : found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+/// One section's difference: its name and, where few values differ, which.
+std::string difference_of(std::string name, const std::string& before, const std::string& after)
+{
+    std::ranges::replace(name, '_', ' ');
+    if (before.empty() || after.empty()) return name;
+    const OrderedJson was = OrderedJson::parse(before).flatten(), is = OrderedJson::parse(after).flatten();
+    std::vector<std::string> paths;
+    for (const OrderedJson& leaves : {was, is})
+        for (const auto& leaf : leaves.items())
+            if (leaf_text(was, leaf.key()) != leaf_text(is, leaf.key()) &&
+                std::ranges::find(paths, leaf.key()) == paths.end())
+                paths.push_back(leaf.key());
+    if (paths.size() != 1 || paths.front().size() < 2 || name == "transfer function") return name;
+    std::string path = paths.front().substr(1);
+    std::ranges::replace(path, '/', ' ');
+    std::ranges::replace(path, '_', ' ');
+    const std::string from = leaf_text(was, paths.front()), to = leaf_text(is, paths.front());
+    return sentence(name, ": ", path, from.empty() ? "" : " ", from, to.empty() ? "" : from.empty() ? " " : " to ", to);
+}
+
 }  // namespace
+
+SettingValues lasting_settings(const Session& session)
+{
+    Session written = session;  // fields take a mutable session
+    const OrderedJson sections = Writer::write({}, [&](Fields& f) { lasting_fields(f, written); });
+    SettingValues values;
+    for (const auto& section : sections.items()) values[section.key()] = section.value().dump();
+    return values;
+}
+
+std::string difference_of(const SettingValues& before, const SettingValues& after)
+{
+    std::string text;
+    for (const auto& [name, value] : after) {
+        const auto was = before.find(name);
+        const std::string old = was == before.end() ? std::string() : was->second;
+        if (old != value) text += (text.empty() ? "" : "; ") + difference_of(name, old, value);
+    }
+    return text;
+}
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {

@@ -307,6 +307,31 @@ class View(CliTest):
         self.assertIn(f"Opened {other}", report["messages"])
         self.assertEqual(self.saved(session)["probe"]["group"], 7)
 
+    def test_what_was_set_survives_a_kill_and_is_undone_in_order_with_paint(self):
+        session = self.write_ball()
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        x, y = self.middle()
+        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.do("click", 3, pause_s=1)
+        # A cutting plane while its key is held, then the transfer function's preset: a step each.
+        self.do("keydown", "y", "sleep", 0.3, "keyup", "y", pause_s=0.7)
+        self.do("keydown", "u", "sleep", 0.3, "keyup", "u", pause_s=0.7)
+        self.program.kill()
+        self.program.communicate()
+        self.assertNotIn("lower", json.loads(session.read_text()).get("cut", {}))
+
+        self.start(session)
+        self.wait_for_window("sphere.* - SHVR")
+        self.do("key", "ctrl+z", pause_s=0.7)
+        report = self.finish()
+        self.assertIn("nothing is lost", " ".join(report["messages"]))
+        self.assertTrue(any(message.startswith("Undone: cut: lower") for message in report["messages"]), report["messages"])
+        self.assertGreater(report["voxels_in_group"]["3"], 0)
+        kept = self.saved(session)["cut"]["lower"]
+        self.assertGreater(kept[0], 0.0)
+        self.assertEqual(kept[1], 0.0)
+
     def test_where_it_was_looked_at_from_is_kept_where_there_is_a_session(self):
         session = self.write_ball()
         x, y = self.middle()

@@ -83,7 +83,10 @@ uint64_t hash_of(const TraceGraph& trace)
 
 uint64_t hash_of(const Document& document)
 {
-    return mixed(mixed(hash_of(document.mask), hash_of(document.density)), hash_of(document.trace));
+    uint64_t hash = mixed(mixed(hash_of(document.mask), hash_of(document.density)), hash_of(document.trace));
+    for (const auto& [name, value] : document.settings.values())
+        hash = mixed(mixed(hash, std::hash<std::string>()(name)), std::hash<std::string>()(value));
+    return hash;
 }
 
 Command random_painting(const Document& document, std::mt19937& random)
@@ -157,8 +160,20 @@ Command random_tracing(const Document& document, std::mt19937& random)
     return command;
 }
 
+Command random_setting(const Document& document, std::mt19937& random)
+{
+    const SettingValues& values = document.settings.values();
+    const std::string name = sentence("section ", random() % 3);
+    const auto found = values.find(name);
+    const std::string before = found == values.end() ? std::string() : found->second;
+    const std::string after = sentence("{\"value\":", random() % 4, "}");
+    if (before == after) return {"nothing", {}};
+    return {"setting", {SettingChange{name, before, after}}};
+}
+
 Command random_command(const Document& document, std::mt19937& random)
 {
+    if (random() % 8 == 0) return random_setting(document, random);
     return random() % 3 == 0 ? random_tracing(document, random) : random_painting(document, random);
 }
 

@@ -29,7 +29,9 @@ uint64_t hash_of(const Document& document);
 Command random_painting(const Document& document, std::mt19937& random);
 /// Adds, links, moves or deletes whatever is nearest to a random position, or sets its group or size.
 Command random_tracing(const Document& document, std::mt19937& random);
-/// Either painting or tracing.
+/// Sets one of a few sections to one of a few texts.
+Command random_setting(const Document& document, std::mt19937& random);
+/// Painting, tracing or setting.
 Command random_command(const Document& document, std::mt19937& random);
 
 }  // namespace shvr::test

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "engine/base/text.h"
+#include "engine/session/lasting_settings.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
@@ -152,7 +153,8 @@ Opened open(const std::string& path, const Common& common, Work::Start start)
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
-    warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
+    warn(opened.annotator->open(work_files(opened.session, opened.source->info(), common.settings), start), common);
+    set_lasting_settings(opened.session, without_overridden(opened.annotator->work().settings(), common.settings));
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
     return opened;

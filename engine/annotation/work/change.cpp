@@ -19,6 +19,10 @@ TraceGraph& part_for(Document& document, const TraceChange&)
 {
     return document.trace;
 }
+Settings& part_for(Document& document, const SettingChange&)
+{
+    return document.settings;
+}
 
 Direction opposite(Direction direction)
 {
@@ -31,6 +35,12 @@ const Change& in_order(std::span<const Change> changes, size_t i, Direction dire
     return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
 }
 
+std::string why_it_does_not_fit(Document& document, const Change& change, Direction direction)
+{
+    return std::visit(
+        [&](const auto& record) { return part_for(document, record).why_it_does_not_fit(record, direction); }, change);
+}
+
 }  // namespace
 
 void apply(Document& document, const Change& change, Direction direction)
@@ -40,16 +50,23 @@ void apply(Document& document, const Change& change, Direction direction)
 
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
 {
+    // Changes of these say what comes after and are not held against what was before, so they cannot be reversed.
+    const TraceSelection selection = document.trace.selection();
+    const Settings settings = document.settings;
     for (size_t i = 0; i < changes.size(); ++i) {
         const Change& change = in_order(changes, i, direction);
-        const std::string reason = std::visit(
-            [&](const auto& record) { return part_for(document, record).why_it_does_not_fit(record, direction); },
-            change);
+        const std::string reason = why_it_does_not_fit(document, change, direction);
         if (reason.empty()) {
             apply(document, change, direction);
             continue;
         }
-        while (i > 0) apply(document, in_order(changes, --i, direction), opposite(direction));
+        while (i > 0) {
+            const Change& applied = in_order(changes, --i, direction);
+            if (why_it_does_not_fit(document, applied, opposite(direction)).empty())
+                apply(document, applied, opposite(direction));
+        }
+        document.trace.select(selection);
+        document.settings = settings;
         fail(reason);
     }
 }
@@ -61,6 +78,7 @@ uint64_t memory_of(std::span<const Change> changes)
         [](const MaskBrickChange& mask) { return mask.runs.size() * sizeof(MaskRun); },
         [](const DensityBrickChange& density) { return density.runs.size() * sizeof(DensityRun); },
         [](const TraceChange&) { return size_t{0}; },
+        [](const SettingChange& setting) { return setting.name.size() + setting.before.size() + setting.after.size(); },
     };
     for (const Change& change : changes) bytes += std::visit(more, change);
     return bytes;
@@ -79,6 +97,7 @@ Touched touched_by(const Document& document, std::span<const Change> changes)
             touched.raised.push_back(document.density.reach_of(density));
         },
         [&](const TraceChange&) { touched.trace = true; },
+        [&](const SettingChange&) { touched.settings = true; },
     };
     for (const Change& change : changes) std::visit(touch, change);
     return touched;

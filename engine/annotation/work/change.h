@@ -14,6 +14,7 @@
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/mask.h"
+#include "engine/annotation/settings.h"
 #include "engine/annotation/trace/tracing.h"
 
 namespace shvr {
@@ -23,9 +24,10 @@ struct Document {
     Mask mask;
     TraceGraph trace;
     DensityField density{};
+    Settings settings{};
 };
 
-using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange>;
+using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange, SettingChange>;
 
 /// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). It does not compile where
 /// a kind is left out.
@@ -60,6 +62,7 @@ struct Touched {
     std::vector<int64_t> mask_bricks{};  ///< with voxels that change their group
     std::vector<VoxelBox> raised{};      ///< around voxels that change their offset
     bool trace = false;
+    bool settings = false;
 };
 Touched touched_by(const Document& document, std::span<const Change> changes);
 

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-enum class Tag : uint8_t { mask_brick = 1, density_brick, node, internode, size, selection };
+enum class Tag : uint8_t { mask_brick = 1, density_brick, node, internode, size, selection, setting };
 
 class Writer {
 public:
@@ -273,6 +273,12 @@ public:
         write(out_, change.after);
     }
 
+    void operator()(const SettingChange& change) const
+    {
+        out_.byte(uint8_t(Tag::setting));
+        for (const std::string& text : {change.name, change.before, change.after}) out_.text(text);
+    }
+
 private:
     template <class Record>
     void number(Tag tag, uint64_t number, const Record& record) const
@@ -308,8 +314,13 @@ Change read_change(Reader& in)
             record.after = read_selection(in);
             return TraceChange(std::move(record));
         }
+        case Tag::setting: {
+            SettingChange record;
+            for (std::string* text : {&record.name, &record.before, &record.after}) *text = in.text();
+            return record;
+        }
     }
-    fail("a change is of kind ", int(tag), "; expected 1 to 6");
+    fail("a change is of kind ", int(tag), "; expected 1 to 7");
 }
 
 /// The records that recreate all bricks.
@@ -355,6 +366,13 @@ std::vector<std::byte> bytes_of(const SavedFiles& files)
         out.byte(file ? 1 : 0);
         out.fixed(file.value_or(0), 8);
     }
+    if (files.settings) {
+        out.whole(files.settings->size());
+        for (const auto& [name, value] : *files.settings) {
+            out.text(name);
+            out.text(value);
+        }
+    }
     return out.take();
 }
 
@@ -366,6 +384,12 @@ SavedFiles saved_files_of(std::span<const std::byte> bytes)
         const bool is_there = in.byte() != 0;
         const uint64_t digest = in.fixed(8);
         if (is_there) *file = digest;
+    }
+    if (in.at_end()) return files;
+    files.settings.emplace();
+    for (size_t count = in.count(2); count > 0; --count) {
+        std::string name = in.text();
+        (*files.settings)[std::move(name)] = in.text();
     }
     in.expect_end();
     return files;
@@ -398,6 +422,7 @@ std::vector<std::byte> bytes_of(const Document& document)
     for (const auto& [number, internode] : trace.internodes()) change(TraceInternodeChange{number, {}, internode});
     for (const auto& [group, radius] : trace.internode_radii()) change(TraceSizeChange{group, {}, radius});
     change(TraceSelectionChange{{}, trace.selection()});
+    for (const auto& [name, value] : document.settings.values()) change(SettingChange{name, {}, value});
     return out.take();
 }
 

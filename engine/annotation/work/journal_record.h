@@ -28,6 +28,7 @@ struct JournalSubject {
 /// The files that hold the annotation between sessions, as they were when the journal last saw them; nothing: no file.
 struct SavedFiles {
     std::optional<uint64_t> mask, trace, density;  ///< file_digest
+    std::optional<SettingValues> settings{};       ///< as the session's file was written; unknown in old journals
     bool operator==(const SavedFiles&) const = default;
 };
 

@@ -32,6 +32,7 @@ void for_each_row(std::span<const Change> changes, const Size3& volume_size, con
         [&](const MaskBrickChange& mask) { for_brick(mask); },
         [&](const DensityBrickChange& density) { for_brick(density); },
         [](const TraceChange&) {},
+        [](const SettingChange&) {},
     };
     for (const Change& change : changes) std::visit(voxels, change);
 }

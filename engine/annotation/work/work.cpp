@@ -100,6 +100,7 @@ std::vector<std::string> Work::open(const WorkFiles& files, Start start)
     const std::string name = files.journal.string();
     is_to_set_aside_ = is_fresh_ && scan_.inode != 0;
     touched_.trace = touched_.density = is_fresh_;  // existing files belong to earlier work
+    document_.settings = Settings(files.settings);
     if (is_fresh_) return messages;
     if (!scan_.records.empty()) {
         check_subject();
@@ -120,6 +121,7 @@ std::vector<std::string> Work::open(const WorkFiles& files, Start start)
         messages.push_back(sentence(name, ": its last ", scan_.file_bytes - scan_.end,
                                     " bytes were not written to the end; the ", scan_.records.size(),
                                     " records before are taken"));
+    if (std::string message = compare_settings(); !message.empty()) messages.push_back(std::move(message));
     unsaved_ = steps_since_save(scan_);
     touched_.trace = touched_.density = unsaved_ > 0;
     if (unsaved_ > 0)
@@ -146,25 +148,77 @@ void Work::check_subject() const
         fail(name, ": is of an image with the hash ", found.image, "; expected ", files_.volume_hash);
 }
 
-bool Work::files_are_as_saved() const
+/// What the journal says of the files when they were last written; nothing if that is not known: an interrupted save
+/// may have left old files or new ones.
+std::optional<SavedFiles> Work::last_saved() const
 {
     for (RecordNumber number = scan_.records.size(); number > 0; --number) {
         const RecordKind kind = scan_.records[number - 1].kind;
-        // An interrupted save may have left old files or new ones.
-        if (kind == RecordKind::saving) return true;
+        if (kind == RecordKind::saving) return {};
         if (kind != RecordKind::saved) continue;
         try {
-            return saved_files_of(content_of(number)) == digests();
+            return saved_files_of(content_of(number));
         } catch (const Error&) {
-            return true;  // damage, which replaying reports
+            return {};  // damage, which replaying reports
         }
     }
-    return true;
+    return {};
+}
+
+bool Work::files_are_as_saved() const
+{
+    const std::optional<SavedFiles> saved = last_saved();
+    if (!saved) return true;
+    SavedFiles now = digests();
+    now.settings = saved->settings;
+    return *saved == now;
+}
+
+/// Decides for each setting whether the journal or the session's file is believed. Returns a message for the user.
+std::string Work::compare_settings()
+{
+    SettingValues known = document_.settings.values(), saved = files_.settings;
+    const std::optional<SavedFiles> last = last_saved();
+    if (last && last->settings) saved = *last->settings;
+    if (files_.normalized) {
+        try {
+            known = files_.normalized(known);
+            saved = files_.normalized(saved);
+        } catch (const Error& error) {
+            document_.settings = Settings(files_.settings);
+            return sentence(files_.journal.string(), ": its settings cannot be read: ", error.what(),
+                            "; those of the session's file are taken");
+        }
+    }
+    std::string changed;
+    for (const auto& [name, value] : files_.settings) {
+        const auto in_journal = known.find(name);
+        if (in_journal == known.end()) {
+            known[name] = value;
+        } else if (value != in_journal->second && saved.contains(name) && value != saved[name]) {
+            settings_from_outside_.emplace_back(SettingChange{name, in_journal->second, value});
+            changed += (changed.empty() ? "" : ", ") + name;
+        }
+    }
+    document_.settings = Settings(std::move(known));
+    if (changed.empty()) return {};
+    return sentence(files_.journal.string(),
+                    ": these settings of the session were changed since it was saved: ", changed,
+                    "; they are taken, and can be undone after the next step");
+}
+
+SettingValues Work::settings() const
+{
+    Settings settings = document_.settings;
+    for (const Change& change : settings_from_outside_)
+        settings.apply(std::get<SettingChange>(change), Direction::forwards);
+    return settings.values();
 }
 
 SavedFiles Work::digests() const
 {
-    return {file_digest(files_.mask), file_digest(files_.trace), file_digest(files_.density)};
+    return {file_digest(files_.mask), file_digest(files_.trace), file_digest(files_.density),
+            document_.settings.values()};
 }
 
 void Work::load_files()
@@ -259,13 +313,23 @@ void Work::begin_journal()
     const bool is_new = scan_.records.empty();
     journal_ = std::make_unique<Journal>(files_.journal, scan_);
     scanned_.reset();
-    if (!is_new) return;
+    if (!is_new) return record_settings_from_outside();
     journal_->append(RecordKind::subject, {}, bytes_of(JournalSubject{size_, type_, files_.volume_hash}));
     // Makes the journal readable without the files.
     std::vector<std::byte> state = bytes_of(document_);
     state_bytes_ = state.size();
     journal_->append(RecordKind::state, {}, std::move(state), 1);
     journal_->append(RecordKind::saved, {}, bytes_of(digests()));
+}
+
+/// A change of the session's file by another program is a step like any other, so it can be undone, too.
+void Work::record_settings_from_outside()
+{
+    if (settings_from_outside_.empty()) return;
+    Command command{"settings changed in the session's file", std::exchange(settings_from_outside_, {})};
+    const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
+    history_.perform(document_, std::move(command), number);
+    ++unsaved_;
 }
 
 void Work::set_journal_aside()
@@ -297,6 +361,7 @@ void Work::touch(std::span<const Change> changes)
         [](const MaskBrickChange&) {},  // every save writes the mask
         [&](const TraceChange&) { touched_.trace = true; },
         [&](const DensityBrickChange&) { touched_.density = true; },
+        [](const SettingChange&) {},
     };
     for (const Change& change : changes) std::visit(touch, change);
 }
@@ -329,6 +394,18 @@ void Work::extend(std::vector<Change> changes)
     note_step();
 }
 
+const Command* Work::change_settings(std::string label, const SettingValues& values)
+{
+    Command command{std::move(label), {}};
+    const SettingValues now = settings();
+    for (const auto& [name, value] : values) {
+        const auto found = now.find(name);
+        const std::string before = found == now.end() ? std::string() : found->second;
+        if (before != value) command.changes.emplace_back(SettingChange{name, before, value});
+    }
+    return perform(std::move(command));
+}
+
 const Command* Work::undo()
 {
     return history_.undoable() == 0 ? nullptr : go(&History::undo, RecordKind::undo);
@@ -343,6 +420,7 @@ const Command* Work::go(const Command* (History::*way)(Document&), RecordKind ki
 {
     begin_journal();
     const Command* const command = (history_.*way)(document_);
+    if (!command) return nullptr;  // the step before has just been recorded
     touch(command->changes);
     record(kind);
     ++unsaved_;
@@ -378,7 +456,7 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
     files_.density = density;
 }
 
-std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
+std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks, const std::function<void()>& save_session)
 {
     const bool has_mask = !document_.mask.painted_bricks().empty();
     const bool has_trace = !document_.trace.nodes().empty(), has_offsets = document_.density.voxels() > 0;
@@ -412,6 +490,7 @@ std::vector<fs::path> Work::save(std::vector<LabelImage::Color> looks)
         save_offsets_as(files_.density, document_.density, files_.volume);
         written.push_back(files_.density);
     }
+    if (save_session) save_session();
     loaded_.clear();
     if (journal_) {
         journal_->append(RecordKind::saved, {}, bytes_of(digests()));

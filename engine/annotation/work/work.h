@@ -9,6 +9,7 @@
 // One thread, the main one. Only writing the journal happens elsewhere (journal.h).
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -26,6 +27,10 @@ struct WorkFiles {
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
     VolumeInfo volume{};                               ///< the annotated volume
+    SettingValues settings{};                          ///< of the session, as it was read from its file
+    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails
+    /// where it cannot read them.
+    std::function<SettingValues(const SettingValues&)> normalized{};
 };
 
 class Work {
@@ -44,12 +49,17 @@ public:
     std::vector<std::string> open(const WorkFiles& files, Start start = Start::as_left);
 
     const Document& document() const { return document_; }
+    /// The session's lasting settings: the journal's or, where the session's file was changed since it was saved, the
+    /// file's. The first command then records that change as a step of its own.
+    SettingValues settings() const;
     const History& history() const { return history_; }
 
     /// As History's, but written to the journal first. Fail, with nothing done, if the journal cannot be started, is
     /// locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
+    /// Sets the sections that differ, as one command; null where none does.
+    const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
     /// Not a step of the history. What is selected must exist.
@@ -57,8 +67,10 @@ public:
 
     /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
     /// and offsets are written only if they have changed. Fails if one cannot be written (a retry may succeed), or if
-    /// there is something to save and no file named for it. Returns the files it wrote.
-    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {});
+    /// there is something to save and no file named for it. Returns the files it wrote. `save_session` writes the
+    /// session's file, which then holds `settings()`.
+    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {},
+                                            const std::function<void()>& save_session = {});
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undos and redos since the last save.
@@ -95,6 +107,9 @@ private:
     void load_files();
     SavedFiles digests() const;
     bool files_are_as_saved() const;
+    std::optional<SavedFiles> last_saved() const;
+    std::string compare_settings();
+    void record_settings_from_outside();
     void begin_journal();
     void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
@@ -113,7 +128,8 @@ private:
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool is_fresh_ = false;                  ///< ... because the caller asked for a fresh start
     std::map<std::filesystem::path, std::filesystem::file_time_type>
-        loaded_;  ///< files, and when they were written as they were loaded
+        loaded_;                                 ///< files, and when they were written as they were loaded
+    std::vector<Change> settings_from_outside_;  ///< differences of the session's file, to be recorded
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;
     struct Touched {

@@ -204,6 +204,7 @@ TEST_CASE("records are read as they were written; cut or turned, they are refuse
                 ++fitting;
             } catch (const Error&) {
                 REQUIRE(hash_of(trial) == hash_of(document));
+                REQUIRE((trial.trace.selection() == document.trace.selection()));
                 ++refused;
             }
         }
@@ -218,6 +219,9 @@ TEST_CASE("records are read as they were written; cut or turned, they are refuse
     CHECK(read.trace.next_node() == document.trace.next_node());
     const JournalSubject subject{ANNOTATED_SIZE, VoxelType::uint16, "xxh3-128:0"};
     CHECK((subject_of(bytes_of(subject)) == subject));
-    const SavedFiles files{1, std::nullopt, 3};
-    CHECK((saved_files_of(bytes_of(files)) == files));
+    for (const auto& settings :
+         {std::optional<SettingValues>(), std::optional<SettingValues>(SettingValues{{"light", "{}"}})}) {
+        const SavedFiles files{1, std::nullopt, 3, settings};
+        CHECK((saved_files_of(bytes_of(files)) == files));
+    }
 }

@@ -277,7 +277,7 @@ TEST_CASE("a journal whose checksums hold and whose records do not fit is taken 
         CHECK(fs::remove(desk.path / "a.journal.rest1"));
     };
     check(RecordKind::command, bytes_of(dab(1).changes), 0, "brick 0 does not hold group 0 at 1 ... 1");
-    check(RecordKind::extension, std::vector(3, std::byte(99)), 0, "a change is of kind 99; expected 1 to 6");
+    check(RecordKind::extension, std::vector(3, std::byte(99)), 0, "a change is of kind 99; expected 1 to 7");
     check(RecordKind::redo, {}, 0, "more is done again than was undone");
     check(RecordKind::state, bytes_of(unannotated()), 7, "a state is of record 7 behind it");
     check(RecordKind::state, std::vector(1, std::byte(1)), 5, "it ends too early");

@@ -1,0 +1,21 @@
+#pragma once
+// What of a session is a person's work and undone like paint: the transfer function, groups, light, blending and cuts.
+// Cameras, panes and the probe are not. Any thread.
+
+#include "engine/annotation/settings.h"
+#include "engine/session/session.h"
+
+namespace shvr {
+
+/// The JSON of each section, as a session file holds it: colours are rounded to the 8 bits of their spelling.
+SettingValues lasting_settings(const Session& session);
+/// Sets the sections of `values`; others stay. Fails, changing nothing, where one cannot be read.
+void set_lasting_settings(Session& session, const SettingValues& values);
+/// `values` as this version of the program writes them. Fails like set_lasting_settings.
+SettingValues normalized_settings(const SettingValues& values);
+/// `values` but for the sections that these "key=value" settings set.
+SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings);
+/// What differs, in words: "light: ambient 0.2 to 0.3", "groups: 3 color" or "transfer function".
+std::string difference_of(const SettingValues& before, const SettingValues& after);
+
+}  // namespace shvr
