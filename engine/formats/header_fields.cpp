@@ -152,12 +152,15 @@ void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, c
     if (!spacing) {
         info.spacing = glm::dvec3(1.0);
         info.unit = "voxel";
+        info.spacing_from = info.unit_from = Provenance::assumed;
         info.warnings.emplace_back("no spacing stated; 1 voxel assumed");
         return;
     }
     info.spacing = *spacing;
+    info.spacing_from = Provenance::file;
     if (unit && !unit->empty()) {
         info.unit = plain_unit(*unit);
+        info.unit_from = Provenance::file;
         return;
     }
     info.unit = info.spacing == glm::dvec3(1.0) ? "voxel" : usual_unit;

@@ -5,7 +5,9 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/readers.h"
+#include "engine/formats/restated.h"
 #include "engine/volume/grid.h"
+#include "engine/volume/unit.h"
 
 namespace shvr {
 namespace {
@@ -27,16 +29,13 @@ constexpr Reader READERS[] = {
     {"RAW with a side-car", open_raw_with_side_car},
 };
 
-/// Rendering computes squares and quotients of spacings. Sessions have the same limits.
 void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
 {
-    constexpr double LEAST = 1e-12;
-    constexpr double MOST = 1e12;
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = info.spacing[axis];
-        if (spacing >= LEAST && spacing <= MOST) continue;
-        fail(path.string(), ": spacing along ", "xyz"[axis], " is ", spacing, " ", info.unit, "; expected ", LEAST,
-             " to ", MOST);
+        if (spacing >= MIN_SPACING && spacing <= MAX_SPACING) continue;
+        fail(path.string(), ": spacing along ", "xyz"[axis], " is ", spacing, " ", info.unit, "; expected ",
+             MIN_SPACING, " to ", MAX_SPACING);
     }
 }
 
@@ -118,6 +117,7 @@ std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, con
     for (const Reader& reader : READERS) {
         if (is_folder && !reader.reads_folders) continue;
         if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) {
+            source = restated(std::move(source), path, options);
             check_spacing(path, source->info());
             return source;
         }

@@ -11,7 +11,7 @@ namespace shvr {
 
 class ImportBox {
 public:
-    /// `source` must outlive it. Floats to be reversed are measured first.
+    /// `source` must outlive it. Where voxels are to be reversed, all of them are looked at first.
     ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses);
 
     VoxelType type() const { return source_.info().type; }
@@ -30,7 +30,7 @@ private:
     const VolumeSource& source_;
     VoxelBox box_;
     bool reverses_;
-    double ends_ = 0.0;  ///< smallest plus largest value, for reversing floats
+    double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
 
 }  // namespace shvr

@@ -8,6 +8,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
+#include "engine/formats/zarr/ome_place.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/formats/zarr/zarr_json.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Increment when the layout of an import's files or of its state changes.
-constexpr int LAYOUT = 2;
+constexpr int LAYOUT = 3;
 
 /// In the array's order: z, y, x.
 Json zyx(const glm::dvec3& vector)
@@ -110,9 +111,8 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);
-        // The centre of voxel 0, which is the middle of the voxels it covers. Rotated axes cannot be expressed here.
-        glm::dvec3 translation = 0.5 * (factor - 1.0) * info.spacing;
-        if (info.directions == glm::dmat3(1.0)) translation += info.origin;
+        // The centre of voxel 0, which is the middle of the voxels it covers.
+        const glm::dvec3 translation = ome_translation(info) + 0.5 * (factor - 1.0) * info.spacing;
         datasets.push_back({{"path", std::to_string(level)},
                             {"coordinateTransformations",
                              {{{"type", "scale"}, {"scale", zyx(factor * info.spacing)}},
@@ -129,6 +129,13 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
          {{"description", sentence("each voxel is the ", how == Halving::label ? "most frequent" : "mean",
                                    " of the 2 x 2 x 2 voxels of the level before that there are")}}}};
     Json attributes = {{"multiscales", Json::array({multiscale})}};
+    if (states_place(info)) {
+        const auto list = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
+        attributes[OME_PLACEMENT] = {
+            {"frame", info.frame},
+            {"directions", {list(info.directions[0]), list(info.directions[1]), list(info.directions[2])}},
+            {"origin", list(info.origin)}};
+    }
     if (how == Halving::label) attributes["image-label"] = {{"version", "0.4"}};
     if (labels != nullptr) describe_labels(*labels, attributes);
     return attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

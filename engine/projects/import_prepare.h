@@ -2,8 +2,8 @@
 // Processing of a volume's voxels before they are stored, slab by slab, in this order: crop to a box, reverse
 // intensities, blur, shrink.
 //
-// Reversed integers are the type's smallest plus its largest value minus the voxel (255 - v, -1 - v); reversed floats
-// are the volume's own smallest plus largest finite value minus the voxel.
+// A reversed voxel is the smallest plus the largest finite value of the whole volume, before it is cut, minus the
+// voxel; so the range of values stays as it is, whatever their type, and parts of one volume stay comparable.
 //
 // The blur is a Gaussian sampled at voxel centres, to int(4 sigma + 0.5) voxels on each side, normalised in double,
 // along x, then y, then z. The outermost voxels of the cropped box are repeated outwards. Intermediate sums are float
@@ -61,8 +61,8 @@ private:
     VolumeInfo info_;
 };
 
-/// Fails if the box does not lie inside the volume. `source` must outlive the result. Floats to be reversed are
-/// measured first.
+/// Fails if the box does not lie inside the volume. `source` must outlive the result. Voxels to be reversed
+/// are gone through once before.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options);
 
 }  // namespace shvr

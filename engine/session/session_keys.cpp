@@ -9,6 +9,7 @@
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
+#include "engine/volume/unit.h"
 
 namespace shvr {
 
@@ -65,12 +66,25 @@ const About RAW{
     .allowed = "text",
     .standard = "none"};
 
+const About SPACING{.meaning = "of a voxel, for a file that states none, or instead of what it states",
+                    .allowed = "physical units per voxel, above 0",
+                    .standard = "the file's; `[1, 1, 1]` with `raw` or `procedural`"};
+const About UNIT{
+    .meaning = "of that spacing", .allowed = "text", .standard = "the file's; `\"voxel\"` with `raw` or `procedural`"};
+
 void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
 {
-    f.vector("spacing", spacing, above_zero(1e-12, 1e12),
-             {.meaning = "with `raw` or `procedural`", .allowed = "physical units per voxel, above 0"});
-    f.text("unit", unit, {.meaning = "with `raw` or `procedural`", .allowed = "text"});
+    f.vector("spacing", spacing, above_zero(MIN_SPACING, MAX_SPACING), SPACING);
+    f.text("unit", unit, UNIT);
     f.check("unit", !has_controls(unit), "the name of a unit");
+}
+
+/// Of a file, which may state them itself.
+void spacing_fields(Fields& f, OpenOptions& options)
+{
+    f.vector("spacing", options.spacing, above_zero(MIN_SPACING, MAX_SPACING), SPACING);
+    f.text("unit", options.unit, UNIT);
+    f.check("unit", !has_controls(options.unit), "the name of a unit");
 }
 
 void procedural_fields(Fields& f, ProceduralSpec& spec)
@@ -130,6 +144,7 @@ void volume_fields(Fields& f, Session& session)
            {.meaning = "of a file with several points in time: a number from 1",
             .allowed = "text",
             .standard = "none: such a file is refused"});
+    spacing_fields(f, session.open_options);
 }
 
 // ---- transfer_function, groups, probe, surfaces, annotation ---------------------------------------------------------

@@ -22,6 +22,9 @@ namespace shvr {
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
     std::string frame{};    ///< a number from 1, if there are several points in time
+    /// Given, or instead of what the file states (engine/formats/restated.h).
+    std::optional<glm::dvec3> spacing{};
+    std::string unit{};  ///< empty: the file's
     bool operator==(const OpenOptions&) const = default;
 };
 

@@ -34,6 +34,7 @@ VolumeInfo info_of(const ProceduralSpec& spec)
     info.type = spec.type;
     info.spacing = spec.spacing;
     info.unit = spec.unit;
+    info.spacing_from = info.unit_from = Provenance::given;
     static_cast<void>(voxel_count(info));
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(spec.spacing[axis]) || !(spec.spacing[axis] > 0.0)) {

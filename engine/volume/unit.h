@@ -6,6 +6,9 @@
 
 namespace shvr {
 
+/// Limits of a voxel's side in its unit: rendering computes squares and quotients of them.
+inline constexpr double MIN_SPACING = 1e-12, MAX_SPACING = 1e12;
+
 /// "micron", "µm", "micrometer" -> "um"; unknown units are kept, cut at 60 characters and without control characters.
 std::string plain_unit(std::string_view unit);
 

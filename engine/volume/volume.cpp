@@ -101,6 +101,24 @@ const char* name_of(VoxelType type)
     return "";
 }
 
+const char* name_of(Provenance provenance)
+{
+    return provenance == Provenance::file ? "file" : provenance == Provenance::given ? "given" : "assumed";
+}
+
+bool states_place(const VolumeInfo& info)
+{
+    return !info.frame.empty() || info.origin != glm::dvec3(0.0) || info.directions != glm::dmat3(1.0);
+}
+
+bool are_axes(const glm::dmat3& directions)
+{
+    constexpr double TOLERANCE = 1e-6;
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(glm::length(directions[axis]) - 1.0) < TOLERANCE)) return false;
+    return glm::determinant(directions) > 0.0;
+}
+
 bool is_float(VoxelType type)
 {
     return type == VoxelType::float32 || type == VoxelType::float64;

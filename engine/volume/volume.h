@@ -40,6 +40,11 @@ struct VoxelBox {
     bool operator==(const VoxelBox&) const = default;
 };
 
+/// Where a spacing or a unit comes from: nobody stated it, the file did, or the user (--spacing, --unit, a session).
+enum class Provenance { assumed, file, given };
+/// "assumed", "file", "given".
+const char* name_of(Provenance provenance);
+
 struct VolumeInfo {
     std::string name;    ///< for display: the file's name
     std::string format;  ///< the reader's name for it: "raw", "nrrd", "tiff", ...
@@ -47,6 +52,8 @@ struct VolumeInfo {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
     std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" if the file states none
+    Provenance spacing_from = Provenance::assumed;
+    Provenance unit_from = Provenance::assumed;
     /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" if it states none), the centre of voxel
     /// 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
     /// exported, not drawn: volume space is voxel * spacing. It is right-handed: a reader that finds left-handed axes
@@ -57,6 +64,11 @@ struct VolumeInfo {
     /// What the reader had to assume or ignore, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
+
+/// Whether anything states where the volume lies. If not, `frame` is empty, and the other two are as they begin.
+bool states_place(const VolumeInfo& info);
+/// Three right-handed vectors of length 1, which need not be at right angles, up to the rounding of a text of 7 digits.
+bool are_axes(const glm::dmat3& directions);
 
 /// size.x * size.y * size.z; fails if that exceeds 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);

@@ -1,7 +1,6 @@
 """shvr export: files for other programs, read back by shvr or in plain Python."""
 import csv
 import json
-import math
 import struct
 import unittest
 
@@ -69,9 +68,18 @@ class Export(CliTest):
 
     def test_the_text_of_the_thesis(self):
         path = self.folder / "a.txt"
-        self.export("--trace", path)
-        self.assertEqual(path.read_text(), "-v 1, 2, 4, 1, 1\n-v 4, 2, 4, 4, 1\n-v 4, 6, 4, 4, 1\n-v 4, 2, 8, 1, 1\n"
-                                           "-l 0, 1, 4\n-l 1, 2, 4\n-l 1, 3, 1\n")
+        links = "-l 0, 1, 4\n-l 1, 2, 4\n-l 1, 3, 1\n"
+
+        def lines(*options):
+            self.export("--trace", path, *options)
+            comments, rest = path.read_text().split("-v ", 1)
+            self.assertTrue(all(line.startswith("# ") for line in comments.splitlines()))
+            return "-v " + rest
+        # Half a voxel, 0.25 x 0.5 x 1 mm, lies between the outer corner of voxel 0 and its centre.
+        self.assertEqual(lines(), "-v 0.75, 1.5, 3, 1, 1\n-v 3.75, 1.5, 3, 4, 1\n-v 3.75, 5.5, 3, 4, 1\n"
+                                  "-v 3.75, 1.5, 7, 1, 1\n" + links)
+        self.assertEqual(lines("--space", "volume"),
+                         "-v 1, 2, 4, 1, 1\n-v 4, 2, 4, 4, 1\n-v 4, 6, 4, 4, 1\n-v 4, 2, 8, 1, 1\n" + links)
 
     def test_every_form_of_the_trace_that_is_read_gives_the_same_trace(self):
         self.export("--trace", self.folder / "first.txt")
@@ -104,14 +112,14 @@ class Export(CliTest):
         header, body = data.split(b"end_header\n", 1)
         vertices = int(header.split(b"element vertex ")[1].split()[0])
         self.assertIn(b"unit mm", header)
-        points = [struct.unpack_from("<3f", body, 12 * i) for i in range(vertices)]
+        points = [struct.unpack_from("<3d", body, 24 * i) for i in range(vertices)]
         text = [tuple(map(float, line.split()[1:])) for line in (self.folder / "a.obj").read_text().splitlines()
                 if line.startswith("v ")]
         self.assertEqual(len(text), vertices)
-        self.assertTrue(all(math.isclose(a, b, abs_tol=1e-5) for p, q in zip(points, text) for a, b in zip(p, q)))
-        # Radius 1 around nodes from (1, 2, 4) to (4, 6, 8).
-        self.assertAlmostEqual(min(p[0] for p in points), 0, delta=0.2)
-        self.assertAlmostEqual(max(p[2] for p in points), 9, delta=0.2)
+        self.assertTrue(all(p == q for p, q in zip(points, text)))
+        # Radius 1 around nodes from (1, 2, 4) to (4, 6, 8), the centre of voxel 0 at (0.25, 0.5, 1).
+        self.assertAlmostEqual(min(p[0] for p in points), -0.25, delta=0.2)
+        self.assertAlmostEqual(max(p[2] for p in points), 8, delta=0.2)
 
     def test_measures(self):
         path = self.folder / "a.csv"

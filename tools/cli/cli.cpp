@@ -7,6 +7,7 @@
 
 #include "engine/base/text.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/volume/unit.h"
 #include "shaders/counters.h"
 
 namespace shvr::cli {
@@ -41,14 +42,6 @@ void add_input_options(CLI::App& command, Common& common)
         ->type_name("KEY=VALUE")
         ->take_all()
         ->allow_extra_args(false);
-    const auto shorthand = [&](const char* option, const char* key, const char* form, const char* help) {
-        command
-            .add_option_function<std::string>(
-                option,
-                [&common, key](const std::string& value) { common.settings.push_back(sentence(key, "=", value)); },
-                help)
-            ->type_name(form);
-    };
     command
         .add_option_function<std::string>(
             "--raw",
@@ -72,13 +65,43 @@ void add_input_options(CLI::App& command, Common& common)
     text("--channel", "volume.channel", "NAME|N",
          "What to take from a file with channels: red, green, ... or 1, 2, ...");
     text("--frame", "volume.frame", "N", "Which point in time to take from a file with several: 1, 2, ...");
-    shorthand("--unit", "volume.unit", "UNIT", "Unit of --spacing, as in um");
+    add_spacing_options(
+        command,
+        [&common](const glm::dvec3& spacing) {
+            common.settings.push_back(sentence("volume.spacing=[", digits_of(spacing.x), ",", digits_of(spacing.y), ",",
+                                               digits_of(spacing.z), "]"));
+        },
+        [&common](const std::string& unit) { common.settings.push_back("volume.unit=" + Json(unit).dump()); });
+    // Bare voxels state no unit; in a session theirs is "voxel" by default.
+    command.parse_complete_callback([&common] {
+        const auto is_given = [&](std::string_view key) {
+            return std::ranges::any_of(common.settings,
+                                       [&](const std::string& setting) { return setting.starts_with(key); });
+        };
+        if (is_given("volume.raw=") && is_given("volume.spacing=") && !is_given("volume.unit="))
+            throw UsageError("--spacing is given without a unit; expected --unit, too, as in --unit um");
+    });
+}
+
+void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
+                         const std::function<void(const std::string&)>& take_unit)
+{
     command
         .add_option_function<std::string>(
-            "--spacing",
-            [&common](const std::string& value) { common.settings.push_back("volume.spacing=[" + value + "]"); },
-            "Size of a voxel of --raw")
+            "--spacing", [take_spacing](const std::string& text) { take_spacing(parse_spacing(text)); },
+            "Size of a voxel: for a file that states none, or instead of what it states")
         ->type_name("X,Y,Z");
+    command
+        .add_option_function<std::string>(
+            "--unit",
+            [take_unit](const std::string& text) {
+                if (trimmed(text).empty() || has_controls(text))
+                    throw UsageError(
+                        sentence("--unit is ", in_quotes(text), "; expected the name of a unit, as in um"));
+                take_unit(text);
+            },
+            "Unit of that size, as in um")
+        ->type_name("UNIT");
 }
 
 void add_device_options(CLI::App& command, Common& common)
@@ -136,6 +159,25 @@ glm::uvec2 parse_size(const std::string& text)
         height > 16384)
         throw UsageError(sentence("--size is '", text, "'; expected WIDTHxHEIGHT, each 1 ... 16384, as in 512x384"));
     return {width, height};
+}
+
+glm::dvec3 parse_spacing(const std::string& text)
+{
+    glm::dvec3 spacing{0.0};
+    int axis = 0;
+    bool fits = true;
+    for (std::string_view rest = text; fits; ++axis) {
+        const size_t comma = std::min(rest.find(','), rest.size());
+        const double side = number_of(rest.substr(0, comma)).value_or(0.0);
+        fits = axis < 3 && side >= MIN_SPACING && side <= MAX_SPACING;  // nor NaN
+        if (fits) spacing[axis] = side;
+        if (comma == rest.size()) break;
+        rest.remove_prefix(comma + 1);
+    }
+    if (!fits || axis != 2)
+        throw UsageError(sentence("--spacing is ", in_quotes(text),
+                                  "; expected X,Y,Z, the size of a voxel, each above 0, as in 0.8,0.8,1.2"));
+    return spacing;
 }
 
 Opened open(const std::string& path, const Common& common, Work::Start start)

@@ -29,6 +29,9 @@ struct Common {
 
 /// --set, --raw, --spacing, --unit
 void add_input_options(CLI::App& command, Common& common);
+/// --spacing, --unit alone, for commands that read volumes without a session. What they state must be possible.
+void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
+                         const std::function<void(const std::string&)>& take_unit);
 /// The input options, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --json, --quiet: every command has them.
@@ -42,6 +45,8 @@ void print(const Json& result);
 /// Call before any work: a name with none of `extensions` is wrong usage; a folder that is missing or not writable is
 /// an error. An empty `path` means that no output was requested and passes.
 void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions);
+/// "0.8,0.8,1.2"
+glm::dvec3 parse_spacing(const std::string& text);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 

@@ -33,6 +33,8 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
         if (space && source->info().size != space->size)
             fail(path, ": has ", source->info().size.x, " x ", source->info().size.y, " x ", source->info().size.z,
                  " voxels; expected ", space->size.x, " x ", space->size.y, " x ", space->size.z);
+        const std::string elsewhere = space ? why_elsewhere(space_of(source->info()), *space) : std::string();
+        if (!elsewhere.empty()) fail(path, ": is a mask of a volume with ", elsewhere, ", where the others lie");
         Mask mask(source->info().size);
         for (const MaskBrickChange& change : mask_changes(*source, path)) mask.apply(change, Direction::forwards);
         return mask;
@@ -54,7 +56,8 @@ std::optional<TraceSpace> find_space(const EvaluateCommandOptions& options)
         if (std::optional<TraceSpace> space = load_trace(path, {}).space) return space;
     }
     for (const std::string& path : {options.truth_mask, options.mask})
-        if (!path.empty() && !is_bare_mask(path)) return space_of(open_volume(path)->info());
+        if (!path.empty() && !is_bare_mask(path))
+            return space_of(open_unmeasured_session(path, options.common.settings).source->info());
     return std::nullopt;
 }
 

@@ -18,6 +18,7 @@ namespace {
 struct ExportCommandOptions {
     Common common;
     std::string project, mask, offset, trace, mesh, metrics;
+    std::string space = "physical";
     bool break_loops = false, labels = false;
 };
 
@@ -97,13 +98,15 @@ void run_export(const ExportCommandOptions& options)
     const TraceGraph& trace = work.document().trace;
     if (!options.trace.empty() || !options.mesh.empty()) expect_trace(opened.session, trace);
 
+    const Positions positions = options.space == "volume" ? Positions::volume : Positions::physical;
     std::vector<std::string> written, left_out;
     const auto wrote = [&](const std::string& path) {
         written.push_back(path);
         say(options.common, "wrote " + path);
     };
     if (!options.trace.empty()) {
-        left_out = save_trace(options.trace, trace, space, options.break_loops ? Loops::break_open : Loops::refuse);
+        left_out =
+            save_trace(options.trace, trace, space, options.break_loops ? Loops::break_open : Loops::refuse, positions);
         warn(left_out, options.common);
         wrote(options.trace);
     }
@@ -118,7 +121,7 @@ void run_export(const ExportCommandOptions& options)
         wrote(options.offset);
     }
     if (!options.mesh.empty()) {
-        save_trace_mesh(options.mesh, trace, space);
+        save_trace_mesh(options.mesh, trace, space, positions);
         wrote(options.mesh);
     }
     if (!options.metrics.empty()) {
@@ -143,10 +146,18 @@ void add_export(CLI::App& program)
     command->add_flag("--break-loops", options->break_loops,
                       "Open each loop where its last internode closed it, for .swc and .rsml, which hold trees");
     command->add_option("--mesh", options->mesh, "The trace as tubes (.obj, .ply)");
+    command
+        ->add_option("--space", options->space,
+                     "Of trace and mesh: physical, where other programs show the volume; or volume, voxel * spacing")
+        ->check(CLI::IsMember({"physical", "volume"}));
     command->add_option("--metrics", options->metrics, "Counts, lengths, angles, radii, topology (.csv)");
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
-    command->footer("Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
+    command->footer(
+        "Masks, offsets, traces and meshes lie where the volume's file says: in NRRD and OME-Zarr as these formats say "
+        "it; "
+        "in TIFF, which has no place for it, only SHVR reads it. Traces and meshes say their space in comments.\n"
+        "Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
     command->callback([options] { run_export(*options); });
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 struct ImportCommandOptions {
     Common common;
-    std::string volume, project, crop, blur = "0", raw, spacing, unit;
+    std::string volume, project, crop, blur = "0", raw;
     OpenOptions choice;
     int downscale = 1;
     bool reverse = false;
@@ -76,50 +76,16 @@ glm::dvec3 parse_blur(const std::string& text)
     return {sigmas[0], sigmas[1], sigmas[2]};
 }
 
-std::optional<glm::dvec3> parse_spacing(const std::string& text)
-{
-    if (text.empty()) return std::nullopt;
-    const std::vector<double> sides = numbers_of<double>(text);
-    bool fits = sides.size() == 3;
-    for (const double side : sides) fits = fits && side >= 1e-12 && side <= 1e12;
-    if (!fits) refuse("--spacing", text, "X,Y,Z, the size of a voxel, each above 0, as in 0.8,0.8,1.2");
-    return glm::dvec3(sides[0], sides[1], sides[2]);
-}
-
-// ---- The user's statements on the volume ----------------------------------------------------------------------------
-
-/// The source with the given spacing and unit, if any.
-class Restated final : public VolumeSource {
-public:
-    Restated(std::unique_ptr<VolumeSource> source, VolumeInfo info)
-        : VolumeSource(std::move(info)), source_(std::move(source))
-    {}
-    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { source_->read(box, voxels); }
-    Size3 block() const override { return source_->block(); }
-    std::optional<VolumeStatistics> statistics() const override { return source_->statistics(); }
-
-private:
-    std::unique_ptr<VolumeSource> source_;
-};
-
 std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
 {
-    const std::optional<glm::dvec3> spacing = parse_spacing(options.spacing);
-    if (!options.raw.empty()) {
-        RawLayout layout = parse_raw_layout(options.raw);
-        if (spacing) layout.spacing = *spacing;
-        if (!options.unit.empty()) layout.unit = options.unit;
-        return open_raw(options.volume, layout);
-    }
-    std::unique_ptr<VolumeSource> source = open_volume(options.volume, options.choice);
-    if (!spacing && options.unit.empty()) return source;
-    VolumeInfo info = source->info();
-    // The options supply what the file lacked.
-    std::erase_if(info.warnings,
-                  [](const std::string& warning) { return warning.find("spacing") != std::string::npos; });
-    if (spacing) info.spacing = *spacing;
-    if (!options.unit.empty()) info.unit = options.unit;
-    return std::make_unique<Restated>(std::move(source), std::move(info));
+    const OpenOptions& choice = options.choice;
+    if (options.raw.empty()) return open_volume(options.volume, choice);
+    RawLayout layout = parse_raw_layout(options.raw);
+    if (choice.spacing && choice.unit.empty())
+        throw UsageError("--spacing is given without a unit; expected --unit, too, as in --unit um");
+    if (choice.spacing) layout.spacing = *choice.spacing;
+    if (!choice.unit.empty()) layout.unit = choice.unit;
+    return open_raw(options.volume, layout);
 }
 
 // ---- While it runs --------------------------------------------------------------------------------------------------
@@ -227,6 +193,8 @@ void run_import(const ImportCommandOptions& options)
            {"type", name_of(info.type)},
            {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
            {"unit", info.unit},
+           {"spacing_from", name_of(info.spacing_from)},
+           {"unit_from", name_of(info.unit_from)},
            {"levels", report.levels},
            {"bricks", report.bricks},
            {"bricks_stored", report.bricks_stored},
@@ -249,8 +217,13 @@ void add_import(CLI::App& program)
     command
         ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-    command->add_flag("--reverse", options->reverse, "Swap dark and bright");
-    command->add_option("--blur", options->blur, "Gaussian blur: sigma in voxels, of all axes or of each")
+    command->add_flag("--reverse", options->reverse,
+                      "Swap dark and bright: the whole volume's smallest plus largest value, minus the voxel");
+    command
+        ->add_option(
+            "--blur", options->blur,
+            "Gaussian blur to 4 sigma: sigma in voxels, of all axes or of each; the outermost voxels are repeated "
+            "beyond the border")
         ->type_name("S|SX,SY,SZ");
     command->add_option("--downscale", options->downscale, "Make it N times smaller along every axis")
         ->type_name("N")
@@ -259,9 +232,9 @@ void add_import(CLI::App& program)
                       "The voxels are labels: coarser levels hold the most frequent one instead of a mean");
     command->add_option("--raw", options->raw, "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
-    command->add_option("--spacing", options->spacing, "Size of a voxel, instead of what the file says")
-        ->type_name("X,Y,Z");
-    command->add_option("--unit", options->unit, "Unit of that size, as in um");
+    add_spacing_options(
+        *command, [options](const glm::dvec3& spacing) { options->choice.spacing = spacing; },
+        [options](const std::string& unit) { options->choice.unit = unit; });
     command->add_option("--channel", options->choice.channel, "What to take from a file with channels")
         ->type_name("NAME|N");
     command->add_option("--frame", options->choice.frame, "Which point in time to take from a file with several")

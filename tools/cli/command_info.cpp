@@ -34,6 +34,12 @@ Described describe(const InfoCommandOptions& options)
         opened.source = open_volume(path);
         opened.statistics = measure(*opened.source);
         opened.warnings = warnings_of(opened.statistics);
+    } else if (is_bare) {
+        UnmeasuredSession bare = open_unmeasured_session(path, options.common.settings);
+        opened.session = std::move(bare.session);
+        opened.source = std::move(bare.source);
+        opened.statistics = measure(*opened.source);
+        opened.warnings = warnings_of(opened.statistics);
     } else {
         opened = open_session(path, options.common.settings);
     }
@@ -64,6 +70,8 @@ Json to_json(const Described& described, const std::string& input)
             {"type", name_of(info.type)},
             {"spacing", {info.spacing.x, info.spacing.y, info.spacing.z}},
             {"unit", info.unit},
+            {"spacing_from", name_of(info.spacing_from)},
+            {"unit_from", name_of(info.unit_from)},
             {"frame", info.frame},
             {"directions", directions},
             {"origin", {info.origin.x, info.origin.y, info.origin.z}},
@@ -111,11 +119,15 @@ void print_text(const Described& described)
     const VolumeStatistics& statistics = described.statistics;
     const glm::dvec3 extent = glm::dvec3(info.size) * info.spacing;
     const int64_t voxels = voxel_count(info);
+    const char* const from = info.spacing_from == Provenance::given     ? " (given)"
+                             : info.spacing_from == Provenance::assumed ? " (assumed)"
+                                                                        : "";
     print_line("name", info.name);
     print_line("format", info.format);
     print_line("size",
                sentence(info.size.x, " x ", info.size.y, " x ", info.size.z, " voxels (", grouped(voxels), ")"));
-    print_line("one voxel", sentence(info.spacing.x, " x ", info.spacing.y, " x ", info.spacing.z, " ", info.unit));
+    print_line("one voxel",
+               sentence(info.spacing.x, " x ", info.spacing.y, " x ", info.spacing.z, " ", info.unit, from));
     print_line("whole volume", sentence(extent.x, " x ", extent.y, " x ", extent.z, " ", plural(info.unit)));
     print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(voxels * int64_t(bytes_of(info.type)))));
     print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean));

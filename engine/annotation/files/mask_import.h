@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// The records that turn an unpainted mask into this one. Fails if its size or stated spacing differs (naming both),
-/// and where its voxels are not unsigned bytes.
+/// The records that turn an unpainted mask into this one. Fails if its size or stated spacing or place differs (naming
+/// both), and where its voxels are not unsigned bytes.
 std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);
 /// Saves in the form that the path names: raw bytes where `export_mask` does not know it. Fails for forms that can only
 /// be read. `image`: as for `export_mask`.

@@ -31,6 +31,9 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
     if (found.size != space.size)
         fail(path.string(), ": is ", what, " of ", digits_of(found.size), " voxels; expected ", digits_of(space.size),
              ", the size of this volume");
+    const std::string elsewhere = why_elsewhere(space_of(found), space);
+    if (!elsewhere.empty())
+        fail(path.string(), ": is ", what, " of a volume with ", elsewhere, ", where this volume lies");
     const std::string unit = plain_unit(found.unit);
     // A unit that is not stated cannot disagree.
     if (unit == "voxel" || space.unit == "voxel") return;

@@ -11,7 +11,7 @@ namespace shvr {
 /// do not.
 bool states_its_size(const std::filesystem::path& path);
 
-/// Fails, naming both, if the size or stated spacing of `found` differs. `what`: "a mask".
+/// Fails, naming both, if the size of `found` differs, or its spacing or place where both state them. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
 /// Describes a volume of annotation, "mask" or "offsets", in the same place as the annotated one.

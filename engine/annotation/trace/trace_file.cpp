@@ -42,27 +42,45 @@ void check_space(const std::string& file, const StatedSpace& stated, const Trace
     if (stated.spacing && !is_equal(*stated.spacing, expected.spacing))
         fail(file, ": is of a volume with voxels of ", digits_of(*stated.spacing), "; expected ",
              digits_of(expected.spacing), ", the spacing of this one");
+    if (!stated.is_physical) return;
+    TraceSpace found{.spacing = expected.spacing,
+                     .unit = expected.unit,
+                     .directions = *stated.directions,
+                     .origin = *stated.origin,
+                     .frame = stated.frame};
+    const std::string elsewhere = why_elsewhere(found, expected);
+    if (!elsewhere.empty()) fail(file, ": is of a volume with ", elsewhere, ", where this one lies");
+}
+
+/// A copy whose nodes are in physical space.
+TraceGraph in_physical_space(const TraceGraph& trace, const TraceSpace& space)
+{
+    TraceGraph placed = trace;
+    for (const auto& [number, node] : trace.nodes()) {
+        TraceNode moved = node;
+        moved.position = physical_of(space, node.position);
+        placed.apply(TraceNodeChange{number, node, moved}, Direction::forwards);
+    }
+    return placed;
 }
 
 }  // namespace
 
-TraceSpace space_of(const VolumeInfo& volume)
-{
-    return {volume.size, volume.spacing, plain_unit(volume.unit)};
-}
-
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
-                                    Loops loops)
+                                    Loops loops, Positions positions)
 {
     const std::string form = extension_of(path);
     if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
     std::vector<std::string> notes;
     std::string text;
+    const bool is_physical = positions == Positions::physical;
+    const TraceGraph placed = is_physical ? in_physical_space(trace, space) : TraceGraph();
+    const TraceWriting writing{is_physical ? placed : trace, space, positions, is_physical ? &trace : nullptr};
     try {
-        text = form == ".graphml" ? write_trace_graphml(trace, space)
-               : form == ".txt"   ? write_trace_text(trace)
-               : form == ".swc"   ? write_trace_swc(trace, space, loops, notes)
-                                  : write_trace_rsml(trace, space, loops, notes);
+        text = form == ".graphml" ? write_trace_graphml(writing)
+               : form == ".txt"   ? write_trace_text(writing)
+               : form == ".swc"   ? write_trace_swc(writing, loops, notes)
+                                  : write_trace_rsml(writing, loops, notes);
     } catch (const Error& error) {
         fail(path.string(), ": ", error.what());
     }
@@ -84,10 +102,16 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
         read_trace_rsml(reader, text, expected);
     else
         read_trace_swc(reader, text);
+    reader.to_volume_space(expected);
     const StatedSpace& stated = reader.stated;
     if (expected) check_space(path.string(), stated, *expected);
     TraceFile file{std::move(reader.trace), std::nullopt};
-    if (stated.size && stated.spacing && stated.unit) file.space = {*stated.size, *stated.spacing, *stated.unit};
+    if (!stated.size || !stated.spacing || !stated.unit) return file;
+    file.space = {.size = *stated.size, .spacing = *stated.spacing, .unit = *stated.unit};
+    if (!stated.is_physical) return file;
+    file.space->directions = *stated.directions;
+    file.space->origin = *stated.origin;
+    file.space->frame = stated.frame;
     return file;
 }
 

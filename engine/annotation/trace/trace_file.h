@@ -6,7 +6,10 @@
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
 //   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Positions and radii are in the volume's unit, except in RSML, which counts in pixels: written as voxels along x, and
+// Each file says which space its positions are in (trace_space.h): volume space, in which traces are saved, and which
+// is kept to the last bit; or physical space, for other programs, where only GraphML keeps the last bits, since it
+// holds both. A file that says nothing is in volume space. In the thesis's text, as in SWC, this is in lines that begin
+// with "#". All is in the volume's unit, except in RSML, which counts in pixels: written as voxels along x, and
 // converted from other units of length on reading; a round trip costs the last bit or two. An internode has no group of
 // its own in SWC and RSML, and only GraphML keeps numbers and the radii of groups.
 //
@@ -18,19 +21,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/annotation/trace/trace_space.h"
 #include "engine/annotation/trace/tracing.h"
-#include "engine/volume/volume.h"
 
 namespace shvr {
-
-/// The volume that a trace belongs to.
-struct TraceSpace {
-    Size3 size{0};
-    glm::dvec3 spacing{1.0};
-    std::string unit = "voxel";
-    bool operator==(const TraceSpace&) const = default;
-};
-TraceSpace space_of(const VolumeInfo& volume);
 
 /// What to do with loops in a form that holds trees. Broken: the internode with the largest number, the last one drawn,
 /// is left out of each loop; those left out are listed in a comment of the file and returned.
@@ -38,14 +32,14 @@ enum class Loops { refuse, break_open };
 
 /// Writes as `write_file_atomically` does. Returns a sentence for each thing left out.
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
-                                    Loops loops = Loops::refuse);
+                                    Loops loops = Loops::refuse, Positions positions = Positions::volume);
 
 struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< where the file states all of this
 };
-/// At most 256 MiB and 4 million nodes. Fails if a stated size, spacing or unit (RSML: no length) is not
-/// `expected`'s.
+/// In volume space. At most 256 MiB and 4 million nodes. Fails if a stated size, spacing, unit (RSML: no length) or
+/// place is not `expected`'s.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` knows the extension.

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
+#include "engine/volume/unit.h"
 
 namespace shvr {
 
@@ -121,6 +122,94 @@ glm::dvec3 TraceReader::spacing(const std::string& where, std::string_view text)
     if (!glm::all(glm::greaterThan(spacing, glm::dvec3(0.0))))
         fail(where, ": spacing is ", in_quotes(text), "; expected three numbers above 0");
     return spacing;
+}
+
+namespace {
+
+std::vector<double> finite_numbers(std::string_view text)
+{
+    std::vector<double> numbers;
+    for (const std::string_view word : words_of(text)) {
+        const std::optional<double> number = finite_of(word);
+        if (!number || std::abs(*number) > FARTHEST) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+void TraceReader::state(const std::string& where, std::string_view name, std::string_view value)
+{
+    if (name == "space") {
+        if (value != "physical" && value != "volume")
+            fail(where, ": space is ", in_quotes(value), "; expected physical or volume");
+        stated.is_physical = value == "physical";
+    } else if (name == "frame") {
+        if (value != "LPS" && value != "RAS")
+            fail(where, ": frame is ", in_quotes(value), "; expected LPS or RAS, or no frame");
+        stated.frame = value;
+    } else if (name == "origin") {
+        const std::vector<double> n = finite_numbers(value);
+        if (n.size() != 3) fail(where, ": origin is ", in_quotes(value), "; expected three numbers from -1e15 to 1e15");
+        stated.origin = {n[0], n[1], n[2]};
+    } else if (name == "directions") {
+        const std::vector<double> n = finite_numbers(value);
+        if (n.size() == 9) stated.directions = glm::dmat3(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]);
+        if (n.size() != 9 || !are_axes(*stated.directions))
+            fail(where, ": directions is ", in_quotes(value), "; expected three right-handed vectors of length 1");
+    }
+}
+
+void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
+{
+    if (!stated.is_physical) return;
+    if (!stated.origin || !stated.directions)
+        fail(file_,
+             ": states that its positions are physical, but not the volume's place; expected origin and directions");
+    if (!stated.spacing && !expected)
+        fail(file_, ": states that its positions are physical, but no spacing; expected one, or the volume's");
+    TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
+                     .directions = *stated.directions,
+                     .origin = *stated.origin};
+    // What separates a position from what was written for it: the rounding of numbers of this size.
+    constexpr double ROUNDING = 1e-14;
+    std::vector<TraceNodeChange> changes;
+    for (const auto& [number, node] : trace.nodes()) {
+        TraceNode moved = node;
+        moved.position = position_of(space, node.position);
+        if (const auto found = exact.find(number); found != exact.end()) {
+            const glm::dvec3 apart = glm::abs(found->second - moved.position);
+            const double most = ROUNDING * (glm::length(node.position) + glm::length(space.origin) +
+                                            glm::length(moved.position) + glm::length(space.spacing));
+            if (glm::all(glm::lessThanEqual(apart, glm::dvec3(most)))) moved.position = found->second;
+        }
+        changes.push_back({number, node, moved});
+    }
+    for (const TraceNodeChange& change : changes) trace.apply(change, Direction::forwards);
+}
+
+std::string comments_of(const TraceWriting& writing)
+{
+    const TraceSpace& space = writing.space;
+    std::string text = "# SHVR trace\n# " + in_words(space, writing.positions) + "\n";
+    for (const auto& [name, value] : statements_of(space, writing.positions))
+        text += std::string("# ") + name + " " + value + "\n";
+    return text + "# unit " + space.unit + "\n# spacing " + digits_of(space.spacing) + "\n# size " +
+           digits_of(space.size) + "\n";
+}
+
+void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment)
+{
+    const std::vector<std::string_view> words = words_of(comment.substr(1));
+    if (words.size() < 2) return;
+    const std::string_view rest = trimmed(comment.substr(size_t(words[0].data() - comment.data()) + words[0].size()));
+    if (words[0] == "unit") reader.stated.unit = plain_unit(rest);
+    if (words[0] == "size" && words.size() == 4) reader.stated.size = reader.size(where, rest);
+    if (words[0] == "spacing" && words.size() == 4) reader.stated.spacing = reader.spacing(where, rest);
+    const bool is_space = words[0] == "space" && (rest == "physical" || rest == "volume");
+    const bool is_place = words[0] == "frame" || words[0] == "origin" || words[0] == "directions";
+    if (is_space || (is_place && reader.stated.is_physical)) reader.state(where, words[0], rest);
 }
 
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes)

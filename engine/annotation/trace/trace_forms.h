@@ -2,6 +2,7 @@
 // The formats behind trace_file.h, one pair of functions each, and their shared helpers. Text in, text out: no files.
 // Any thread may call these.
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -10,19 +11,37 @@
 
 namespace shvr {
 
-std::string write_trace_text(const TraceGraph& trace);
-std::string write_trace_swc(const TraceGraph& trace, const TraceSpace& space, Loops loops,
-                            std::vector<std::string>& notes);
-std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space);
-std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, Loops loops,
-                             std::vector<std::string>& notes);
+/// What is written: a trace whose positions are in the space that the file will state.
+struct TraceWriting {
+    const TraceGraph& trace;
+    const TraceSpace& space;
+    Positions positions = Positions::volume;
+    const TraceGraph* exact = nullptr;  ///< the same trace in volume space, where `positions` are physical
+};
+
+std::string write_trace_text(const TraceWriting& writing);
+std::string write_trace_swc(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes);
+std::string write_trace_graphml(const TraceWriting& writing);
+std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes);
 
 /// A file's statements on its volume; each may be missing.
 struct StatedSpace {
     std::optional<Size3> size;
     std::optional<glm::dvec3> spacing;
     std::optional<std::string> unit;
+    bool is_physical = false;
+    std::optional<glm::dvec3> origin;
+    std::optional<glm::dmat3> directions;
+    std::string frame;
 };
+
+class TraceReader;
+/// Lines that begin with "#": which space the positions are in, in words and for `read_space_comment`, then unit,
+/// spacing and size.
+std::string comments_of(const TraceWriting& writing);
+/// `comment` begins with "#". Files of other programs have comments of their own: a space counts only if it is one of
+/// the two, and a place only behind it.
+void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
 /// Collects nodes and internodes from a file and refuses what is not a trace. `where` begins every message.
 class TraceReader {
@@ -40,8 +59,15 @@ public:
     Size3 size(const std::string& where, std::string_view text) const;
     glm::dvec3 spacing(const std::string& where, std::string_view text) const;
 
+    /// Takes a statement of `statements_of`; ignores other names. "space" must be one of the two.
+    void state(const std::string& where, std::string_view name, std::string_view value);
+    /// Turns physical positions into those of volume space, of a file that states them. `expected` stands in for a
+    /// spacing that the file does not state.
+    void to_volume_space(const std::optional<TraceSpace>& expected);
+
     StatedSpace stated{};
     TraceGraph trace{};
+    std::map<uint32_t, glm::dvec3> exact{};  ///< volume space, of nodes whose file holds both; used if they agree
 
 private:
     std::string file_;

@@ -106,6 +106,13 @@ private:
             reader_.radius(where, value("radius", "1")),
             reader_.group(where, value("group", "1"))};
         const uint32_t number = reader_.add_node(where, read, is_numbered ? number_in(id, 'n') : std::nullopt);
+        if (const auto exact = data.find("volume_position"); exact != data.end()) {
+            const std::vector<std::string_view> words = words_of(exact->second);
+            if (words.size() != 3) fail(where, ": volume_position is ", in_quotes(exact->second), "; expected x y z");
+            reader_.exact[number] = {reader_.coordinate(where, "volume_position", words[0]),
+                                     reader_.coordinate(where, "volume_position", words[1]),
+                                     reader_.coordinate(where, "volume_position", words[2])};
+        }
         if (!numbers_.emplace(id, number).second) fail(where, ": is there already; expected each id once");
     }
 
@@ -129,7 +136,10 @@ private:
     {
         const std::string where = reader_.file() + ": graph";
         uint64_t next[2] = {0, 0};
+        const auto space = data.find("space");
+        const bool is_ours = space != data.end() && (space->second == "physical" || space->second == "volume");
         for (const auto& [key, value] : data) {
+            if (is_ours) reader_.state(where, key, value);
             if (key == "unit") reader_.stated.unit = plain_unit(value);
             if (key == "size") reader_.stated.size = reader_.size(where, value);
             if (key == "spacing") reader_.stated.spacing = reader_.spacing(where, value);
@@ -164,8 +174,10 @@ private:
 
 }  // namespace
 
-std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space)
+std::string write_trace_graphml(const TraceWriting& writing)
 {
+    const TraceGraph& trace = writing.trace;
+    const TraceSpace& space = writing.space;
     pugi::xml_document document;
     pugi::xml_node declaration = document.append_child(pugi::node_declaration);
     declaration.append_attribute("version") = "1.0";
@@ -177,6 +189,12 @@ std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space
                                        {"z", "node", "double"},
                                        {"radius", "node", "double"},
                                        {"group", "all", "int"},
+                                       {"volume_position", "node", "string"},
+                                       {"positions", "graph", "string"},
+                                       {"space", "graph", "string"},
+                                       {"frame", "graph", "string"},
+                                       {"origin", "graph", "string"},
+                                       {"directions", "graph", "string"},
                                        {"unit", "graph", "string"},
                                        {"size", "graph", "string"},
                                        {"spacing", "graph", "string"},
@@ -193,6 +211,8 @@ std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space
     pugi::xml_node graph = root.append_child("graph");
     graph.append_attribute("id") = "trace";
     graph.append_attribute("edgedefault") = "undirected";
+    add_data(graph, "positions", in_words(space, writing.positions));
+    for (const auto& [name, value] : statements_of(space, writing.positions)) add_data(graph, name, value);
     add_data(graph, "unit", space.unit);
     add_data(graph, "size", digits_of(space.size));
     add_data(graph, "spacing", digits_of(space.spacing));
@@ -210,6 +230,10 @@ std::string write_trace_graphml(const TraceGraph& trace, const TraceSpace& space
         add_data(element, "z", digits_of(node.position.z));
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
+        // What a reader computes from the above lacks the last bits.
+        if (!writing.exact) continue;
+        const glm::dvec3& exact = writing.exact->node(number).position;
+        if (position_of(space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));
     }
     for (const auto& [number, internode] : trace.internodes()) {
         pugi::xml_node element = graph.append_child("edge");

@@ -95,15 +95,31 @@ private:
     AtomicWriter writer_;
 };
 
-void save_obj(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space)
+/// Lines without line ends.
+std::vector<std::string> comments_of_mesh(const TraceSpace& space, Positions positions)
+{
+    std::vector<std::string> lines{"SHVR trace as tubes, unit " + space.unit, in_words(space, positions)};
+    for (const auto& [name, value] : statements_of(space, positions)) lines.push_back(std::string(name) + " " + value);
+    if (positions == Positions::physical && !space.frame.empty()) lines.push_back("SPACE=" + space.frame);
+    return lines;
+}
+
+/// Axes are right-handed, so triangles stay counter-clockwise.
+glm::dvec3 written(const TraceSpace& space, Positions positions, const glm::dvec3& vertex)
+{
+    return positions == Positions::physical ? physical_of(space, vertex) : vertex;
+}
+
+void save_obj(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space, Positions positions)
 {
     Chunks chunks(path);
-    chunks.text = "# SHVR trace as tubes, unit " + space.unit + "\n";
+    for (const std::string& line : comments_of_mesh(space, positions)) chunks.text += "# " + line + "\n";
     int group = -1;
     uint64_t first = 1;  // vertices count from 1
     for_each_part(trace, [&](const TracePart& part) {
         if (std::exchange(group, part.group) != part.group) chunks.text += "g group_" + std::to_string(group) + "\n";
-        for (const glm::dvec3& vertex : part.vertices) chunks.text += "v " + digits_of(vertex) + "\n";
+        for (const glm::dvec3& vertex : part.vertices)
+            chunks.text += "v " + digits_of(written(space, positions, vertex)) + "\n";
         for (const glm::uvec3& face : part.triangles)
             chunks.text += sentence("f ", first + face.x, " ", first + face.y, " ", first + face.z, "\n");
         first += part.vertices.size();
@@ -112,7 +128,7 @@ void save_obj(const std::filesystem::path& path, const TraceGraph& trace, const 
     chunks.commit();
 }
 
-void save_ply(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space)
+void save_ply(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space, Positions positions)
 {
     uint64_t vertices = 0, triangles = 0;
     for_each_part(trace, [&](const TracePart& part) {
@@ -121,13 +137,16 @@ void save_ply(const std::filesystem::path& path, const TraceGraph& trace, const 
     });
     if (vertices >> 32 != 0) fail(path.string(), ": would hold ", vertices, " vertices; expected at most 4294967295");
     Chunks chunks(path);
-    chunks.text = sentence("ply\nformat binary_little_endian 1.0\ncomment SHVR trace as tubes, unit ", space.unit,
-                           "\nelement vertex ", vertices, "\nproperty float x\nproperty float y\nproperty float z",
-                           "\nelement face ", triangles,
-                           "\nproperty list uchar uint vertex_indices\nproperty uchar group\nend_header\n");
+    chunks.text = "ply\nformat binary_little_endian 1.0\n";
+    for (const std::string& line : comments_of_mesh(space, positions)) chunks.text += "comment " + line + "\n";
+    chunks.text += sentence("element vertex ", vertices, "\nproperty double x\nproperty double y\nproperty double z",
+                            "\nelement face ", triangles,
+                            "\nproperty list uchar uint vertex_indices\nproperty uchar group\nend_header\n");
     for_each_part(trace, [&](const TracePart& part) {
-        for (const glm::dvec3& vertex : part.vertices)
-            for (int axis = 0; axis < 3; ++axis) append_bytes(chunks.text, float(vertex[axis]));
+        for (const glm::dvec3& vertex : part.vertices) {
+            const glm::dvec3 position = written(space, positions, vertex);
+            for (int axis = 0; axis < 3; ++axis) append_bytes(chunks.text, position[axis]);
+        }
         chunks.flush();
     });
     uint32_t first = 0;
@@ -177,11 +196,12 @@ TracePart mesh_of(const TraceGraph& trace, const TraceInternode& internode)
     return cone;
 }
 
-void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space)
+void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
+                     Positions positions)
 {
     const std::string form = lower_case(path.extension().string());
-    if (form == ".obj") return save_obj(path, trace, space);
-    if (form == ".ply") return save_ply(path, trace, space);
+    if (form == ".obj") return save_obj(path, trace, space, positions);
+    if (form == ".ply") return save_ply(path, trace, space, positions);
     fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected .obj or .ply");
 }
 

@@ -4,9 +4,10 @@
 // cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
 //
 //   .obj   a group "group_N" for each colour group; text
-//   .ply   binary; each face has the property `group`
+//   .ply   binary; coordinates of 64 bits, since volumes may lie far from 0; each face has the property `group`
 //
-// Positions are in volume space, in the unit that a comment of the file names. Any thread may call these.
+// Positions are in physical space unless volume space is asked for (trace_space.h); comments of the file say which,
+// with place and unit. "SPACE=LPS" is how 3D Slicer writes and reads the axes of a mesh. Any thread may call these.
 
 #include <filesystem>
 #include <vector>
@@ -26,6 +27,7 @@ TracePart mesh_of(const TraceNode& node);
 TracePart mesh_of(const TraceGraph& trace, const TraceInternode& internode);
 
 /// Writes as AtomicWriter does, group by group.
-void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
+void save_trace_mesh(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
+                     Positions positions = Positions::physical);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 // RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io):
 // every tree is a plant; its first axis follows the longest path from the root, and each side branch is a root nested
 // in the root it leaves, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
-// `resolution` pixels to the unit.
+// `resolution` pixels to the unit. Metadata of our own say which space that is, and, in `unit`, where the volume lies.
 
 #include <algorithm>
 #include <map>
@@ -64,9 +64,10 @@ void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<ui
 
 }  // namespace
 
-std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, Loops loops,
-                             std::vector<std::string>& notes)
+std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes)
 {
+    const TraceGraph& trace = writing.trace;
+    const TraceSpace& space = writing.space;
     const TraceTrees trees = trees_of(trace, loops, "RSML", notes);
     const auto branches = branches_of(trace, trees);
     pugi::xml_document document;
@@ -76,6 +77,9 @@ std::string write_trace_rsml(const TraceGraph& trace, const TraceSpace& space, L
     add_text(metadata, "unit", space.unit);
     add_text(metadata, "resolution", digits_of(1.0 / space.spacing.x));
     add_text(metadata, "software", "SHVR");
+    add_text(metadata, "positions", in_words(space, writing.positions));
+    for (const auto& [name, value] : statements_of(space, writing.positions)) add_text(metadata, name, value);
+    add_text(metadata, "spacing", digits_of(space.spacing));
     pugi::xml_node scene = rsml.append_child("scene");
     struct Axis {
         pugi::xml_node parent;

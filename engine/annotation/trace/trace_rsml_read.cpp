@@ -4,7 +4,7 @@
 // the nearest node of the parent. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution`
 // of them make one `unit`. If the unit is "pixel", or neither is stated, a pixel is a voxel along x. A missing unit is
 // the volume's, and a missing resolution is 1. Lengths are converted to the volume's unit. Without a diameter the
-// radius is one pixel.
+// radius is one pixel. Positions that metadata say are physical are taken as such until all of the file is read.
 
 #include <memory>
 #include "engine/annotation/trace/trace_forms.h"
@@ -67,6 +67,7 @@ private:
         const std::string text(trimmed(child_named(metadata, "resolution").text().get()));
         const std::string unit = plain_unit(trimmed(child_named(metadata, "unit").text().get()));
         take_unit(unit.empty() && text.empty() ? "pixel" : unit);
+        read_space(metadata);
         if (text.empty()) return;
         const std::optional<double> resolution = number_of(text);
         // Far beyond any scan, and near enough to 1 that nothing overflows.
@@ -91,6 +92,21 @@ private:
         if (!from || !to) return;
         per_unit_ = *from / *to;
         reader_.stated.unit = volume_->unit;
+    }
+
+    /// Metadata that we write (trace_rsml.cpp).
+    void read_space(const pugi::xml_node& metadata)
+    {
+        const std::string where = reader_.file() + ": metadata";
+        const auto text_of = [&](const char* name) {
+            return std::string(trimmed(child_named(metadata, name).text().get()));
+        };
+        if (text_of("space") != "physical") return;
+        for (const char* name : {"space", "frame", "origin", "directions"})
+            if (const std::string text = text_of(name); !text.empty()) reader_.state(where, name, text);
+        if (reader_.stated.origin) *reader_.stated.origin *= per_unit_;
+        if (const std::string text = text_of("spacing"); !text.empty())
+            reader_.stated.spacing = per_unit_ * reader_.spacing(where, text);
     }
 
     double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }

@@ -6,7 +6,6 @@
 
 #include "engine/annotation/trace/trace_forms.h"
 #include "engine/base/error.h"
-#include "engine/volume/unit.h"
 
 namespace shvr {
 
@@ -23,12 +22,10 @@ struct Sample {
 /// "# unit um", as we write it, and "# SCALE 1 1 1", as archives do.
 void read_comment(TraceReader& reader, const std::string& where, std::string_view comment)
 {
+    read_space_comment(reader, where, comment);
     const std::vector<std::string_view> words = words_of(comment.substr(1));
     if (words.size() < 2) return;
     const std::string_view rest = trimmed(comment.substr(size_t(words[0].data() - comment.data()) + words[0].size()));
-    if (words[0] == "unit") reader.stated.unit = plain_unit(rest);
-    if (words[0] == "size" && words.size() == 4) reader.stated.size = reader.size(where, rest);
-    if (words[0] == "spacing" && words.size() == 4) reader.stated.spacing = reader.spacing(where, rest);
     if (lower_case(words[0]) == "scale" && words.size() == 4)
         for (size_t axis = 1; axis < 4; ++axis)
             if (number_of(words[axis]) != 1.0)
@@ -37,13 +34,12 @@ void read_comment(TraceReader& reader, const std::string& where, std::string_vie
 
 }  // namespace
 
-std::string write_trace_swc(const TraceGraph& trace, const TraceSpace& space, Loops loops,
-                            std::vector<std::string>& notes)
+std::string write_trace_swc(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes)
 {
+    const TraceGraph& trace = writing.trace;
     std::vector<std::string> left_out;
     const TraceTrees trees = trees_of(trace, loops, "SWC", left_out);
-    std::string text = "# SHVR trace\n# unit " + space.unit + "\n# spacing " + digits_of(space.spacing) + "\n# size " +
-                       digits_of(space.size) + "\n# n type x y z radius parent; the type is the colour group\n";
+    std::string text = comments_of(writing) + "# n type x y z radius parent; the type is the colour group\n";
     for (const std::string& note : left_out) text += "# " + note + "\n";
     notes.insert(notes.end(), left_out.begin(), left_out.end());
     std::map<uint32_t, size_t> samples;

@@ -1,6 +1,7 @@
 // The thesis's text (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each node
 // and "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its place among the
-// nodes of the file, from 0; nodes that were deleted have none. Blank lines and other spacing are read, too.
+// nodes of the file, from 0; nodes that were deleted have none. Lines before them begin with "#" and say which space
+// the positions are in. Blank lines and other spacing are read, too.
 
 #include <algorithm>
 
@@ -38,9 +39,10 @@ uint32_t index_of(const std::string& where, std::string_view word, size_t nodes)
 
 }  // namespace
 
-std::string write_trace_text(const TraceGraph& trace)
+std::string write_trace_text(const TraceWriting& writing)
 {
-    std::string text;
+    const TraceGraph& trace = writing.trace;
+    std::string text = comments_of(writing);
     std::map<uint32_t, size_t> index;
     for (const auto& [number, node] : trace.nodes()) {
         index.emplace(number, index.size());
@@ -62,7 +64,8 @@ void read_trace_text(TraceReader& reader, std::string_view text)
     std::vector<Link> links;  // may come before their nodes
     for (int number = 1; !text.empty(); ++number) {
         const std::string_view line = trimmed(take_line(text));
-        if (line.empty()) continue;
+        if (line.starts_with("#")) read_space_comment(reader, sentence(reader.file(), ":", number), line);
+        if (line.empty() || line.starts_with("#")) continue;
         if (line.starts_with("-l")) {
             links.push_back({number, line});
             continue;

@@ -121,6 +121,20 @@ int sample_format(VoxelType type)
     return is_signed ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
 }
 
+/// Lines for ImageJ, which ignores those whose keys it does not know. Its spacing in x and y are the pages' resolution,
+/// fractions of 32 bits.
+std::string description_of(const VolumeInfo& info)
+{
+    const std::string unit = plain_unit(info.unit);
+    std::string lines = sentence("ImageJ=1.53t\nimages=", info.size.z, "\nslices=", info.size.z,
+                                 "\nunit=", unit == "um" ? "micron" : unit, "\nspacing=", digits_of(info.spacing.z),
+                                 "\nloop=false\n", "shvr_spacing=", digits_of(info.spacing), "\n");
+    if (!states_place(info)) return lines;
+    lines += "shvr_frame=" + info.frame + "\nshvr_directions=";
+    for (int axis = 0; axis < 3; ++axis) lines += (axis == 0 ? "" : " ") + digits_of(info.directions[axis]);
+    return lines + "\nshvr_origin=" + digits_of(info.origin) + "\n";
+}
+
 }  // namespace
 
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
@@ -132,10 +146,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     // Whether 32-bit offsets suffice must be known before anything is compressed.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
-    const std::string unit = plain_unit(info.unit);
-    const std::string description =
-        sentence("ImageJ=1.53t\nimages=", size.z, "\nslices=", size.z, "\nunit=", unit == "um" ? "micron" : unit,
-                 "\nspacing=", digits_of(info.spacing.z), "\nloop=false\n");
+    const std::string description = description_of(info);
     std::vector<std::byte> voxels;
     for (int64_t z = 0; z < size.z; ++z) {
         writer.set(TIFFTAG_IMAGEWIDTH, uint32_t(size.x));

@@ -18,6 +18,31 @@ std::string form_of(const std::filesystem::path& path)
     return lower_case(path.extension().string());
 }
 
+/// "(1,2,3)"
+std::string in_brackets(const glm::dvec3& vector)
+{
+    return sentence("(", digits_of(vector.x), ",", digits_of(vector.y), ",", digits_of(vector.z), ")");
+}
+
+/// Sizes and where the axes lie, in the order that the format asks for: the space before what refers to it.
+std::string nrrd_axes(const VolumeInfo& info)
+{
+    // Quotes would end the unit's name.
+    std::string unit = plain_unit(info.unit);
+    std::ranges::replace(unit, '"', '\'');
+    const std::string quoted = "\"" + unit + "\"", units = quoted + " " + quoted + " " + quoted;
+    const std::string sizes = "sizes: " + digits_of(info.size) + "\n";
+    if (!states_place(info)) return sentence(sizes, "spacings: ", digits_of(info.spacing), "\nunits: ", units);
+    const char* const space = info.frame == "RAS"   ? "space: right-anterior-superior"
+                              : info.frame == "LPS" ? "space: left-posterior-superior"
+                                                    : "space dimension: 3";
+    std::string steps;
+    for (int axis = 0; axis < 3; ++axis) steps += " " + in_brackets(info.directions[axis] * info.spacing[axis]);
+    return sentence(space, "\n", sizes, "space directions:", steps,
+                    "\nkinds: domain domain domain\nspace units: ", units,
+                    "\nspace origin: ", in_brackets(info.origin));
+}
+
 }  // namespace
 
 int64_t export_rows(const VolumeInfo& info)
@@ -30,17 +55,11 @@ void export_nrrd(const std::filesystem::path& path, const VolumeSource& source)
 {
     static_assert(std::endian::native == std::endian::little);
     const VolumeInfo& info = source.info();
-    // Quotes would end the unit's name.
-    std::string unit = plain_unit(info.unit);
-    std::ranges::replace(unit, '"', '\'');
-    const std::string quoted = "\"" + unit + "\"";
     const char* const type = info.type == VoxelType::float32   ? "float"
                              : info.type == VoxelType::float64 ? "double"
                                                                : name_of(info.type);
-    const std::string header =
-        sentence("NRRD0004\ntype: ", type, "\ndimension: 3\nsizes: ", digits_of(info.size),
-                 "\nspacings: ", digits_of(info.spacing), "\nunits: ", quoted, " ", quoted, " ", quoted,
-                 bytes_of(info.type) > 1 ? "\nendian: little" : "", "\nencoding: raw\n\n");
+    const std::string header = sentence("NRRD0004\ntype: ", type, "\ndimension: 3\n", nrrd_axes(info),
+                                        bytes_of(info.type) > 1 ? "\nendian: little" : "", "\nencoding: raw\n\n");
     AtomicWriter writer(path);
     writer.append(std::as_bytes(std::span(header)));
     const int64_t step = export_rows(info);

@@ -1,8 +1,10 @@
 #pragma once
 // Exports a volume as one file that other programs read. Voxels are read and written strip by strip.
 //
-//   .nrrd        raw voxels behind a header with spacing and unit, little-endian
-//   .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed
+//   .nrrd        raw voxels behind a header with spacing, unit, and where the axes lie; little-endian
+//   .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed. No program
+//                agrees with another on where a TIFF lies: origin, directions and the exact spacing are in lines of
+//                ImageJ's description that only SHVR reads ("shvr_origin=1 2 3")
 //
 // Any thread may call these.
 

@@ -91,6 +91,7 @@ public:
     std::unique_ptr<VolumeSource> open()
     {
         directories_ = read_directories(*file_);
+        volume_.info.warnings = directories_.warnings;
         layouts_.resize(directories_.kinds.size());
         const TiffPage first_page(*file_, directories_.pages.front().offset, 1);
         refuse_other_stacks(*file_, directories_.pages.front().offset);
@@ -114,7 +115,9 @@ public:
 
         const std::vector<TiffPixelChannel> of_pixel =
             channels_of_pixel(page, volume_.layout, description_, volume_.info.warnings);
-        const TiffChoice choice = choose(name_, options_, names_of_channels(of_pixel), description_.frames);
+        const OpenOptions wanted =
+            description_.channels == 1 ? with_usual_channel(options_, of_pixel, volume_.info.warnings) : options_;
+        const TiffChoice choice = choose(name_, wanted, names_of_channels(of_pixel), description_.frames);
         const size_t colors = of_pixel.size();
         take_slices(int64_t(choice.channel / colors), choice.frame);
         volume_.info.name = file_->path().filename().string();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -177,7 +178,8 @@ public:
             channels_of_pixel(page, volume_.layout, description, volume_.info.warnings);
         std::vector<std::string> channel_names;
         for (const TiffPixelChannel& channel : channels) channel_names.push_back(channel.name);
-        const TiffChoice choice = choose(folder_.string(), options_, channel_names, 1);
+        const OpenOptions wanted = with_usual_channel(options_, channels, volume_.info.warnings);
+        const TiffChoice choice = choose(folder_.string(), wanted, channel_names, 1);
         apply_recipe(volume_, page, channels[choice.channel], description);
 
         const fs::path whole = fs::absolute(folder_).lexically_normal();
@@ -195,6 +197,8 @@ private:
         volume_.files.push_back(folder_ / names_[index].file);
         const TiffFile file(volume_.files.back());
         const TiffDirectories directories = read_directories(file);
+        if (!directories.warnings.empty() && !std::exchange(has_warned_, true))
+            volume_.info.warnings.push_back(names_[index].file + ": " + directories.warnings.front());
         const std::vector<uint32_t> shown = pages_to_show(directories);
         if (shown.size() > 1) {
             fail(file.path().string(), ": holds ", shown.size(), " pages; expected one, as a slice of the folder: ",
@@ -244,6 +248,7 @@ private:
     const std::vector<SliceName>& names_;
     std::map<std::string, TiffLayout> layouts_;  ///< by TiffKind::fields
     TiffVolume volume_;
+    bool has_warned_ = false;  ///< of slips in a file
 };
 
 }  // namespace

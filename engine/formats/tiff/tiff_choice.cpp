@@ -92,15 +92,19 @@ bool is_grey_ramp(const std::vector<uint16_t>& palette)
 std::vector<TiffPixelChannel> palette_channels(const TiffPage& page, const TiffLayout& layout,
                                                const TiffDescription& description, std::vector<std::string>& warnings)
 {
-    bool is_grey = true;
-    for (int color = 0; color < 3; ++color) is_grey = is_grey && is_grey_ramp(palette_of(page, layout, color));
-    if (is_grey) return {{}};
+    const std::vector<uint16_t> red = palette_of(page, layout, 0);
+    const bool is_grey = red == palette_of(page, layout, 1) && red == palette_of(page, layout, 2);
+    bool is_ramp = true;
+    for (int color = 0; color < 3; ++color) is_ramp = is_ramp && is_grey_ramp(palette_of(page, layout, color));
+    if (is_ramp) return {{}};
     if (description.writer != TiffDescription::Writer::unknown) {
         // Here a palette only displays the intensities; it is not part of them.
         warnings.emplace_back("the colours of its lookup table were left out");
         return {{}};
     }
-    return {{"index"}, {"red", 0, 0}, {"green", 0, 1}, {"blue", 0, 2}};
+    std::vector<TiffPixelChannel> channels{{"index"}, {"red", 0, 0}, {"green", 0, 1}, {"blue", 0, 2}};
+    if (is_grey) channels.insert(channels.begin(), TiffPixelChannel{"grey", 0, 0, true});
+    return channels;
 }
 
 }  // namespace
@@ -137,6 +141,16 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
     const bool has_alpha = samples == 2 && channels[1].name == "alpha";
     if (has_alpha) channels[0].name = "grey";
     return channels;
+}
+
+OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<TiffPixelChannel>& channels,
+                               std::vector<std::string>& warnings)
+{
+    OpenOptions wanted = options;
+    if (!wanted.channel.empty() || !channels.front().is_usual) return wanted;
+    wanted.channel = channels.front().name;
+    warnings.emplace_back("its palette is grey: the palette's greys are taken; --channel index takes its numbers");
+    return wanted;
 }
 
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,

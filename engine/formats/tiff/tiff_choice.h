@@ -12,11 +12,16 @@ struct TiffPixelChannel {
     std::string name{};  ///< "" if it has only a number
     int sample = 0;
     int palette_color = -1;
+    bool is_usual = false;  ///< taken where none is chosen
 };
 
 /// At least one. May add to `warnings`: a palette whose numbers are the intensities themselves offers no choice.
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
+
+/// `options`, or, if they choose no channel and one of `channels` is usual, with that one chosen and a warning.
+OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<TiffPixelChannel>& channels,
+                               std::vector<std::string>& warnings);
 
 struct TiffChoice {
     size_t channel = 0;  ///< index into `names`

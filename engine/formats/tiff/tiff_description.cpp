@@ -127,6 +127,23 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     for (std::string& unit : description.unit) unit = "um";
 }
 
+/// Resolution fields are fractions of 32 bits: the exact spacing is taken if it is what they were made from.
+void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
+{
+    constexpr double TOLERANCE = 1e-5;
+    if (place.spacing && glm::all(glm::greaterThan(*place.spacing, glm::dvec3(0.0))) &&
+        glm::all(glm::lessThanEqual(glm::abs(info.spacing - *place.spacing), TOLERANCE * info.spacing)))
+        info.spacing = *place.spacing;
+    if (!place.directions || !place.origin || info.unit != length_unit(unit).value_or("voxel")) return;
+    if (!are_axes(*place.directions)) {
+        info.warnings.emplace_back("shvr_directions in its description are no right-handed axes; they are left out");
+        return;
+    }
+    info.directions = *place.directions;
+    info.origin = *place.origin;
+    info.frame = place.frame;
+}
+
 }  // namespace
 
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role)
@@ -152,7 +169,8 @@ void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const T
     std::optional<std::string> unit = length_unit(description.unit[0]);
     const bool is_imagej = description.writer == TiffDescription::Writer::imagej;
     if (!description.spacing[0] && !description.spacing[1] && !description.spacing[2]) {
-        return apply_spacing(info, std::nullopt, std::nullopt, "voxel");
+        apply_spacing(info, std::nullopt, std::nullopt, "voxel");
+        return take_place(info, stated.place, description.unit[0]);
     }
     glm::dvec3 spacing(description.spacing[0].value_or(1.0));
     spacing.y = description.spacing[1].value_or(spacing.x);
@@ -168,6 +186,7 @@ void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const T
         unit = "mm";
     }
     apply_spacing(info, is_nothing ? std::nullopt : std::optional(spacing), unit, "voxel");
+    take_place(info, stated.place, description.unit[0]);
 }
 
 }  // namespace shvr

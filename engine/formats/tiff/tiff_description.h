@@ -27,6 +27,14 @@ struct TiffDescription {
     std::optional<double> spacing[3]{};  ///< ImageJ: z alone
     std::string unit[3]{};               ///< as written; "" if not stated
 
+    /// Where the volume lies, and its exact spacing, as our own files state it (engine/formats/export).
+    struct Place {
+        std::optional<glm::dvec3> spacing{}, origin{};
+        std::optional<glm::dmat3> directions{};
+        std::string frame{};
+    };
+    Place place{};
+
     bool counts_from_minus_32768 = false;  ///< signed 16-bit, as ImageJ stores it
     std::vector<std::string> warnings{};
 };

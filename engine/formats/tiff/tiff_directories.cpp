@@ -21,6 +21,9 @@ enum Tag : uint16_t {
     SUBFILE_TYPE = 255,
     IMAGE_WIDTH = 256,
     IMAGE_LENGTH = 257,
+    BITS_PER_SAMPLE = 258,
+    COMPRESSION = 259,
+    SAMPLES_PER_PIXEL = 277,
     STRIP_OFFSETS = 273,
     STRIP_BYTE_COUNTS = 279,
     TILE_OFFSETS = 324,
@@ -102,20 +105,25 @@ public:
         if (count == 0 || count > MAX_FIELDS) {
             refuse(" has a directory of ", count, " fields; expected 1 to ", MAX_FIELDS);
         }
-        const size_t bytes = count_bytes_ + size_t(count) * field_bytes_ + offset_bytes_;
+        size_t bytes = count_bytes_ + size_t(count) * field_bytes_ + offset_bytes_;
         start = window_.at(offset, bytes);
+        // Some files end with the fields, exactly, and lack the offset of a next directory.
+        lacks_next_ = start == nullptr && offset + bytes - offset_bytes_ == uint64_t(file_.size_bytes());
+        if (lacks_next_) bytes -= offset_bytes_;
+        if (lacks_next_) start = window_.at(offset, bytes);
         if (start == nullptr) {
             refuse(" has a directory that ends at byte ", offset + bytes, "; expected at most the ", file_.size_bytes(),
                    " bytes of the file: it was cut short, or is damaged");
         }
         fields_ = start + count_bytes_;
         count_ = size_t(count);
-        next_ = number(fields_ + count_ * field_bytes_, offset_bytes_);
+        next_ = lacks_next_ ? 0 : number(fields_ + count_ * field_bytes_, offset_bytes_);
         bytes_ = bytes;
     }
 
     size_t count() const { return count_; }
-    uint64_t next() const { return next_; }
+    uint64_t next() const { return next_; }          ///< 0: this is the last one
+    bool lacks_next() const { return lacks_next_; }  ///< the file ends before the offset of a next one
     size_t bytes() const { return bytes_; }
 
     Field field(size_t index) const
@@ -147,6 +155,7 @@ private:
     const std::byte* fields_ = nullptr;
     size_t count_ = 0;
     uint64_t next_ = 0;
+    bool lacks_next_ = false;
     size_t bytes_ = 0;
 };
 
@@ -164,6 +173,7 @@ public:
 
     void look_at(const Field& field, const Reader& reader, size_t page)
     {
+        look_at_picture(field, reader);
         if (field.tag != STRIP_OFFSETS && field.tag != STRIP_BYTE_COUNTS && field.tag != TILE_OFFSETS &&
             field.tag != TILE_BYTE_COUNTS)
             return;
@@ -180,8 +190,12 @@ public:
         (field.tag == STRIP_OFFSETS || field.tag == TILE_OFFSETS ? offset_ : bytes_) = value;
     }
 
-    void finish(size_t page)
+    /// Whether more bytes were stated than the file holds, though it holds all that the pixels take.
+    bool finish(size_t page)
     {
+        const bool states_too_many = !file_.holds(offset_, bytes_) && picture_.bytes() < bytes_;
+        if (states_too_many) bytes_ = picture_.bytes();
+        picture_ = {};
         if (!file_.holds(offset_, bytes_)) {
             fail(file_.path().string(), ": page ", page, ": its voxels are ", bytes_, " bytes at byte ", offset_,
                  " by StripOffsets and StripByteCounts; expected them within the ", file_.size_bytes(),
@@ -194,10 +208,35 @@ public:
                  " bytes of the file: their strips overlap");
         }
         offset_ = bytes_ = 0;
+        return states_too_many;
     }
 
 private:
+    struct Picture {
+        uint64_t width = 0, length = 0, bits = 1, samples = 1, compression = 1;
+        /// Of a strip that is the whole page, uncompressed; nothing is known of others.
+        uint64_t bytes() const
+        {
+            uint64_t row_bits = 0, bytes = 0;
+            const bool overflows = __builtin_mul_overflow(width * samples, bits, &row_bits) ||
+                                   __builtin_mul_overflow((row_bits + 7) / 8, length, &bytes);
+            return compression != 1 || bytes == 0 || overflows ? UINT64_MAX : bytes;
+        }
+    };
+
+    void look_at_picture(const Field& field, const Reader& reader)
+    {
+        // Several samples of a pixel state their bits outside the field, and are left to libtiff.
+        const uint64_t value = field.count == 1 ? reader.value(field) : 0;
+        if (field.tag == IMAGE_WIDTH) picture_.width = value;
+        if (field.tag == IMAGE_LENGTH) picture_.length = value;
+        if (field.tag == BITS_PER_SAMPLE) picture_.bits = value;
+        if (field.tag == COMPRESSION) picture_.compression = value;
+        if (field.tag == SAMPLES_PER_PIXEL) picture_.samples = value;
+    }
+
     const TiffFile& file_;
+    Picture picture_;
     uint64_t offset_ = 0;
     uint64_t bytes_ = 0;
     uint64_t sum_ = 0;
@@ -270,6 +309,7 @@ TiffDirectories read_directories(const TiffFile& file)
     StripCheck strips(file);
     KindFinder kind;
     uint64_t directory_bytes = 0;
+    bool warned_of_bytes = false;
     // Brent's cycle detection: remembers a page, and replaces it at every power of two.
     uint64_t remembered = 0;
     for (uint64_t offset = file.first_directory(); offset != 0; offset = reader.next()) {
@@ -293,7 +333,15 @@ TiffDirectories read_directories(const TiffFile& file)
             kind.look_at(field, reader);
             strips.look_at(field, reader, page);
         }
-        strips.finish(page);
+        if (strips.finish(page) && !warned_of_bytes) {
+            warned_of_bytes = true;
+            directories.warnings.push_back(sentence("page ", page,
+                                                    " states more bytes in StripByteCounts than the file holds; those "
+                                                    "that its pixels take were read"));
+        }
+        if (reader.lacks_next())
+            directories.warnings.push_back(sentence(
+                "the directory of page ", page, " was cut before the offset of a next one; it was taken as the last"));
         directories.pages.push_back({offset, kind.finish(file, directories.kinds, page)});
     }
     if (directories.pages.empty()) fail(file.path().string(), ": holds no page; expected at least one");

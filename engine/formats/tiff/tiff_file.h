@@ -63,6 +63,7 @@ struct TiffKind {
 struct TiffDirectories {
     std::vector<TiffDirectory> pages;
     std::vector<TiffKind> kinds;
+    std::vector<std::string> warnings{};  ///< of slips that leave the pixels whole
 };
 
 /// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MAX_TIFF_PAGES`, or

@@ -74,6 +74,32 @@ private:
     std::map<std::string, std::string> values_;
 };
 
+/// As many numbers as `Value` has, separated by spaces; nothing if they are others.
+template <class Value, size_t COUNT>
+std::optional<Value> numbers_of(const std::string& text)
+{
+    const std::vector<std::string_view> words = words_of(text);
+    Value value{0.0};
+    if (words.size() != COUNT) return {};
+    for (size_t i = 0; i < COUNT; ++i) {
+        const std::optional<double> number = number_of(words[i]);
+        if (!number || !std::isfinite(*number)) return {};
+        if constexpr (COUNT == 3)
+            value[int(i)] = *number;
+        else
+            value[int(i / 3)][int(i % 3)] = *number;
+    }
+    return value;
+}
+
+/// Lines that only we write.
+void read_place(const Lines& lines, TiffDescription& description)
+{
+    description.place = {numbers_of<glm::dvec3, 3>(lines.text("shvr_spacing")),
+                         numbers_of<glm::dvec3, 3>(lines.text("shvr_origin")),
+                         numbers_of<glm::dmat3, 9>(lines.text("shvr_directions")), printable(lines.text("shvr_frame"))};
+}
+
 void read_calibration(const Lines& lines, TiffDescription& description)
 {
     const std::optional<double> function = lines.number("cf");
@@ -123,6 +149,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     if (const std::optional<double> spacing = lines.number("spacing"); spacing && std::isfinite(*spacing)) {
         if (*spacing != 0.0) description.spacing[2] = std::abs(*spacing);
     }
+    read_place(lines, description);
     read_calibration(lines, description);
     return description;
 }

@@ -234,7 +234,11 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
 {
     const auto index = uint32_t(block);
     const uint64_t offset = TIFFGetStrileOffset(page.handle(), index);
-    const uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
+    uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
+    const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
+    const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
+    // Old programs state more than the pixels take, up to the next strip's bytes or beyond the file's end.
+    if (layout.compression == COMPRESSION_NONE) bytes = std::min(bytes, uint64_t(decoded));
     const auto refuse = [&](const auto&... words) {
         fail(page.subject(), ": ", name_of_block(layout), block + 1, " of ", layout.blocks(), words...);
     };
@@ -245,8 +249,6 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
         refuse(" is ", bytes, " bytes at byte ", offset, " by ", name_of_byte_counts(layout),
                "; expected it within the ", file.size_bytes(), " bytes of the file: it was cut short, or is damaged");
     }
-    const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
-    const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
     if (decoded > most_decoded(layout, int64_t(bytes))) {
         refuse(" is ", bytes, " bytes by ", name_of_byte_counts(layout), "; expected enough for ", decoded,
                " bytes of voxels");

@@ -88,7 +88,16 @@ std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout,
         colors[color] == nullptr) {
         fail(page.subject(), ": has no ColorMap; expected a palette of ", 1 << layout.bits, " colours");
     }
-    return {colors[color], colors[color] + (size_t{1} << layout.bits)};
+    const size_t entries = size_t{1} << layout.bits;
+    std::vector<uint16_t> palette(colors[color], colors[color] + entries);
+    // Some programs write bytes where 16 bits belong; libtiff's tools take them as bytes, too.
+    const auto is_byte = [](uint16_t entry) { return entry <= 255; };
+    const bool are_bytes = std::all_of(colors, colors + 3, [&](const uint16_t* of_color) {
+        return of_color != nullptr && std::all_of(of_color, of_color + entries, is_byte);
+    });
+    for (uint16_t& entry : palette)
+        if (are_bytes) entry = uint16_t(entry * 257);
+    return palette;
 }
 
 bool has_8_bits(const std::vector<uint16_t>& palette)

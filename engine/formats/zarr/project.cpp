@@ -44,13 +44,11 @@ glm::dmat3 read_matrix(const JsonNode& node)
     return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
 }
 
-bool are_axes(const glm::dmat3& directions)
+/// Projects of before have no such key.
+Provenance read_provenance(const JsonNode& node)
 {
-    constexpr double TOLERANCE = 1e-6;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(glm::length(directions[axis]) - 1.0) < TOLERANCE)) return false;
-    }
-    return glm::determinant(directions) > 0.0;
+    constexpr std::array<std::string_view, 3> NAMES{"assumed", "file", "given"};
+    return node.exists() ? static_cast<Provenance>(node.choice(NAMES)) : Provenance::file;
 }
 
 VolumeStatistics read_statistics(const JsonNode& node)
@@ -141,6 +139,8 @@ std::string to_text(const ProjectRecord& record)
         {"type", name_of(info.type)},
         {"spacing", list_of(info.spacing)},
         {"unit", info.unit},
+        {"spacing_from", name_of(info.spacing_from)},
+        {"unit_from", name_of(info.unit_from)},
         {"directions", {list_of(info.directions[0]), list_of(info.directions[1]), list_of(info.directions[2])}},
         {"origin", list_of(info.origin)},
         {"frame", info.frame},
@@ -167,6 +167,8 @@ ProjectRecord read_project_record(const Path& file)
     info.spacing = root["spacing"].vector(any_number());
     if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) root["spacing"].refuse("three numbers above 0");
     info.unit = printable(root["unit"].any_text());
+    info.spacing_from = read_provenance(root["spacing_from"]);
+    info.unit_from = read_provenance(root["unit_from"]);
     info.directions = read_matrix(root["directions"]);
     if (!are_axes(info.directions)) root["directions"].refuse("three right-handed vectors of length 1");
     info.origin = root["origin"].vector(any_number());

@@ -51,6 +51,8 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
         const VolumeInfo& known = knowledge.record->info;
         info.spacing = known.spacing;
         info.unit = known.unit;
+        info.spacing_from = known.spacing_from;
+        info.unit_from = known.unit_from;
         info.directions = known.directions;
         info.origin = known.origin;
         info.frame = known.frame;

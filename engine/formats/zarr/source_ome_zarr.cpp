@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/readers.h"
+#include "engine/formats/zarr/ome_place.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/project_knowledge.h"
 #include "engine/formats/zarr/zarr_gaps.h"
@@ -253,7 +254,7 @@ std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const JsonNode&
     static_cast<void>(voxel_count(info));
     info.warnings = image.warnings;
     apply_spacing(info, image.levels[0].scale, image.unit, "um");
-    info.origin = image.levels[0].translation.value_or(glm::dvec3(0.0));
+    read_ome_place(attributes, image.levels[0].translation, info);
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
     if (attributes["image-label"].exists())

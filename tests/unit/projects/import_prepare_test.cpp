@@ -324,19 +324,32 @@ TEST_CASE("making a volume smaller averages the voxels there are, ties to even")
     CHECK(prepared<uint8_t>(source_of<uint8_t>(ties), {.downscale = 2}).values == std::vector<double>{0, 2});
 }
 
-TEST_CASE("reversed intensities are the ends of the range less the voxel, and reversing twice changes nothing")
+TEST_CASE("reversed intensities are the volume's smallest plus largest less the voxel, of every type, before it is cut")
 {
-    const auto reversed = [](auto zero, const Block& block) {
+    const auto reversed = [](auto zero, const Block& block, const PreparationOptions& options = {.reverse = true}) {
         using T = decltype(zero);
-        return prepared<T>(source_of<T>(block), {.reverse = true});
+        return prepared<T>(source_of<T>(block), options);
     };
-    const Block bytes{Size3(4, 1, 1), {0, 1, 127, 127}};
-    CHECK(reversed(uint8_t{}, bytes).values == std::vector<double>{255, 254, 128, 128});
-    CHECK(reversed(int8_t{}, bytes).values == std::vector<double>{-1, -2, -128, -128});
-    CHECK(reversed(uint16_t{}, bytes).values[1] == 65534);
-    CHECK(reversed(int16_t{}, bytes).values[1] == -2);
-    CHECK(reversed(int32_t{}, bytes).values[1] == -2);
-    CHECK(reversed(float{}, bytes).values == std::vector<double>{127, 126, 0, 0});
+    const auto check_every_type = [&](const std::vector<double>& values, const std::vector<double>& expected) {
+        const Block block{Size3(int64_t(values.size()), 1, 1), values};
+        CHECK(reversed(uint8_t{}, block).values == expected);
+        CHECK(reversed(int8_t{}, block).values == expected);
+        CHECK(reversed(uint16_t{}, block).values == expected);
+        CHECK(reversed(int16_t{}, block).values == expected);
+        CHECK(reversed(int32_t{}, block).values == expected);
+        CHECK(reversed(float{}, block).values == expected);
+        CHECK(reversed(double{}, block).values == expected);
+    };
+    check_every_type({5, 1, 127, 127}, {123, 127, 1, 1});
+    check_every_type({7}, {7});
+    const Block lowest{Size3(3, 1, 1), {-2147483648.0, 2147483647.0, 5.0}};
+    CHECK(reversed(int32_t{}, lowest).values == std::vector<double>{2147483647.0, -2147483648.0, -6.0});
+    const Block odd{Size3(4, 1, 1), {1.5, NAN, INFINITY, 4.0}};
+    const std::vector<double> floats = reversed(float{}, odd).values;
+    CHECK((floats[0] == 4.0 && std::isnan(floats[1]) && floats[2] == -INFINITY && floats[3] == 1.5));
+    // A part is reversed as the whole is.
+    const PreparationOptions part{.crop = VoxelBox{{0, 0, 0}, {2, 1, 1}}, .reverse = true};
+    CHECK(reversed(uint8_t{}, Block{Size3(4, 1, 1), {5, 1, 127, 127}}, part).values == std::vector<double>{123, 127});
     const Block block = random_block<uint16_t>(Size3(9), 11);
     CHECK(reversed(uint16_t{}, reversed(uint16_t{}, block)).values == block.values);
 }

@@ -310,8 +310,8 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
         CAPTURE(wrong.keys);
         CHECK(refusal(with(wrong.keys)).starts_with("s.json: unknown key " + wrong.name + "; expected one of: "));
     }
-    CHECK(volume_refusal(R"({"path": "a", "spacing": [1, 1, 1]})") ==
-          "s.json: unknown key volume.spacing; expected one of: path, raw, procedural, channel, frame");
+    CHECK(volume_refusal(R"({"path": "a", "size": [1, 1, 1]})") ==
+          "s.json: unknown key volume.size; expected one of: path, raw, procedural, channel, frame, spacing, unit");
     CHECK(volume_refusal(R"({"path": "a", "procedural": "tubes"})").starts_with("s.json: unknown key volume.path;"));
 }
 
@@ -423,7 +423,8 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
 TEST_CASE("volumes that cannot be are refused")
 {
     CHECK(refusal(R"({"shvr_session": 1})") ==
-          "s.json: key volume is missing; expected an object with keys out of: path, raw, procedural, channel, frame");
+          "s.json: key volume is missing; expected an object with keys out of: path, raw, procedural, channel, frame, "
+          "spacing, unit");
     for (const auto& [volume, sentence] : std::map<std::string, std::string>{
              {"3", "volume is 3; expected an object"},
              {"{}", "volume.path is missing; expected a path"},

@@ -78,7 +78,11 @@ TEST_CASE("the thesis's text is written byte for byte, with indices of the nodes
     reader.add_node("", {{1, 2.5, -3}, 4, 5}, 2);
     reader.add_node("", {{0.1, 1e-9, 1e21}, 0.25, 255}, 7);
     reader.add_internode("", {7, 2, 9});
-    CHECK(write_trace_text(reader.trace) == "-v 1, 2.5, -3, 5, 4\n-v 0.1, 1e-09, 1e+21, 255, 0.25\n-l 1, 0, 9\n");
+    const std::string text = write_trace_text({reader.trace, SPACE});
+    CHECK(text.starts_with(
+        "# SHVR trace\n# positions are voxels times spacing, in um, from the outer corner of voxel 0"));
+    CHECK(contains(text, "\n# space volume\n# unit um\n# spacing 0.5 0.25 1.5\n# size 40 30 20\n"));
+    CHECK(text.substr(text.find("-v")) == "-v 1, 2.5, -3, 5, 4\n-v 0.1, 1e-09, 1e+21, 255, 0.25\n-l 1, 0, 9\n");
 }
 
 TEST_CASE("the thesis's text is read back, also with other spacing and links before nodes")
@@ -101,7 +105,9 @@ TEST_CASE("SWC is written in the standard order, with the volume in comments")
                                       {{0, 2, 3}, {1, 2, 3}});
     save_trace(folder.path / "a.swc", trace, SPACE);
     CHECK(content_of(folder.path / "a.swc") ==
-          "# SHVR trace\n# unit um\n# spacing 0.5 0.25 1.5\n# size 40 30 20\n"
+          "# SHVR trace\n# positions are voxels times spacing, in um, from the outer corner of voxel 0: the centre of "
+          "voxel "
+          "i is at (i + 1/2) spacing\n# space volume\n# unit um\n# spacing 0.5 0.25 1.5\n# size 40 30 20\n"
           "# n type x y z radius parent; the type is the colour group\n"
           "1 1 0 0 0 1 -1\n2 3 1 0 0 1.5 1\n3 2 2 0 0 1 2\n4 4 9 9 9 2 -1\n");
 }
@@ -187,7 +193,7 @@ TEST_CASE("RSML: the longest way is the first axis, branches are roots below it,
         trace_of({{{0, 0, 0}, 1, 1}, {{1, 0, 0}, 1, 1}, {{2, 0, 0}, 1, 1}, {{3, 0, 0}, 0.5, 2}, {{1, 1.5, 0}, 1, 3}},
                  {{0, 1, 1}, {1, 4, 1}, {1, 2, 1}, {2, 3, 1}});
     std::vector<std::string> notes;
-    const std::string text = write_trace_rsml(trace, SPACE, Loops::refuse, notes);
+    const std::string text = write_trace_rsml({trace, SPACE}, Loops::refuse, notes);
     CHECK(contains(text, "<unit>um</unit>\n  <resolution>2</resolution>"));
     std::string plain;  // without the white space between elements
     for (size_t at = 0; at < text.size(); at = text.find_first_not_of(" \n", at)) {
@@ -434,4 +440,121 @@ TEST_CASE("hostile GraphML is refused in one sentence")
     CHECK(load_trace(mixed, {}).trace.nodes().begin()->first == 0);
     // The largest possible number leaves none for new nodes.
     CHECK(refusal("a.graphml", graph(node("n4294967295"))).empty());
+}
+
+namespace {
+
+/// Turned by a right angle about z and far from 0, in one of the frames that a file may name, or in none.
+TraceSpace placed(const char* frame)
+{
+    TraceSpace space = SPACE;
+    space.directions = glm::dmat3(glm::dvec3(0, -1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1));
+    space.origin = {-1234.5, 0.1, 98765.4321};
+    space.frame = frame;
+    return space;
+}
+
+double farthest_apart(const TraceGraph& a, const TraceGraph& b)
+{
+    double most = 0.0;
+    REQUIRE(a.nodes().size() == b.nodes().size());
+    for (auto of_a = a.nodes().begin(), of_b = b.nodes().begin(); of_a != a.nodes().end(); ++of_a, ++of_b)
+        most = std::max(most, glm::length(of_a->second.position - of_b->second.position));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a trace in physical space lies where the volume's file says, says so, and is read back into volume space")
+{
+    const TemporaryFolder folder;
+    const std::vector<TraceNode> nodes{{{0.25, 0.125, 0.75}, 2, 1}, {{10.1, 3.3, 15.7}, 1, 1}, {{12.2, 5, 1}, 1, 1}};
+    const TraceGraph trace = trace_of(nodes, {{0, 1, 1}, {1, 2, 1}});
+    for (const char* frame : {"LPS", "RAS", ""}) {
+        const TraceSpace space = placed(frame);
+        // The centre of voxel 0, and one step along each axis.
+        CHECK(physical_of(space, 0.5 * space.spacing) == space.origin);
+        CHECK(physical_of(space, glm::dvec3(1.5, 0.5, 0.5) * space.spacing) == space.origin + glm::dvec3(0, -0.5, 0));
+        CHECK(physical_of(space, glm::dvec3(0.5, 1.5, 0.5) * space.spacing) == space.origin + glm::dvec3(0.25, 0, 0));
+        for (const char* name : {"a.graphml", "a.txt", "a.swc", "a.rsml"}) {
+            CAPTURE(name);
+            const auto path = folder.path / name;
+            save_trace(path, trace, space, Loops::refuse, Positions::physical);
+            const std::string text = content_of(path);
+            CHECK(contains(text, "positions are physical, in um, along the axes of"));
+            CHECK(contains(text, "-1234.5 0.1 98765.4321"));
+            CHECK(contains(text, "0 -1 0 1 0 0 0 0 1"));
+            const TraceFile read = load_trace(path, space);
+            CHECK(farthest_apart(read.trace, trace) < 1e-10);
+            // Files that were written in volume space are kept to the last bit, but for RSML.
+            save_trace(path, trace, space);
+            CHECK(contains(content_of(path), "positions are voxels times spacing"));
+            CHECK(farthest_apart(load_trace(path, space).trace, trace) <
+                  (path.extension() == ".rsml" ? 1e-14 : 1e-300));
+        }
+        save_trace(folder.path / "a.graphml", trace, space, Loops::refuse, Positions::physical);
+        const TraceFile read = load_trace(folder.path / "a.graphml", space);
+        CHECK((read.trace == trace));
+        CHECK((read.space == space));
+    }
+}
+
+TEST_CASE("GraphML in physical space keeps the last bits, unless another program moved a node")
+{
+    const TemporaryFolder folder;
+    const TraceGraph trace = random_trace(7, true);
+    const TraceSpace space = placed("LPS");
+    const auto path = folder.path / "a.graphml";
+    save_trace(path, trace, space, Loops::refuse, Positions::physical);
+    CHECK((load_trace(path, space).trace == trace));
+    const TraceGraph one = trace_of({{{1.1, 2.2, 3.3}, 1, 1}}, {});
+    save_trace(path, one, space, Loops::refuse, Positions::physical);
+    std::string text = content_of(path);
+    const size_t z = text.find("<data key=\"z\">");
+    REQUIRE(z != std::string::npos);
+    text.replace(z, text.find("</data>", z) - z, "<data key=\"z\">98769.4321");
+    folder.write("b.graphml", text);
+    const TraceGraph moved = load_trace(folder.path / "b.graphml", space).trace;
+    CHECK(moved.node(0).position.z == doctest::Approx(4.75).epsilon(1e-9));
+}
+
+TEST_CASE("a trace that lies elsewhere, or does not say where, is refused")
+{
+    const TemporaryFolder folder;
+    const TraceGraph trace = trace_of({{{1, 2, 3}, 1, 1}}, {});
+    const TraceSpace space = placed("LPS");
+    for (const char* name : {"a.graphml", "a.txt", "a.swc", "a.rsml"}) {
+        CAPTURE(name);
+        save_trace(folder.path / name, trace, space, Loops::refuse, Positions::physical);
+        const auto with = [&](auto change) {
+            TraceSpace other = space;
+            change(other);
+            return error_of([&] { load_trace(folder.path / name, other); });
+        };
+        CHECK(
+            contains(with([](TraceSpace& s) { s.origin.x += 1.0; }), "of LPS; expected origin -1233.5 0.1 98765.4321"));
+        CHECK(contains(with([](TraceSpace& s) { s.directions = glm::dmat3(1.0); }), "expected origin"));
+        CHECK(contains(with([](TraceSpace& s) { s.frame = "RAS"; }), "of LPS; expected origin"));
+        CHECK(with([](TraceSpace& s) { s.origin.x += 1e-6; }).empty());
+        CHECK(with([](TraceSpace& s) { s.frame = ""; }).empty());
+        CHECK(with([](TraceSpace& s) { s = SPACE; }).empty());  // states no place
+        CHECK(with([](TraceSpace& s) {                          // the same place in the other frame
+                  for (int axis = 0; axis < 3; ++axis) s.directions[axis] *= glm::dvec3(-1, -1, 1);
+                  s.origin *= glm::dvec3(-1, -1, 1);
+                  s.frame = "RAS";
+              })
+                  .empty());
+    }
+    CHECK(refusal("a.swc", "# space physical\n1 1 0 0 0 1 -1\n", SPACE) ==
+          "a.swc: states that its positions are physical, but not the volume's place; expected origin and directions");
+    const std::string place = "# space physical\n# origin 1 2 3\n# directions 1 0 0 0 1 0 0 0 1\n1 1 0 0 0 1 -1\n";
+    CHECK(refusal("a.swc", place) ==
+          "a.swc: states that its positions are physical, but no spacing; expected one, or the volume's");
+    CHECK(refusal("a.swc", place, SPACE).empty());
+    CHECK(contains(refusal("a.swc", "# space physical\n# origin 1 2\n"), "a.swc:2: origin is \"1 2\"; expected three"));
+    CHECK(contains(refusal("a.swc", "# space physical\n# directions 1 0 0 0 1 0 0 0 -1\n"),
+                   "expected three right-handed"));
+    CHECK(contains(refusal("a.swc", "# space physical\n# frame XYZ\n"), "frame is \"XYZ\"; expected LPS or RAS"));
+    // Comments of other programs are theirs.
+    CHECK(refusal("a.swc", "# space is big\n# origin unknown\n1 1 0 0 0 1 -1\n", SPACE).empty());
 }

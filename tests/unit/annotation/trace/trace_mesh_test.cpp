@@ -74,10 +74,69 @@ TEST_CASE("an internode is a closed truncated cone of a regular polygon's volume
     CHECK(mesh_of(trace, trace.internode(1)).triangles.empty());
 }
 
+namespace {
+
+std::string content_of(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Of an OBJ, and the comments of a PLY beside it.
+std::vector<glm::dvec3> vertices_of(const std::string& obj)
+{
+    std::vector<glm::dvec3> vertices;
+    std::istringstream lines(obj);
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("v ")) continue;
+        std::istringstream numbers(line.substr(2));
+        glm::dvec3 vertex{0.0};
+        numbers >> vertex.x >> vertex.y >> vertex.z;
+        vertices.push_back(vertex);
+    }
+    return vertices;
+}
+
+}  // namespace
+
+TEST_CASE("a mesh lies where the volume's file says, to the last bit in OBJ and PLY, and stays closed from outside")
+{
+    const TemporaryFolder folder;
+    TraceSpace space{{9, 9, 9}, {0.5, 0.25, 2}, "um"};
+    space.directions = glm::dmat3(glm::dvec3(-1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1));
+    space.origin = {1234567, -20, 7};
+    space.frame = "LPS";
+    save_trace_mesh(folder.path / "volume.obj", tube(), space, Positions::volume);
+    save_trace_mesh(folder.path / "a.obj", tube(), space);
+    save_trace_mesh(folder.path / "a.ply", tube(), space);
+    const std::vector<glm::dvec3> in_volume = vertices_of(content_of(folder.path / "volume.obj"));
+    const std::string obj = content_of(folder.path / "a.obj"), ply = content_of(folder.path / "a.ply");
+    const std::vector<glm::dvec3> physical = vertices_of(obj);
+    REQUIRE(physical.size() == 118);
+    const size_t body = ply.find("end_header\n") + 11;
+    for (size_t i = 0; i < physical.size(); ++i) {
+        REQUIRE(physical[i] == physical_of(space, in_volume[i]));
+        glm::dvec3 vertex{0.0};
+        std::memcpy(&vertex, ply.data() + body + 24 * i, 24);
+        REQUIRE(vertex == physical[i]);
+    }
+    for (const char* words : {"SPACE=LPS\n", "space physical\n", "origin 1234567 -20 7\n", "frame LPS\n",
+                              "directions -1 0 0 0 -1 0 0 0 1\n", "unit um\n"}) {
+        CAPTURE(words);
+        CHECK(contains(obj, words));
+        CHECK(contains(ply.substr(0, body), words));
+    }
+    CHECK(contains(content_of(folder.path / "volume.obj"), "# space volume\n"));
+    CHECK_FALSE(contains(content_of(folder.path / "volume.obj"), "SPACE="));
+}
+
 TEST_CASE("OBJ and PLY hold every part, with the unit and the groups")
 {
     const TemporaryFolder folder;
-    save_trace_mesh(folder.path / "a.obj", tube(), {{9, 9, 9}, {1, 1, 1}, "um"});
+    TraceSpace space{{9, 9, 9}, {1, 1, 1}, "um"};
+    save_trace_mesh(folder.path / "a.obj", tube(), space);
+    CHECK(content_of(folder.path / "a.obj")
+              .starts_with("# SHVR trace as tubes, unit um\n# positions are physical, in um"));
     std::ifstream obj(folder.path / "a.obj");
     std::string word;
     std::map<std::string, int> counts;
@@ -85,7 +144,6 @@ TEST_CASE("OBJ and PLY hold every part, with the unit and the groups")
     for (std::string line; std::getline(obj, line);) {
         ++counts[line.substr(0, line.find(' '))];
         if (line[0] == 'g') ++counts[line];
-        if (line[0] == '#') CHECK(contains(line, "unit um"));
         if (line[0] != 'f') continue;
         std::istringstream text(line.substr(2));
         for (uint64_t corner; text >> corner;) corners.push_back(corner);
@@ -97,18 +155,17 @@ TEST_CASE("OBJ and PLY hold every part, with the unit and the groups")
     CHECK(*std::min_element(corners.begin(), corners.end()) == 1);
     CHECK(*std::max_element(corners.begin(), corners.end()) == 118);
 
-    save_trace_mesh(folder.path / "a.ply", tube(), {{9, 9, 9}, {1, 1, 1}, "um"});
-    std::ifstream ply(folder.path / "a.ply", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(ply), {}};
+    save_trace_mesh(folder.path / "a.ply", tube(), space);
+    const std::string text = content_of(folder.path / "a.ply");
     const size_t end = text.find("end_header\n") + 11;
     CHECK(contains(text.substr(0, end), "unit um"));
     CHECK(contains(text.substr(0, end), "element vertex 118\n"));
     CHECK(contains(text.substr(0, end), "element face 224\n"));
-    REQUIRE(text.size() == end + 118 * 12 + 224 * 14);
+    REQUIRE(text.size() == end + 118 * 24 + 224 * 14);
     uint32_t most = 0;
     std::map<int, int> groups;
     for (size_t face = 0; face < 224; ++face) {
-        const char* at = text.data() + end + 118 * 12 + face * 14;
+        const char* at = text.data() + end + 118 * 24 + face * 14;
         CHECK(at[0] == 3);
         for (size_t corner = 0; corner < 3; ++corner) {
             uint32_t index = 0;

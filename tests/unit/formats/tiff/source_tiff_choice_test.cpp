@@ -113,6 +113,9 @@ TEST_CASE("a palette is read by its numbers or by its colours, and a grey one ne
     const auto wide = open_volume(path, {.channel = "green"});
     CHECK(wide->info().type == VoxelType::uint16);
     CHECK(voxels_of<uint16_t>(*wide) == std::vector<uint16_t>{0, 15000, 2000, 1000});
+    const auto grey = open_volume(path);
+    CHECK(voxels_of<uint16_t>(*grey) == std::vector<uint16_t>{0, 15000, 2000, 1000});
+    CHECK(warns_of(*grey, "its palette is grey: the palette's greys are taken; --channel index takes its numbers"));
 }
 
 TEST_CASE("thumbnails and masks are left out, and it is said")

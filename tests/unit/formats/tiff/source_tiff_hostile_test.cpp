@@ -167,7 +167,12 @@ TEST_CASE("a TIFF cut anywhere is an error, or still says the same")
             const fs::path path = folder.write("a.tif", sample.bytes.substr(0, length));
             CAPTURE(length);
             bool says_the_same = false;
-            const std::string said = error_of([&] { says_the_same = is_chirality_phantom(*open_volume(path)); });
+            const std::string said = error_of([&] {
+                const std::unique_ptr<VolumeSource> source = open_volume(path);
+                // A stack that ends with the fields of a directory may have been no longer: it is read with a warning.
+                says_the_same =
+                    is_chirality_phantom(*source) || warns_of(*source, "was cut before the offset of a next one");
+            });
             CHECK((says_the_same || contains(said, "; expected ")));
         }
     }
@@ -234,7 +239,9 @@ TEST_CASE("a TIFF that lies about sizes is refused by field, before memory is ta
     }
     CHECK(hostile.refusal({{278, 4, 1, 4}, {273, 3, 2, 32 << 16 | 8}, {279, 3, 2, 31 << 16 | 32}}) ==
           ": page 1: strip 2 of 2 is 31 bytes by StripByteCounts; expected enough for 32 bytes of voxels");
-    CHECK(hostile.refusal({{279, 4, 1, 2000}}) ==
+    // The pixels take 64 bytes, and are there; compressed ones may take all that is stated.
+    CHECK(hostile.refusal({{279, 4, 1, 2000}}).empty());
+    CHECK(hostile.refusal({{259, 3, 1, COMPRESSION_LZW}, {279, 4, 1, 2000}}) ==
           ": page 1: its voxels are 2000 bytes at byte 8 by StripOffsets and StripByteCounts; expected them within the "
           "1024 bytes of the file");
     CHECK(contains(hostile.refusal({{273, 4, 1, 0xffffffff}}), "are 64 bytes at byte 4294967295 by StripOffsets"));
