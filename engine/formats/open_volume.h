@@ -26,6 +26,10 @@ bool is_address(std::string_view path);
 inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
 
+/// Whether it is the path of a zipped OME-Zarr, by its name (.ozx, .zip), or leads into one, as in scan.ozx/0, which is
+/// no path of the file system. Reads nothing.
+bool leads_into_archive(const std::filesystem::path& path);
+
 /// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
 /// `path` is one file; or the first of numbered files ("head.1", "slice007.raw") with one slice each; or a folder of

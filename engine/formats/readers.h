@@ -6,8 +6,8 @@
 
 namespace shvr {
 
-/// OME-Zarr images of versions 0.1 to 0.4, projects, and bare Zarr arrays (version 2): folders with a .zattrs, .zgroup
-/// or .zarray.
+/// OME-Zarr images of versions 0.1 to 0.5, projects, and bare Zarr arrays (versions 2 and 3): folders with a .zattrs,
+/// .zgroup, .zarray or zarr.json; archives of such a folder's content (.ozx, .zip), and paths into archives.
 std::unique_ptr<VolumeSource> open_ome_zarr(const std::filesystem::path& path, const OpenOptions& options);
 /// TIFF and BigTIFF, by their first bytes or their extension, and folders of TIFFs.
 std::unique_ptr<VolumeSource> open_tiff(const std::filesystem::path& path, const OpenOptions& options);

@@ -21,11 +21,11 @@ bool is_empty(Bytes chunk)
 }  // namespace
 
 ImportChunks::ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
-                           const ZarrCompressor& compressor, int workers)
+                           OmeZarrVersion version, const ZarrCompressor& compressor, int workers)
     : compressor_(compressor), compressed_(size_t(workers))
 {
     for (int level = 0; level < levels; ++level) {
-        ZarrVolume volume = import_level(project, info, level, compressor);
+        ZarrVolume volume = import_level(project, info, level, version, compressor);
         const Size3 counts = volume.counts();
         levels_.push_back({std::move(volume), std::vector<uint64_t>(size_t(counts.x * counts.y * counts.z))});
     }

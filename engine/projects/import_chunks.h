@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/zarr_volume.h"
 #include "engine/projects/import_state.h"
 
@@ -13,7 +14,7 @@ namespace shvr {
 
 class ImportChunks {
 public:
-    ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
+    ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels, OmeZarrVersion version,
                  const ZarrCompressor& compressor, int workers);
 
     /// Compresses and writes the voxels of a chunk; writes no file if all of them are 0. Different workers may write

@@ -44,10 +44,9 @@ std::string signature_of(const fs::path& path)
                     status.st_mtim.tv_nsec);
 }
 
-/// https://ngff.openmicroscopy.org/0.4/#label-md
-void describe_labels(const LabelImage& labels, Json& attributes)
+/// https://ngff.openmicroscopy.org/0.5/#labels-md; what is ours stands beside what is of OME-Zarr.
+void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
 {
-    Json& label = attributes["image-label"];
     Json colors = Json::array(), properties = Json::array();
     for (const LabelImage::Color& color : labels.colors) {
         colors.push_back({{"label-value", color.value}, {"rgba", color.rgba}});
@@ -59,16 +58,24 @@ void describe_labels(const LabelImage& labels, Json& attributes)
     if (!labels.painted_on.empty()) attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
 }
 
-/// The attributes in IMAGE/labels/.zattrs; empty if there is no such file.
+/// The attributes of IMAGE/labels; empty if there is no such group.
 Json listed_labels(const fs::path& folder)
 {
-    std::error_code ignored;
-    const fs::path file = folder / ".zattrs";
-    if (!fs::exists(file, ignored)) return Json::object();
-    const JsonDocument attributes = read_zarr_json(file, LARGEST_ZARR_ATTRIBUTES);
-    const JsonNode names = attributes.root()["labels"];
+    const std::optional<ZarrNode> node = read_zarr_node(folder);
+    if (!node || !node->attributes().exists()) return Json::object();
+    const JsonNode names = node->ome()["labels"];
     if (names.exists() && !names.is_array()) names.refuse("a list of names");
-    return attributes.value();
+    return node->version == 2 ? node->document.value() : node->document.value()["attributes"];
+}
+
+OmeZarrVersion version_of(const ZarrNode& node)
+{
+    return node.version == 2 ? OmeZarrVersion::v0_4 : OmeZarrVersion::v0_5;
+}
+
+std::string text_of(const Json& document, int indent)
+{
+    return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 /// The file and the files beside it with the same stem (headers refer to other files), or the content of the folder.
@@ -89,25 +96,34 @@ Json signatures_of(const fs::path& origin)
 
 }  // namespace
 
-ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int level, const ZarrCompressor& compressor)
+ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
+                        const ZarrCompressor& compressor)
 {
     const Size3 size = size_of_level(info.size, level);
-    ZarrMetadata metadata{.shape = {size.z, size.y, size.x},
+    const bool is_3 = version == OmeZarrVersion::v0_5;
+    ZarrMetadata metadata{.version = is_3 ? 3 : 2,
+                          .shape = {size.z, size.y, size.x},
                           .chunks = {IMPORT_CHUNK, IMPORT_CHUNK, IMPORT_CHUNK},
                           .type = info.type,
+                          .has_prefix = is_3,
                           .separator = '/',
-                          .compressor = compressor};
-    return {project / std::to_string(level), std::move(metadata), ZarrView{}};
+                          .codecs = {compressor},
+                          .axes = {"z", "y", "x"}};
+    return {zarr_folder(project / std::to_string(level)), std::move(metadata), ZarrView{}};
 }
 
-std::string import_group()
+std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion version, const std::string& attributes)
 {
-    return Json({{"zarr_format", 2}}).dump(4) + "\n";
+    if (version == OmeZarrVersion::v0_4)
+        return {{".zgroup", text_of({{"zarr_format", 2}}, 4)}, {".zattrs", attributes}};
+    const Json group = {{"zarr_format", 3}, {"node_type", "group"}, {"attributes", Json::parse(attributes)}};
+    return {{"zarr.json", text_of(group, 2)}};
 }
 
-std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how,
-                              const LabelImage* labels)
+std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
+                              Halving how, const LabelImage* labels)
 {
+    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // since 0.5 there is one, of all
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);
@@ -119,26 +135,30 @@ std::string import_attributes(const std::string& name, const VolumeInfo& info, i
                               {{"type", "translation"}, {"translation", zyx(translation)}}}}});
     }
     const Json axes = {axis_named("z", info.unit), axis_named("y", info.unit), axis_named("x", info.unit)};
-    const Json multiscale = {
-        {"version", "0.4"},
-        {"name", name},
-        {"axes", axes},
-        {"datasets", datasets},
-        {"type", how == Halving::label ? "mode" : "mean"},
-        {"metadata",
-         {{"description", sentence("each voxel is the ", how == Halving::label ? "most frequent" : "mean",
-                                   " of the 2 x 2 x 2 voxels of the level before that there are")}}}};
-    Json attributes = {{"multiscales", Json::array({multiscale})}};
+    Json multiscale = has_own_versions ? Json{{"version", "0.4"}} : Json::object();
+    multiscale.update(
+        {{"name", name},
+         {"axes", axes},
+         {"datasets", datasets},
+         {"type", how == Halving::label ? "mode" : "mean"},
+         {"metadata",
+          {{"description", sentence("each voxel is the ", how == Halving::label ? "most frequent" : "mean",
+                                    " of the 2 x 2 x 2 voxels of the level before that there are")}}}});
+    Json ome = has_own_versions ? Json::object() : Json{{"version", spelled(version)}};
+    ome["multiscales"] = Json::array({multiscale});
+    if (how == Halving::label) ome["image-label"] = {{"version", spelled(version)}};
+    Json ours = Json::object();
     if (states_place(info)) {
         const auto list = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
-        attributes[OME_PLACEMENT] = {
+        ours[OME_PLACEMENT] = {
             {"frame", info.frame},
             {"directions", {list(info.directions[0]), list(info.directions[1]), list(info.directions[2])}},
             {"origin", list(info.origin)}};
     }
-    if (how == Halving::label) attributes["image-label"] = {{"version", "0.4"}};
-    if (labels != nullptr) describe_labels(*labels, attributes);
-    return attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (labels != nullptr) describe_labels(*labels, ome["image-label"], ours);
+    Json attributes = has_own_versions ? ome : Json{{"ome", ome}};
+    attributes.update(ours);
+    return text_of(attributes, 2);
 }
 
 fs::path label_image_target(const fs::path& folder)
@@ -147,9 +167,9 @@ fs::path label_image_target(const fs::path& folder)
     if (!target.has_filename()) target = target.parent_path();
     std::error_code error;
     if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
-        const fs::path file = target / ".zattrs";
-        const bool is_label_image = fs::exists(file, error) && !fs::exists(target / PROJECT_RECORD, error) &&
-                                    read_zarr_json(file, LARGEST_ZARR_ATTRIBUTES).root()["image-label"].exists();
+        const std::optional<ZarrNode> node = read_zarr_node(target);
+        const bool is_label_image =
+            node && !fs::exists(target / PROJECT_RECORD, error) && node->ome()["image-label"].exists();
         if (!is_label_image)
             fail(target.string(), ": is there already and is no label image; expected a new name, or one to replace");
     }
@@ -162,23 +182,39 @@ fs::path label_image_target(const fs::path& folder)
 bool belongs_to_image(const fs::path& target)
 {
     const fs::path labels = target.parent_path();
+    const fs::path image = labels.parent_path();
     std::error_code ignored;
-    return labels.filename() == "labels" && fs::exists(labels.parent_path() / ".zattrs", ignored);
+    return labels.filename() == "labels" &&
+           (fs::exists(image / ".zattrs", ignored) || fs::exists(image / "zarr.json", ignored));
 }
 
-void list_label_image(const fs::path& target)
+OmeZarrVersion label_image_version(const fs::path& target, std::optional<OmeZarrVersion> wanted)
+{
+    const bool belongs = belongs_to_image(target);
+    const fs::path other = belongs ? target.parent_path().parent_path() : target;
+    const std::optional<ZarrNode> node = read_zarr_node(other);
+    if (!node) return wanted.value_or(OmeZarrVersion::v0_4);
+    const OmeZarrVersion found = version_of(*node);
+    if (belongs && wanted && *wanted != found) {
+        fail(other.string(), ": is an OME-Zarr ", spelled(found), ", and its labels are to be ", spelled(*wanted),
+             "; expected one version for both");
+    }
+    return belongs ? found : wanted.value_or(found);
+}
+
+void list_label_image(const fs::path& target, OmeZarrVersion version)
 {
     const fs::path folder = target.parent_path();
     Json attributes = listed_labels(folder);
-    Json& names = attributes["labels"];
+    const bool is_3 = version == OmeZarrVersion::v0_5;
+    if (is_3) attributes["ome"]["version"] = spelled(version);
+    Json& names = is_3 ? attributes["ome"]["labels"] : attributes["labels"];
     const std::string name = target.filename().string();
     if (names.is_null()) names = Json::array();
     if (std::ranges::find(names, Json(name)) != names.end()) return;
     names.push_back(name);
-    const std::string group = import_group();
-    write_file_atomically(folder / ".zgroup", std::as_bytes(std::span(group)));
-    const std::string text = attributes.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    write_file_atomically(folder / ".zattrs", std::as_bytes(std::span(text)));
+    for (const auto& [file, text] : group_files(version, text_of(attributes, 2)))
+        write_file_atomically(folder / file, std::as_bytes(std::span(text)));
 }
 
 std::string import_session()
@@ -209,7 +245,8 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
         {"sigma", list(options.preparation.blur_sigma_voxels)},
         {"compressor",
          {int(options.compressor.kind), options.compressor.codec, options.compressor.level,
-          options.compressor.shuffle}}};
+          options.compressor.shuffle}},
+        {"version", spelled(options.version.value_or(OmeZarrVersion::v0_4))}};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

@@ -9,14 +9,16 @@
 namespace shvr {
 
 /// The array of a level, as it will be written.
-ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& info, int level,
+ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
                         const ZarrCompressor& compressor);
 
-/// PROJECT/.zgroup, PROJECT/.zattrs and PROJECT/shvr/session.json.
-std::string import_group();
-/// `labels`: additional attributes of a label image, or null.
-std::string import_attributes(const std::string& name, const VolumeInfo& info, int levels, Halving how,
-                              const LabelImage* labels);
+/// The attributes of the image, as JSON: all that .zattrs holds, or "attributes" of zarr.json. `labels`: additional
+/// attributes of a label image, or null.
+std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
+                              Halving how, const LabelImage* labels);
+/// The files of a group with these attributes, name and content: .zgroup and .zattrs, or zarr.json.
+std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion version, const std::string& attributes);
+/// PROJECT/shvr/session.json.
 std::string import_session();
 
 /// `folder` without dots. Fails if it exists and is not a replaceable label image, or if it belongs to an image's
@@ -24,8 +26,11 @@ std::string import_session();
 std::filesystem::path label_image_target(const std::filesystem::path& folder);
 /// Whether it is IMAGE/labels/NAME of an OME-Zarr image.
 bool belongs_to_image(const std::filesystem::path& target);
-/// Adds it to IMAGE/labels/.zattrs, which is created if it is missing.
-void list_label_image(const std::filesystem::path& target);
+/// The version of the image that `target` belongs to, which a hierarchy has in common; else `wanted`; else that of the
+/// label image that is there; else 0.4. Fails if `wanted` is not that of the image.
+OmeZarrVersion label_image_version(const std::filesystem::path& target, std::optional<OmeZarrVersion> wanted);
+/// Adds it to the list in IMAGE/labels, a group that is created if it is missing.
+void list_label_image(const std::filesystem::path& target, OmeZarrVersion version);
 
 /// Equal for imports that give equal projects: covers the source (including the names, sizes and times of its files)
 /// and the processing applied to it.

@@ -183,8 +183,8 @@ private:
     void begin_anew()
     {
         pyramid_ = make_import_pyramid(info_.size, info_.type, threads_, options_.halving);
-        chunks_ =
-            std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), options_.compressor, threads_);
+        chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), version(),
+                                                 options_.compressor, threads_);
         tally_ = std::make_unique<ImportTally>(info_, IMPORT_CHUNK, threads_);
         slabs_done_ = 0;
     }
@@ -243,7 +243,7 @@ private:
     void write_level_metadata()
     {
         for (int level = 0; level < pyramid_->levels(); ++level) {
-            write_text(sentence(level, "/.zarray"), to_text(chunks_->metadata(level)));
+            write_text(sentence(level, "/", chunks_->metadata(level).key()), to_text(chunks_->metadata(level)));
         }
     }
 
@@ -257,9 +257,10 @@ private:
 
     void write_attributes()
     {
-        write_text(".zgroup", import_group());
         const LabelImage* labels = options_.label_image ? &*options_.label_image : nullptr;
-        write_text(".zattrs", import_attributes(folder_.name(), info_, pyramid_->levels(), options_.halving, labels));
+        const std::string attributes =
+            import_attributes(version(), folder_.name(), info_, pyramid_->levels(), options_.halving, labels);
+        for (const auto& [name, text] : group_files(version(), attributes)) write_text(name, text);
     }
 
     void write_knowledge()
@@ -329,6 +330,7 @@ private:
     }
 
     Size3 counts(int level) const { return chunks_->counts(level); }
+    OmeZarrVersion version() const { return options_.version.value_or(OmeZarrVersion::v0_4); }
 
     fs::path origin_;
     const ImportOptions& options_;
@@ -381,11 +383,13 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
     LabelImage described = image;
     const bool belongs = belongs_to_image(target);
     if (belongs) described.source = "../../";
+    const OmeZarrVersion version = label_image_version(target, options.version);
     ImportOptions wanted{.halving = Halving::label,
                          .overwrites = true,
                          .label_image = described,
                          .threads = options.threads,
                          .compressor = options.compressor,
+                         .version = version,
                          .progress = options.progress,
                          .cancel = options.cancel};
     Import job(labels, target, target, wanted);
@@ -396,7 +400,7 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
         job.abandon();
         throw;
     }
-    if (belongs) list_label_image(target);
+    if (belongs) list_label_image(target, version);
     return report;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Makes a project from a volume: an OME-Zarr 0.4 image with all its levels, and the files listed in project.h.
+// Makes a project from a volume: an OME-Zarr image, 0.4 or 0.5, with all its levels, and the files listed in project.h.
 //
 // The source is read once, slab by slab; memory depends on the size of a slice, not on their number. Chunks have 64^3
 // voxels, are compressed with blosc (zstd, bytes shuffled), and are not written if all their voxels are 0. The project
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/zarr_metadata.h"
 #include "engine/projects/import_prepare.h"
 #include "engine/volume/halving.h"
@@ -56,6 +57,8 @@ struct ImportOptions {
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image
     int threads = 0;                          ///< 0: one per core
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
+    /// Nothing: 0.4; for label images, that of the image they belong to, or else of the label image they replace.
+    std::optional<OmeZarrVersion> version{};
     std::function<void(const ImportProgress&)> progress{};  ///< about every 100 ms, on the calling thread
     const std::atomic<bool>* cancel = nullptr;              ///< checked before every task; tasks take milliseconds
 };
@@ -75,10 +78,11 @@ struct ImportReport {
 ImportReport import_volume(const VolumeSource& source, const std::filesystem::path& origin,
                            const std::filesystem::path& project, const ImportOptions& options);
 
-/// Exports labels (whole numbers) as an OME-Zarr 0.4 label image with its levels and nothing else: no folder shvr/. It
+/// Exports labels (whole numbers) as an OME-Zarr label image with its levels and nothing else: no folder shvr/. It
 /// appears complete and replaces an existing label image; anything else at that path is refused. If the path is
-/// IMAGE/labels/NAME, it is added to the list in IMAGE/labels/.zattrs, and the label image refers to IMAGE. Of
-/// `options` only threads, compressor, progress and cancel are used. A failed export leaves nothing behind.
+/// IMAGE/labels/NAME, it is added to the list in IMAGE/labels, and the label image refers to IMAGE, whose version it
+/// must have. Of `options` only threads, compressor, version, progress and cancel are used. A failed export leaves
+/// nothing behind.
 ImportReport export_label_image(const VolumeSource& labels, const std::filesystem::path& folder,
                                 const LabelImage& image, const ImportOptions& options = {});
 

@@ -97,7 +97,7 @@ void PartFolder::refuse_target() const
 {
     if (!is_there(target_) || is_empty_folder(target_)) return;
     if (!overwrites_) fail(target_.string(), ": is there already; expected a new name, or --overwrite");
-    for (const char* name : {".zattrs", ".zgroup", ".zarray"}) {
+    for (const char* name : {".zattrs", ".zgroup", ".zarray", "zarr.json"}) {
         if (is_there(target_ / name)) return;
     }
     fail(target_.string(), ": is no project; --overwrite replaces nothing else");

@@ -1,5 +1,5 @@
 #pragma once
-// The looks of colour groups in the label image that a mask is kept in (OME-Zarr 0.4, image-label: colors and
+// The looks of colour groups in the label image that a mask is kept in (OME-Zarr, image-label: colors and
 // properties). Colours are sRGB of 8 bits a channel there, alpha the opacity; the format cannot hold the tree of groups
 // nor which groups are hidden.
 

@@ -33,6 +33,7 @@ fs::path session_file_of(const fs::path& path)
 {
     std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
+        if (leads_into_archive(path)) return {};
         if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
     }

@@ -29,6 +29,11 @@ def array(name, data, chunks=(3, 4, 3), **options):
                 overwrite=True, **options)[...] = data
 
 
+def drop(name):
+    """Removes a chunk, which then is the fill value."""
+    (FOLDER / name / "0.0.1").unlink()
+
+
 def values(data_type):
     """The phantom in a type that may not hold it: as many of its low bits as fit."""
     shift = 1 if data_type[1] == "u" else 0
@@ -56,7 +61,7 @@ def make_arrays():
                              ("fill_nan", PHANTOM.astype("<f4"), float("nan")),
                              ("fill_infinity", PHANTOM.astype(">f8"), float("-inf"))]:
         array(name, data, fill_value=fill)
-        (FOLDER / name / "0.0.1").unlink()
+        drop(name)
 
 
 def image(name, axes, levels, transformations, multiscale=None, attributes=None, version="0.4"):
@@ -95,7 +100,7 @@ def half(data):
     return result
 
 
-def make_images():
+def make_images(write_series=True):
     one = half(PHANTOM)
     two = half(one)
     spacing = [1.25, 0.5, 0.5]
@@ -123,6 +128,8 @@ def make_images():
     image("image_03", ["c", "z", "y", "x"], [PHANTOM[None]], [None], version="0.3")
     image("image_01", None, [PHANTOM[None, None]], [None], version="0.1")
     image("image_05", space("zyx"), [PHANTOM], [[scale(*spacing)]], version="0.5")
+    if not write_series:
+        return
     zarr.group(store=zarr.DirectoryStore(str(FOLDER / "series")), overwrite=True).attrs.put(
         {"bioformats2raw.layout": 3})
     image("series/0", space("zyx"), [PHANTOM], [[scale(*spacing)]])

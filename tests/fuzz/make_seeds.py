@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SEEDS = ROOT / "tests/fuzz/seeds"
 CHIRALITY = ROOT / "tests/data/chirality"
 ZARR = ROOT / "tests/data/zarr"
+ZARR3 = ROOT / "tests/data/zarr3"
 
 
 def seed(target, name, *files):
@@ -401,6 +402,48 @@ def make_zarr():
     seed("zarr", "sparse", (".zarray", zarray(shape=[1 << 20] * 3, chunks=[64, 64, 64])))
 
 
+def make_zarr3():
+    for name in ["type_u1", "type_big_i2", "order_f", "dots", "slashes", "fill_nan", "chunks_larger", "leading_axes",
+                 "compressor_zlib", "compressor_gzip", "shard_start", "shard_sparse", "shard_transposed",
+                 "shard_checksums", "keys_v2", "checksum_before", "checksum_after", "transpose_twice", "needless_keys",
+                 "short_names", "fills_hex_nan", "fills_hex_double", "image_04", "image_tczyx", "layout_ngff_zarr",
+                 "layout_tensorstore", "series", "version_later", "version_not_in_ome"]:
+        seed("zarr3", name, *packed(ZARR3 / name))
+    whole = json.loads((ZARR3 / "shard_end" / "zarr.json").read_text())
+    grid, sharding = whole["chunk_grid"]["configuration"], whole["codecs"][0]["configuration"]
+    whole["shape"] = [1 << 20] * 3
+    for name, shard, chunk in {("index_says_more", (1 << 11, 1 << 11, 1), (1, 1, 1)),
+                               ("claims_chunk", (1 << 20, 1 << 20, 1 << 20), (1 << 20, 1 << 20, 1 << 20)),
+                               ("claims_shard", (1 << 20, 1 << 20, 1 << 20), (64, 64, 64))}:
+        grid["chunk_shape"], sharding["chunk_shape"] = list(shard), list(chunk)
+        seed("zarr3", name, ("zarr.json", json.dumps(whole)), ("c/0/0/0", "v" * 60))
+
+    def index(*entries, order="<"):
+        return b"".join(struct.pack(order + "QQ", *entry) for entry in entries) + bytes(4)
+    none = (2 ** 64 - 1, 2 ** 64 - 1)
+    seed("zarr_shard", "plain", b"\0" + bytes(range(32)) + index((0, 16), (16, 16), *[none] * 6))
+    seed("zarr_shard", "first", b"\1" + index((132, 16), *[none] * 7) + bytes(range(16)))
+    seed("zarr_shard", "first_big", b"\3" + index((132, 16), *[none] * 7, order=">") + bytes(range(16)))
+    seed("zarr_shard", "big", b"\2" + bytes(range(32)) + index((0, 16), (16, 16), *[none] * 6, order=">"))
+    seed("zarr_shard", "unsigned", b"\4" + bytes(range(32)) + index((0, 16), *[none] * 7))
+    packed_chunk = zlib.compress(bytes(range(16)), wbits=31)
+    seed("zarr_shard", "gzip", b"\x18" + packed_chunk + index((0, len(packed_chunk)), *[none] * 7))
+    seed("zarr_shard", "shared", b"\0" + bytes(range(32)) + index(*[(0, 16)] * 7, (8, 16)))
+    seed("zarr_shard", "far", b"\0" + bytes(16) + index((1 << 62, 1 << 62), (0, 1 << 40), *[none] * 6))
+
+
+def make_ozx():
+    for name in ["image_04", "image_group_scale", "image_floor", "image_flat_levels", "shard_end", "shard_start",
+                 "shard_small", "series", "zip_twice", "zip_climbing", "zip_two_images", "zip_encrypted", "zip_bzip2",
+                 "zip_empty", "zip_bomb", "zip_bomb_that_lies", "zip_in_a_folder"]:
+        seed("ozx", name, (ZARR3 / f"{name}.ozx").read_bytes())
+    whole = (ZARR3 / "image_04.ozx").read_bytes()
+    end = whole.rfind(b"PK\5\6")
+    seed("ozx", "claims_entries", whole[:end + 8] + b"\xff" * 4 + whole[end + 12:])
+    entry = whole.find(b"PK\1\2")
+    seed("ozx", "claims_bytes", whole[:entry + 20] + b"\xf0\xff\xff\x7f" * 2 + whole[entry + 28:])
+
+
 def frame_of(claimed_bytes):
     """The beginning of a zstd frame, which states the unpacked size."""
     return b"\x28\xb5\x2f\xfd\xe0" + struct.pack("<Q", claimed_bytes)
@@ -558,6 +601,8 @@ def main():
     make_tiff()
     make_dicom()
     make_zarr()
+    make_zarr3()
+    make_ozx()
     make_label_looks()
     make_project()
     make_states()

@@ -36,6 +36,21 @@ void add_output_options(CLI::App& command, Common& common)
     command.add_flag("--quiet", common.quiet, "No progress and no warnings on standard error");
 }
 
+void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise)
+{
+    std::vector<std::string> names;
+    for (const Spelling<OmeZarrVersion>& each : OME_ZARR_VERSIONS) names.emplace_back(each.name);
+    const auto take = [&version](const std::string& text) {
+        for (const Spelling<OmeZarrVersion>& each : OME_ZARR_VERSIONS)
+            if (each.name == text) version = each.value;
+    };
+    command
+        .add_option_function<std::string>("--ome-zarr", take,
+                                          "Version of OME-Zarr to write: 0.4 (Zarr 2) or 0.5 (Zarr 3); " + otherwise)
+        ->type_name("VERSION")
+        ->check(CLI::IsMember(names));
+}
+
 void add_input_options(CLI::App& command, Common& common)
 {
     command.add_option("--set", common.settings, "Any session key, as in --set render.step_voxels=0.25; repeatable")

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/live/annotator.h"
+#include "engine/projects/import_volume.h"
 #include "engine/session/session.h"
 
 namespace shvr::cli {
@@ -34,6 +36,8 @@ void add_spacing_options(CLI::App& command, const std::function<void(const glm::
                          const std::function<void(const std::string&)>& take_unit);
 /// The input options, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
+/// --ome-zarr: the version of what is written; nothing if it is not given.
+void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
 

@@ -20,6 +20,7 @@ struct ExportCommandOptions {
     std::string project, mask, offset, trace, mesh, metrics;
     std::string space = "physical";
     bool break_loops = false, labels = false;
+    std::optional<OmeZarrVersion> version;
 };
 
 void check_mask_name(const std::string& path)
@@ -34,7 +35,9 @@ std::string project_labels(const ExportCommandOptions& options)
 {
     if (!options.labels) return {};
     const std::filesystem::path project = options.project;
-    if (!std::filesystem::exists(project / ".zattrs"))
+    const bool is_image =
+        std::filesystem::exists(project / ".zattrs") || std::filesystem::exists(project / "zarr.json");
+    if (!is_image)
         fail(options.project, ": is no project folder; expected one, to write --labels into, or --mask with a name");
     return (project / "labels" / "mask").string();
 }
@@ -113,7 +116,8 @@ void run_export(const ExportCommandOptions& options)
     for (const std::string& path : {options.mask, project_labels(options)}) {
         if (path.empty()) continue;
         export_mask(path, mask, volume,
-                    {.colors = label_looks(opened.session.groups, mask), .painted_on = opened.session.volume_hash});
+                    {.colors = label_looks(opened.session.groups, mask), .painted_on = opened.session.volume_hash},
+                    options.version);
         wrote(path);
     }
     if (!options.offset.empty()) {
@@ -141,6 +145,7 @@ void add_export(CLI::App& program)
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
     command->add_flag("--labels", options->labels, "The painted voxels as OME-Zarr labels in the project, labels/mask");
+    add_version_option(*command, options->version, "unless given, as the project or the labels there are, or 0.4");
     command->add_option("--offset", options->offset, "The density offsets (.offset, .nrrd, .tif)");
     command->add_option("--trace", options->trace, "Nodes and internodes (.graphml, .txt, .swc, .rsml)");
     command->add_flag("--break-loops", options->break_loops,

@@ -26,6 +26,7 @@ struct ImportCommandOptions {
     bool reverse = false;
     bool labels = false;
     bool overwrite = false;
+    std::optional<OmeZarrVersion> version;
 };
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
@@ -168,7 +169,8 @@ void run_import(const ImportCommandOptions& options)
                          .halving = options.labels ? Halving::label : Halving::mean,
                          .choice = sentence(options.choice.channel, "\n", options.choice.frame, "\n", options.raw),
                          .overwrites = options.overwrite,
-                         .threads = options.common.threads};
+                         .threads = options.common.threads,
+                         .version = options.version};
     const auto begin = std::chrono::steady_clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(options);
     ProgressLine line(options.common, bytes_of(source->info().type));
@@ -213,7 +215,7 @@ void add_import(CLI::App& program)
     auto options = std::make_shared<ImportCommandOptions>();
     CLI::App* command = program.add_subcommand("import", "Makes a project of a volume");
     command->add_option("VOLUME", options->volume, "Volume file or folder")->required();
-    command->add_option("PROJECT", options->project, "Folder to make; an OME-Zarr 0.4 image")->required();
+    command->add_option("PROJECT", options->project, "Folder to make; an OME-Zarr image")->required();
     command
         ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1");
@@ -239,6 +241,7 @@ void add_import(CLI::App& program)
         ->type_name("NAME|N");
     command->add_option("--frame", options->choice.frame, "Which point in time to take from a file with several")
         ->type_name("N");
+    add_version_option(*command, options->version, "0.4 unless given");
     command->add_flag("--overwrite", options->overwrite,
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")

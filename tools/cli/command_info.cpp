@@ -27,7 +27,8 @@ Described describe(const InfoCommandOptions& options)
     const std::filesystem::path path = options.input;
     std::error_code ignored;
     const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
-    const bool is_bare = std::filesystem::exists(path, ignored) && !is_project && path.extension() != ".json";
+    const bool is_there = std::filesystem::exists(path, ignored) || leads_into_archive(path);
+    const bool is_bare = is_there && !is_project && path.extension() != ".json";
     OpenedSession opened;
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare && options.common.settings.empty()) {

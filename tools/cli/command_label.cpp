@@ -20,6 +20,7 @@ using Clock = std::chrono::steady_clock;
 struct LabelCommandOptions {
     Common common;
     std::string volume, output;
+    std::optional<OmeZarrVersion> version;
     double threshold = 0.0;
     int connectivity = 6;
     int64_t fewest_voxels = 1, largest = 0;
@@ -84,6 +85,7 @@ void write_labels(const LabelCommandOptions& options, const VolumeSource& labels
     if (form == ".mask") return write_mask(options.output, labels);
     if (form != ".zarr") return export_volume(options.output, labels);
     const ImportOptions wanted{.threads = options.common.threads,
+                               .version = options.version,
                                .progress = [&](const ImportProgress& done) { progress(done.fraction); }};
     static_cast<void>(export_label_image(labels, options.output, {}, wanted));
 }
@@ -177,6 +179,7 @@ void add_label(CLI::App& program)
         ->check(CLI::Range(int64_t{1}, int64_t{1} << 32));
     command->add_option("-o,--output", options->output,
                         "The labels, from 1 in the order of first voxels (.zarr: OME-Zarr labels; .nrrd, .tif; .mask)");
+    add_version_option(*command, options->version, "unless given, as the image or the labels there are, or 0.4");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_input_options(*command, options->common);

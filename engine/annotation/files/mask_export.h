@@ -3,7 +3,7 @@
 //
 //   .mask        the thesis's raw bytes (mask_file.h)
 //   .nrrd .tif   engine/formats/export/volume_export.h
-//   .zarr        an OME-Zarr 0.4 label image with its levels; so is PROJECT/labels/NAME
+//   .zarr        an OME-Zarr label image with its levels; so is PROJECT/labels/NAME
 
 #include <filesystem>
 
@@ -16,8 +16,8 @@ namespace shvr {
 bool is_mask_export(const std::filesystem::path& path);
 
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
-/// holds the further metadata of a label image.
+/// holds the further metadata of a label image; `version` as in `ImportOptions`.
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                 const LabelImage& image = {});
+                 const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {});
 
 }  // namespace shvr

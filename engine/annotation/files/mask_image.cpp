@@ -5,7 +5,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/zarr_node.h"
 
 namespace shvr {
 
@@ -39,12 +39,17 @@ void save_mask_image(const std::filesystem::path& mask, const std::string& conte
 
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
 {
-    const bool is_label_image = is_folder(mask);
-    const std::filesystem::path path = is_label_image ? mask / ".zattrs" : mask_image_path(mask);
-    std::error_code ignored;
-    if (content_hash.empty() || !std::filesystem::exists(path, ignored)) return;
-    const JsonDocument document = read_zarr_json(path, is_label_image ? LARGEST_ZARR_ATTRIBUTES : LARGEST_RECORD);
-    const JsonNode record = is_label_image ? document.root()["shvr"] : document.root();
+    if (content_hash.empty()) return;
+    std::optional<JsonDocument> document;  // of a file beside the mask
+    const std::optional<ZarrNode> node = read_zarr_node(mask);
+    const bool is_label_image = node.has_value();
+    if (!is_label_image) {
+        const std::filesystem::path path = mask_image_path(mask);
+        std::error_code ignored;
+        if (is_folder(mask) || !std::filesystem::exists(path, ignored)) return;
+        document.emplace(read_zarr_json(path, LARGEST_RECORD));
+    }
+    const JsonNode record = is_label_image ? node->attributes()["shvr"] : document->root();
     if (is_label_image && !record.exists()) return;
     if (!record.is_object()) record.refuse("an object");
     record["shvr_mask"].whole(VERSION, VERSION);

@@ -19,6 +19,8 @@ std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, cons
 void save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                   const LabelImage& image)
 {
+    if (is_in_archive(path))
+        fail(path.string(), ": lies in an archive, where masks are only read; expected .mask, .nrrd, .tif or .zarr");
     if (is_mask_export(path)) return export_mask(path, mask, volume, image);
     if (states_its_size(path))
         fail(path.string(), ": is a form in which masks are only read; expected .mask, .nrrd, .tif or .zarr");

@@ -3,6 +3,7 @@
 // alone. Any thread may call these.
 //
 //   a folder                       an OME-Zarr label image, or another OME-Zarr image of uint8
+//   .ozx .zip, and paths inside    the same, in an archive
 //   .nrrd .nhdr .mhd .mha .nii     volumes of uint8 in these forms, as the readers of engine/volume know them
 //   .tif .tiff
 //   anything else                  the thesis's raw bytes (mask_file.h)

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/open_volume.h"
 #include "engine/volume/unit.h"
 
 namespace shvr {
@@ -22,8 +23,13 @@ bool states_its_size(const std::filesystem::path& path)
     std::string name = lower_case(path.filename().string());
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
     constexpr const char* FORMS[] = {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".tif", ".tiff"};
-    return std::filesystem::is_directory(path, ignored) ||
+    return std::filesystem::is_directory(path, ignored) || is_in_archive(path) ||
            std::ranges::any_of(FORMS, [&](const char* form) { return name.ends_with(form); });
+}
+
+bool is_in_archive(const std::filesystem::path& path)
+{
+    return leads_into_archive(path);
 }
 
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space)

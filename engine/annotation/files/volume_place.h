@@ -7,9 +7,11 @@
 
 namespace shvr {
 
-/// Whether the file or folder is in a form that states its size: OME-Zarr folders, NRRD, MHD, NIfTI and TIFF. Raw bytes
-/// do not.
+/// Whether the file or folder is in a form that states its size: OME-Zarr folders and archives, NRRD, MHD, NIfTI and
+/// TIFF. Raw bytes do not.
 bool states_its_size(const std::filesystem::path& path);
+/// Whether it is an archive of OME-Zarr, or leads into one: masks there are read, never written.
+bool is_in_archive(const std::filesystem::path& path);
 
 /// Fails, naming both, if the size of `found` differs, or its spacing or place where both state them. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);

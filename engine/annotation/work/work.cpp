@@ -12,6 +12,7 @@
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/offset_import.h"
+#include "engine/annotation/files/volume_place.h"
 #include "engine/base/atomic_writer.h"
 
 namespace shvr {
@@ -223,7 +224,7 @@ SavedFiles Work::digests() const
 
 void Work::load_files()
 {
-    if (is_there(files_.mask)) {
+    if (is_there(files_.mask) || is_in_archive(files_.mask)) {
         // A mask of another size is also of another image, and the size makes the better message.
         const std::vector<MaskBrickChange> changes = import_mask(files_.mask, space_of(files_.volume));
         check_mask_image(files_.mask, files_.volume_hash);

@@ -54,9 +54,9 @@ Axis read_axis(const JsonNode& node)
     return axis;
 }
 
-std::vector<Axis> read_axes(const JsonNode& node)
+std::vector<Axis> read_axes(const JsonNode& node, int zarr_version)
 {
-    if (!node.exists())  // versions 0.1 and 0.2
+    if (!node.exists() && zarr_version == 2)  // versions 0.1 and 0.2
         return {{"t", "time", {}}, {"c", "channel", {}}, {"z", "space", {}}, {"y", "space", {}}, {"x", "space", {}}};
     constexpr const char* EXPECTED = "a list of z, y, x and perhaps t and c";
     if (!node.is_array() || node.count() > 5) node.refuse(EXPECTED);
@@ -72,6 +72,7 @@ std::vector<Axis> read_axes(const JsonNode& node)
 void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& image)
 {
     image.axes = axes.size();
+    for (const Axis& axis : axes) image.names.push_back(axis.name);
     std::array<bool, 3> is_there{};
     for (size_t axis = 0; axis < axes.size(); ++axis) {
         std::optional<size_t>* const other = axes[axis].kind == "channel" ? &image.channel
@@ -143,17 +144,6 @@ void apply_transformations(const JsonNode& owner, size_t axes, Transformation& t
     }
 }
 
-/// Only names of folders below the image: a path that leaves it is an attack or a mistake.
-std::string read_level_path(const JsonNode& node)
-{
-    constexpr const char* EXPECTED = "the relative path of an array inside the image's folder";
-    const std::string text = node.text(EXPECTED);
-    const Path relative(text);
-    const bool climbs = std::ranges::find(relative, Path("..")) != relative.end();
-    if (relative.is_absolute() || climbs || text.find('\0') != std::string::npos) node.refuse(EXPECTED);
-    return text;
-}
-
 /// If units differ, all axes are converted to that of x.
 glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImage& image)
 {
@@ -188,7 +178,7 @@ void read_levels(const Path& path, const JsonNode& multiscale, const std::vector
 {
     const glm::dvec3 factors = unit_factors(path, axes, image);
     for (const JsonNode& dataset : multiscale["datasets"].elements(1, MAX_DATASETS)) {
-        OmeImage::Level level{.path = read_level_path(dataset["path"])};
+        OmeImage::Level level{.path = read_zarr_path(dataset["path"])};
         Transformation transformation;
         apply_transformations(dataset, image.axes, transformation);
         apply_transformations(multiscale, image.axes, transformation);
@@ -212,24 +202,58 @@ void read_channels(const JsonNode& channels, OmeImage& image)
 
 }  // namespace
 
-OmeImage read_ome_image(const Path& path, const JsonNode& attributes)
+void check_ome_version(const ZarrNode& node)
 {
+    if (node.version == 2) return;
+    const JsonNode ome = node.ome();
+    if (!ome.exists()) {
+        if (node.attributes()["multiscales"].exists()) {
+            node.attributes().required("ome", "the attributes of OME-Zarr 0.5, which Zarr version 3 keeps in it");
+        }
+        return;
+    }
+    const JsonNode version = ome.required("version", "the version of OME-Zarr, 0.5");
+    if (!version.is("0.5"))
+        version.refuse("\"0.5\": earlier versions have Zarr version 2, and later ones are not supported yet");
+}
+
+OmeImage read_ome_image(const ZarrNode& node)
+{
+    check_ome_version(node);
+    const std::string path = node.document.origin();
+    const JsonNode attributes = node.ome();
     const JsonNode multiscales = attributes["multiscales"];
     if (multiscales.count() == 0 || !multiscales.elements()[0].is_object())
         multiscales.refuse("a list of objects with datasets");
     const JsonNode multiscale = multiscales.elements()[0];
     const std::array<std::string_view, 4> versions{"0.1", "0.2", "0.3", "0.4"};
-    if (const JsonNode version = multiscale["version"]; version.exists()) version.choice(versions);
+    const std::array<std::string_view, 1> versions_of_3{"0.5"};
+    if (const JsonNode version = multiscale["version"]; version.exists()) {
+        if (node.version == 2)
+            version.choice(versions);
+        else
+            version.choice(versions_of_3);
+    }
 
     OmeImage image;
     if (multiscales.count() > 1)
         image.warnings.push_back(sentence("the image is there in ", multiscales.count(), " forms; the first is taken"));
     const JsonNode axes_node = multiscale["axes"];
-    const std::vector<Axis> axes = read_axes(axes_node);
+    const std::vector<Axis> axes = read_axes(axes_node, node.version);
     place_axes(axes_node, axes, image);
     read_levels(path, multiscale, axes, image);
     read_channels(attributes["omero"]["channels"], image);
     return image;
+}
+
+std::string read_zarr_path(const JsonNode& node)
+{
+    constexpr const char* EXPECTED = "a relative path that stays inside the image's folder";
+    const std::string text = node.text(EXPECTED);
+    const Path relative(text);
+    const bool climbs = std::ranges::find(relative, Path("..")) != relative.end();
+    if (relative.is_absolute() || climbs || has_controls(text)) node.refuse(EXPECTED);
+    return text;
 }
 
 std::string ome_unit(const std::string& unit)

@@ -1,5 +1,5 @@
 #pragma once
-// The attributes of an OME-Zarr image (https://ngff.openmicroscopy.org, versions 0.1 to 0.4), in one common form. For
+// The attributes of an OME-Zarr image (https://ngff.openmicroscopy.org, versions 0.1 to 0.5), in one common form. For
 // source_ome_zarr.cpp. Any thread may call it.
 
 #include <array>
@@ -10,9 +10,19 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/base/json.h"
+#include "engine/base/spelling.h"
+#include "engine/formats/zarr/zarr_node.h"
 
 namespace shvr {
+
+/// The versions that are written: 0.4 has Zarr version 2, 0.5 has Zarr version 3.
+enum class OmeZarrVersion { v0_4, v0_5 };
+inline constexpr Spelling<OmeZarrVersion> OME_ZARR_VERSIONS[] = {{OmeZarrVersion::v0_4, "0.4"},
+                                                                 {OmeZarrVersion::v0_5, "0.5"}};
+constexpr std::span<const Spelling<OmeZarrVersion>> spellings_of(OmeZarrVersion)
+{
+    return OME_ZARR_VERSIONS;
+}
 
 struct OmeImage {
     /// One resolution level; the finest comes first.
@@ -22,6 +32,7 @@ struct OmeImage {
         std::optional<glm::dvec3> translation{};  ///< x, y, z: the centre of voxel 0, if stated
     };
     size_t axes = 0;                    ///< the number of axes that every array must have
+    std::vector<std::string> names{};   ///< of the axes
     std::array<size_t, 3> xyz{};        ///< the array's axis along x, y and z
     std::optional<size_t> channel{};    ///< the array's axis of channels
     std::optional<size_t> time{};       ///< the array's axis of points in time
@@ -31,9 +42,15 @@ struct OmeImage {
     std::vector<std::string> warnings{};
 };
 
-/// `attributes` is the content of `path`, a .zattrs, and has a "multiscales". Fails if it violates the specification,
-/// or has no z axis.
-OmeImage read_ome_image(const std::filesystem::path& path, const JsonNode& attributes);
+/// The node's `ome()` has a "multiscales". Fails if it violates the specification, has no z axis, or is of another
+/// version.
+OmeImage read_ome_image(const ZarrNode& node);
+/// Fails if a node of Zarr version 3 has attributes of OME-Zarr of another version than 0.5, or none where they belong.
+void check_ome_version(const ZarrNode& node);
+
+/// The path of a group or an array below the one whose attributes have this node. Fails for one that leaves it: that is
+/// an attack or a mistake.
+std::string read_zarr_path(const JsonNode& node);
 
 /// The specification's name of a unit ("um": "micrometer"); other units unchanged.
 std::string ome_unit(const std::string& unit);

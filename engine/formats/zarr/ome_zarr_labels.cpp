@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/zarr_node.h"
 
 namespace shvr {
 
@@ -39,11 +39,9 @@ void go_through(const JsonNode& list, const char* expected, std::vector<std::str
 LabelLooks read_label_looks(const std::filesystem::path& folder)
 {
     LabelLooks result;
-    const std::filesystem::path path = folder / ".zattrs";
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return result;
-    const JsonDocument attributes = read_zarr_json(path, LARGEST_ZARR_ATTRIBUTES);
-    const JsonNode label = attributes.root()["image-label"];
+    const std::optional<ZarrNode> node = read_zarr_node(folder);
+    if (!node) return result;
+    const JsonNode label = node->ome()["image-label"];
     if (!label.is_object()) return result;
     const auto value_of = [](const JsonNode& entry) { return entry["label-value"].whole(INT64_MIN, INT64_MAX); };
     std::map<int64_t, LabelLook> looks;

@@ -1,6 +1,7 @@
 #pragma once
-// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.4/#label-md): "image-label" with
-// "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any thread may call it.
+// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; those of 0.4 are
+// the same): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any
+// thread may call it.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +22,7 @@ struct LabelLooks {
     std::vector<std::string> warnings{};  ///< at most one per list, about its first invalid entry
 };
 
-/// Empty if the folder is not a label image. Fails if its .zattrs is not JSON.
+/// Empty if the folder (or the path into an archive) is not a label image. Fails if its attributes are not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
 
 }  // namespace shvr

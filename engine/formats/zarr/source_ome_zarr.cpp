@@ -1,5 +1,6 @@
-// OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2), and bare Zarr arrays, in a local folder. A project is such an
-// image with a folder shvr/ (project.h), which holds ranges and statistics.
+// OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2) and 0.5 (Zarr version 3), and bare Zarr arrays, in a local
+// folder or an archive (zarr_store.h). A project is such an image with a folder shvr/ (project.h), which holds ranges
+// and statistics.
 //
 // Levels are the datasets that are aligned with level 0 as source.h requires: each twice as coarse, along every axis.
 // Others are left out, with a warning.
@@ -109,12 +110,6 @@ private:
     mutable ChunkCache cache_;
 };
 
-bool is_there(const fs::path& path)
-{
-    std::error_code ignored;
-    return fs::exists(path, ignored);
-}
-
 std::string name_of_folder(const fs::path& path)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
@@ -205,16 +200,30 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     return {};
 }
 
-std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& image, const OpenOptions& options,
-                                    std::vector<std::string>& warnings)
+/// What the image and its first level call the axes must agree, since version 0.5.
+void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMetadata& metadata,
+                   std::vector<std::string>& warnings)
 {
-    const fs::path array = folder / image.levels[0].path;
-    const ZarrMetadata first = read_zarr_metadata(array);
+    for (size_t axis = 0; axis < metadata.axes.size(); ++axis) {
+        const std::string& name = metadata.axes[axis];
+        if (name.empty() || lower_case(name) == image.names[axis]) continue;
+        warnings.push_back(sentence(array.path_of(metadata.key()).string(), ": calls axis ", axis, " ", in_quotes(name),
+                                    ", the image ", in_quotes(image.names[axis]), ", which counts"));
+        return;
+    }
+}
+
+std::vector<ZarrVolume> open_levels(const ZarrPlace& folder, int version, const OmeImage& image,
+                                    const OpenOptions& options, std::vector<std::string>& warnings)
+{
+    const ZarrPlace array = folder / image.levels[0].path;
+    const ZarrMetadata first = read_zarr_metadata(array, version);
     if (first.shape.size() != image.axes) {
-        fail((array / ".zarray").string(), ": shape has ", first.shape.size(), " axes; expected ", image.axes,
+        fail(array.path_of(first.key()).string(), ": shape has ", first.shape.size(), " axes; expected ", image.axes,
              ", as the image says");
     }
-    const ZarrView view = view_of(folder, image, first, options);
+    const ZarrView view = view_of(folder.path_of(""), image, first, options);
+    compare_names(array, image, first, warnings);
     std::vector<ZarrVolume> volumes;
     volumes.emplace_back(array, first, view);
     std::vector<std::string> left_out;
@@ -223,7 +232,7 @@ std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& imag
         const std::string& path = image.levels[dataset].path;
         std::string why;
         try {
-            ZarrMetadata metadata = read_zarr_metadata(folder / path);
+            ZarrMetadata metadata = read_zarr_metadata(folder / path, version);
             why = objection(image, first, dataset, metadata, int(volumes.size()));
             if (why.empty()) volumes.emplace_back(folder / path, std::move(metadata), view);
         } catch (const Error& error) {
@@ -244,28 +253,30 @@ std::vector<ZarrVolume> open_levels(const fs::path& folder, const OmeImage& imag
 
 // ---- What kind of folder it is --------------------------------------------------------------------------------------
 
-std::unique_ptr<VolumeSource> open_image(const fs::path& folder, const JsonNode& attributes, const OpenOptions& options)
+std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode& node, const OpenOptions& options)
 {
-    const OmeImage image = read_ome_image(folder / ".zattrs", attributes);
+    const fs::path folder = place.path_of("");
+    const OmeImage image = read_ome_image(node);
     std::vector<std::string> left_out;
-    std::vector<ZarrVolume> volumes = open_levels(folder, image, options, left_out);
+    std::vector<ZarrVolume> volumes = open_levels(place, node.version, image, options, left_out);
     VolumeInfo info{.name = name_of_folder(folder), .format = "ome-zarr", .size = volumes[0].size()};
     info.type = volumes[0].metadata().type;
     static_cast<void>(voxel_count(info));
     info.warnings = image.warnings;
     apply_spacing(info, image.levels[0].scale, image.unit, "um");
-    read_ome_place(attributes, image.levels[0].translation, info);
+    read_ome_place(node.attributes(), image.levels[0].translation, info);
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
-    if (attributes["image-label"].exists())
+    if (node.ome()["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
 
 /// A bare array states nothing about its axes.
-std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptions& options)
+std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, const OpenOptions& options)
 {
-    ZarrMetadata metadata = read_zarr_metadata(folder);
+    const fs::path folder = place.path_of("");
+    ZarrMetadata metadata = read_zarr_metadata(place, version);
     const size_t axes = metadata.shape.size();
     OmeImage image{.axes = axes};
     bool is_volume = axes >= 3;
@@ -273,7 +284,7 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
     if (!is_volume) {
         std::string shape;
         for (const int64_t side : metadata.shape) shape += sentence(shape.empty() ? "" : ",", side);
-        fail((folder / ".zarray").string(), ": key shape is [", shape,
+        fail(place.path_of(metadata.key()).string(), ": key shape is [", shape,
              "]; expected three axes z, y, x, those before them 1 voxel long");
     }
     image.xyz = {axes - 1, axes - 2, axes - 3};
@@ -284,46 +295,73 @@ std::unique_ptr<VolumeSource> open_array(const fs::path& folder, const OpenOptio
     apply_spacing(info, std::nullopt, std::nullopt, "um");
     std::vector<ZarrVolume> volumes;
     const ZarrView view = view_of(folder, image, metadata, options);
-    volumes.emplace_back(folder, std::move(metadata), view);
+    volumes.emplace_back(place, std::move(metadata), view);
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
 }
 
-/// A group that is not itself an image may contain some: bioformats2raw puts them into 0, 1, ...
-std::unique_ptr<VolumeSource> open_group(const fs::path& folder, const JsonNode& attributes, const OpenOptions& options)
+/// The images in a group that is none itself: bioformats2raw puts them into 0, 1, ... or lists them.
+std::vector<std::string> images_in(const ZarrPlace& group)
 {
+    const ZarrPlace listing = group / "OME";
+    const std::optional<ZarrNode> node =
+        listing.has("zarr.json") || listing.has(".zattrs") ? read_zarr_node(listing) : std::nullopt;
+    std::vector<std::string> images;
+    if (node && node->ome()["series"].exists()) {
+        constexpr size_t MAX_SERIES = 4096;
+        for (const JsonNode& path : node->ome()["series"].elements(1, MAX_SERIES))
+            images.push_back(read_zarr_path(path));
+        return images;
+    }
+    for (const char* const name : {"0", "1"}) {
+        const ZarrPlace inner = group / name;
+        if (inner.has(".zattrs") || inner.has("zarr.json")) images.emplace_back(name);
+    }
+    return images;
+}
+
+std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode& node, const OpenOptions& options)
+{
+    const JsonNode attributes = node.ome();
+    const fs::path folder = place.path_of("");
     if (attributes["plate"].exists() || attributes["well"].exists()) {
         fail(folder.string(), ": is a plate of many images; expected one of them, as in ",
              (folder / (attributes["plate"].exists() ? "A/1/0" : "0")).string());
     }
-    if (!is_there(folder / "0" / ".zattrs")) {
-        fail((folder / ".zattrs").string(),
-             ": key multiscales is missing; expected an OME-Zarr image, or one of its arrays");
+    const std::vector<std::string> images = images_in(place);
+    if (images.empty()) {
+        fail(node.document.origin(), ": key ", node.version == 2 ? "" : "attributes.ome.",
+             "multiscales is missing; expected an OME-Zarr image, or one of its arrays");
     }
-    if (is_there(folder / "1" / ".zattrs")) {
-        fail(folder.string(), ": holds several images; expected one of them, as in ", (folder / "0").string());
+    if (images.size() > 1) {
+        fail(folder.string(), ": holds several images; expected one of them, as in ", (folder / images[0]).string());
     }
-    const JsonDocument inner = read_zarr_json(folder / "0" / ".zattrs", LARGEST_ZARR_ATTRIBUTES);
-    return open_image(folder / "0", inner.root(), options);
+    const ZarrPlace inner = place / images[0];
+    const std::optional<ZarrNode> image = read_zarr_node(inner);
+    if (!image) fail(inner.path_of("").string(), ": is neither group nor array; expected an OME-Zarr image");
+    return open_image(inner, *image, options);
+}
+
+/// The usual mistake: the folder was zipped, not what is in it.
+[[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
+{
+    fail(path.string(), ": has no zarr.json ", place.prefix.empty() ? "at its root" : "in this place",
+         "; expected a zipped OME-Zarr, made of the content of its folder");
 }
 
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOptions& options)
 {
+    const std::optional<ZarrPlace> place = zarr_place(path);
+    if (!place) return nullptr;
+    const std::optional<ZarrNode> node = read_zarr_node(*place);
     std::error_code ignored;
-    if (!fs::is_directory(path, ignored)) return nullptr;
-    if (is_there(path / ".zarray")) return open_array(path, options);
-    const bool has_attributes = is_there(path / ".zattrs");
-    if (!has_attributes && !is_there(path / ".zgroup")) {
-        if (!is_there(path / "zarr.json")) return nullptr;
-        fail((path / "zarr.json").string(), ": is Zarr version 3, which is not supported yet; expected version 2, as ",
-             "OME-Zarr 0.4 has it");
-    }
-    const JsonDocument document = has_attributes ? read_zarr_json(path / ".zattrs", LARGEST_ZARR_ATTRIBUTES)
-                                                 : JsonDocument("{}", (path / ".zattrs").string());
-    const JsonNode attributes = document.root();
-    if (attributes["multiscales"].exists()) return open_image(path, attributes, options);
-    return open_group(path, attributes, options);
+    if (!node && fs::is_directory(path, ignored)) return nullptr;
+    if (!node) refuse_archive(path, *place);
+    if (node->is_array) return open_array(*place, node->version, options);
+    check_ome_version(*node);
+    if (node->ome()["multiscales"].exists()) return open_image(*place, *node, options);
+    return open_group(*place, *node, options);
 }
 
 }  // namespace shvr

@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/v3/crc32c.h"
 
 namespace shvr {
 namespace {
+
+constexpr size_t CHECKSUM_BYTES = 4;
 
 using Bytes = std::span<const std::byte>;
 
@@ -91,15 +95,8 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-}  // namespace
-
-int64_t longest_stored(int64_t chunk_bytes)
-{
-    // Deflate, the worst case, adds five bytes to blocks of at least 16 KiB; headers are small.
-    return chunk_bytes + chunk_bytes / 1024 + 4096;
-}
-
-void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
+/// Of one compressor.
+void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
 {
     if (kind == ZarrCompressor::Kind::none) {
         if (stored_bytes != chunk_bytes) refuse_size(name, "holds", stored_bytes, chunk_bytes);
@@ -113,18 +110,86 @@ void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t ch
     }
 }
 
+/// A chain of codecs: at most one compressor, and how many checksums are added before and after it.
+struct Steps {
+    ZarrCompressor::Kind kind = ZarrCompressor::Kind::none;
+    size_t before = 0, after = 0;
+};
+
+Steps steps_of(std::span<const ZarrCompressor> codecs)
+{
+    Steps steps;
+    for (const ZarrCompressor& codec : codecs) {
+        if (codec.kind == ZarrCompressor::Kind::none) continue;
+        const bool is_checksum = codec.kind == ZarrCompressor::Kind::crc32c;
+        SHVR_CHECK(is_checksum || steps.kind == ZarrCompressor::Kind::none, codecs.size());
+        if (!is_checksum) {
+            steps.kind = codec.kind;
+            std::swap(steps.before, steps.after);
+        } else {
+            ++steps.after;
+        }
+    }
+    return steps;
+}
+
+}  // namespace
+
+int64_t longest_stored(int64_t chunk_bytes)
+{
+    // Deflate, the worst case, adds five bytes to blocks of at least 16 KiB; headers and checksums are small.
+    return chunk_bytes + chunk_bytes / 1024 + 4096;
+}
+
+void check_stored_size(std::span<const ZarrCompressor> codecs, size_t stored_bytes, size_t chunk_bytes,
+                       const std::string& name)
+{
+    const Steps steps = steps_of(codecs);
+    if (stored_bytes < CHECKSUM_BYTES * steps.after)
+        fail(name, ": holds ", stored_bytes, " bytes; expected at least its checksum of ", CHECKSUM_BYTES);
+    check_compressed_size(steps.kind, stored_bytes - CHECKSUM_BYTES * steps.after,
+                          chunk_bytes + CHECKSUM_BYTES * steps.before, name);
+}
+
+Bytes without_checksum(Bytes stored, const std::string& name)
+{
+    if (stored.size() < CHECKSUM_BYTES)
+        fail(name, ": holds ", stored.size(), " bytes; expected at least its checksum of ", CHECKSUM_BYTES);
+    const Bytes content = stored.first(stored.size() - CHECKSUM_BYTES);
+    uint32_t expected = 0;  // little-endian, as this machine is
+    std::memcpy(&expected, stored.data() + content.size(), CHECKSUM_BYTES);
+    if (const uint32_t found = crc32c(content); found != expected)
+        fail(name, ": is damaged: its CRC-32C is ", found, "; expected ", expected, ", which is stored with it");
+    return content;
+}
+
+void decode_chunk(std::span<const ZarrCompressor> codecs, Bytes stored, std::span<std::byte> chunk,
+                  const std::string& name)
+{
+    const Steps steps = steps_of(codecs);
+    for (size_t i = 0; i < steps.after; ++i) stored = without_checksum(stored, name);
+    if (steps.before == 0) return decompress_chunk(steps.kind, stored, chunk, name);
+    std::vector<std::byte> content(chunk.size() + CHECKSUM_BYTES * steps.before);
+    decompress_chunk(steps.kind, stored, content, name);
+    Bytes rest = content;
+    for (size_t i = 0; i < steps.before; ++i) rest = without_checksum(rest, name);
+    std::memcpy(chunk.data(), rest.data(), chunk.size());
+}
+
 void decompress_chunk(ZarrCompressor::Kind kind, Bytes stored, std::span<std::byte> chunk, const std::string& name)
 {
     switch (kind) {
         case ZarrCompressor::Kind::none:
-            check_stored_size(kind, stored.size(), chunk.size(), name);
+            check_compressed_size(kind, stored.size(), chunk.size(), name);
             std::memcpy(chunk.data(), stored.data(), chunk.size());
             return;
         case ZarrCompressor::Kind::blosc: return decompress_blosc(stored, chunk, name);
         case ZarrCompressor::Kind::zstd: return decompress_zstd(stored, chunk, name);
         case ZarrCompressor::Kind::zlib:
         case ZarrCompressor::Kind::gzip: return decompress_deflate(stored, chunk, name);
+        case ZarrCompressor::Kind::crc32c: break;
     }
+    SHVR_CHECK(false, "a checksum is no compressor");
 }
 
 Bytes compress_chunk(const ZarrCompressor& compressor, Bytes chunk, size_t voxel_bytes, std::vector<std::byte>& memory)

@@ -1,6 +1,7 @@
 #pragma once
-// Compresses and decompresses chunks of Zarr version 2: blosc, zstd, zlib, gzip, or none. Stored data is untrusted: its
-// size, stated or found, must be exactly what the metadata promise. Any thread may call these.
+// Compresses and decompresses chunks of Zarr: blosc, zstd, zlib, gzip, or none; and checks their checksums, crc32c.
+// Stored data is untrusted: its size, stated or found, must be exactly what the metadata promise. Any thread may call
+// these.
 
 #include <span>
 #include <string>
@@ -14,8 +15,15 @@ namespace shvr {
 int64_t longest_stored(int64_t chunk_bytes);
 
 /// Fails if so few bytes cannot decode to `chunk_bytes`; called before memory is allocated.
-void check_stored_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name);
+void check_stored_size(std::span<const ZarrCompressor> codecs, size_t stored_bytes, size_t chunk_bytes,
+                       const std::string& name);
 /// Fills `chunk` exactly, or fails with `name`, the chunk's name.
+void decode_chunk(std::span<const ZarrCompressor> codecs, std::span<const std::byte> stored, std::span<std::byte> chunk,
+                  const std::string& name);
+/// The bytes before the checksum that ends `stored`; fails if there are too few, or it does not hold.
+std::span<const std::byte> without_checksum(std::span<const std::byte> stored, const std::string& name);
+
+/// One compressor of those; not crc32c.
 void decompress_chunk(ZarrCompressor::Kind kind, std::span<const std::byte> stored, std::span<std::byte> chunk,
                       const std::string& name);
 

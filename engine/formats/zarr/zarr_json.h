@@ -2,6 +2,7 @@
 // The small JSON files of Zarr. They are untrusted: size and depth are bounded. Any thread.
 
 #include "engine/base/json.h"
+#include "engine/formats/zarr/zarr_store.h"
 
 namespace shvr {
 
@@ -12,5 +13,7 @@ inline constexpr int64_t LARGEST_ZARR_ATTRIBUTES = int64_t{4} << 20;
 /// The object in a file. Fails if it is not valid JSON, not an object, or nested more than 64 deep. Repeated keys are
 /// allowed: other programs write attributes too, and some of them repeat keys.
 JsonDocument read_zarr_json(const std::filesystem::path& file, int64_t max_bytes);
+/// The same for the value `name` of a group or array.
+JsonDocument read_zarr_json(const ZarrPlace& place, const std::string& name, int64_t max_bytes);
 
 }  // namespace shvr

@@ -1,12 +1,14 @@
 #pragma once
-// The metadata of an array of Zarr version 2, from its file .zarray
-// (https://zarr.readthedocs.io/en/stable/spec/v2.html). Any thread may call these.
+// The metadata of a Zarr array, in one form for version 2 (.zarray, https://zarr.readthedocs.io/en/stable/spec/v2.html)
+// and version 3 (zarr.json, https://zarr-specs.readthedocs.io/en/latest/v3/core/). Any thread may call these.
 
 #include <array>
-#include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "engine/formats/zarr/zarr_store.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {
@@ -14,8 +16,9 @@ namespace shvr {
 /// A chunk is decoded as a whole, so its size is bounded.
 inline constexpr int64_t LARGEST_CHUNK_BYTES = int64_t{256} << 20;
 
+/// One step from the bytes of a chunk to what is stored: a compressor or a checksum.
 struct ZarrCompressor {
-    enum class Kind { none, blosc, zstd, zlib, gzip };
+    enum class Kind { none, blosc, zstd, zlib, gzip, crc32c };
     Kind kind = Kind::none;
     // For writing; stored chunks state themselves how to decode them.
     std::string codec = "zstd";  ///< blosc's
@@ -23,24 +26,49 @@ struct ZarrCompressor {
     int shuffle = 1;  ///< blosc's: 0 none, 1 bytes, 2 bits
 };
 
+/// Version 3: chunks that lie together in a shard, behind one key, with an index of where each is
+/// (https://zarr-specs.readthedocs.io/en/latest/v3/codecs/sharding-indexed/).
+struct ZarrSharding {
+    std::vector<int64_t> shape{};  ///< voxels of a shard along each axis, a multiple of those of a chunk
+    std::vector<size_t> order{};   ///< the axes of the index, the slowest first
+    bool is_index_first = false;   ///< at the start of a shard, not at its end
+    bool is_big_endian = false;    ///< the index
+    int checksums = 0;             ///< CRC-32C that follow the index, each over all before it
+
+    int64_t chunks(const std::vector<int64_t>& chunk) const;  ///< of a shard
+    int64_t index_bytes(const std::vector<int64_t>& chunk) const { return 16 * chunks(chunk) + 4 * checksums; }
+};
+
 struct ZarrMetadata {
+    int version = 2;                ///< of Zarr
     std::vector<int64_t> shape{};   ///< voxels along each axis of the array, slowest first
     std::vector<int64_t> chunks{};  ///< the same for a chunk; chunks at the end of an axis have the full size too
     VoxelType type = VoxelType::uint8;
     bool big_endian = false;
-    bool is_fortran = false;          ///< inside a chunk, the first axis is the fastest
+    /// Inside a chunk, the array's axes, the slowest first; empty: in the array's order.
+    std::vector<size_t> order{};
     std::array<std::byte, 8> fill{};  ///< a voxel of missing chunks: its first bytes_of(type) bytes
+    bool has_prefix = false;          ///< chunks' names begin with "c"
     char separator = '.';             ///< between the numbers in a chunk's name
-    ZarrCompressor compressor{};
+    /// In the order in which a chunk is encoded: at most one compressor, and checksums before and after it.
+    std::vector<ZarrCompressor> codecs{};
+    std::optional<ZarrSharding> sharding{};
+    std::vector<std::string> axes{};  ///< names of the axes, as far as there are any
 
     size_t chunk_bytes() const;
+    /// Bytes from one voxel of a chunk to the next along each axis.
+    std::vector<size_t> strides() const;
+    /// The name of a chunk or a shard with this number along each axis, within the array.
+    std::string key_of(std::span<const int64_t> numbers) const;
+    /// Of the metadata themselves, within the array.
+    const char* key() const { return version == 2 ? ".zarray" : "zarr.json"; }
 };
 
-/// Reads the metadata of the array in a folder. Fails if a field is missing, invalid or not supported (filters, other
-/// types and compressors), or if a chunk is larger than LARGEST_CHUNK_BYTES.
-ZarrMetadata read_zarr_metadata(const std::filesystem::path& array);
+/// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (filters, other types, codecs
+/// and grids), or if a chunk is larger than LARGEST_CHUNK_BYTES.
+ZarrMetadata read_zarr_metadata(const ZarrPlace& array, int version);
 
-/// The content of .zarray; equal for equal metadata.
+/// The content of `key()`; equal for equal metadata. Of version 3: without sharding.
 std::string to_text(const ZarrMetadata& metadata);
 
 }  // namespace shvr

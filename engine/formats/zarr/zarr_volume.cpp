@@ -1,62 +1,17 @@
 #include "engine/formats/zarr/zarr_volume.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <optional>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/formats/zarr/zarr_codec.h"
 
 namespace shvr {
 namespace {
-
-template <class Bits>
-Bits swapped(Bits bits)
-{
-    if constexpr (sizeof(Bits) == 2) return __builtin_bswap16(bits);
-    if constexpr (sizeof(Bits) == 4) return __builtin_bswap32(bits);
-    if constexpr (sizeof(Bits) == 8) return __builtin_bswap64(bits);
-    return bits;
-}
-
-template <class Bits>
-void swap_each(std::span<std::byte> bytes)
-{
-    for (size_t at = 0; at + sizeof(Bits) <= bytes.size(); at += sizeof(Bits)) {
-        Bits bits;
-        std::memcpy(&bits, bytes.data() + at, sizeof(Bits));
-        bits = swapped(bits);
-        std::memcpy(bytes.data() + at, &bits, sizeof(Bits));
-    }
-}
-
-void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
-{
-    if (voxel_bytes == 2) swap_each<uint16_t>(voxels);
-    if (voxel_bytes == 4) swap_each<uint32_t>(voxels);
-    if (voxel_bytes == 8) swap_each<uint64_t>(voxels);
-}
-
-/// Bytes from one voxel to the next along each axis of a stored chunk.
-std::vector<size_t> strides_of(const ZarrMetadata& metadata)
-{
-    const size_t axes = metadata.chunks.size();
-    std::vector<size_t> strides(axes);
-    size_t stride = bytes_of(metadata.type);
-    for (size_t i = 0; i < axes; ++i) {
-        const size_t axis = metadata.is_fortran ? i : axes - 1 - i;
-        strides[axis] = stride;
-        stride *= size_t(metadata.chunks[axis]);
-    }
-    return strides;
-}
 
 template <class Bits>
 void gather(const std::byte* from, const Size3& count, const std::array<size_t, 3>& stride, std::byte* to)
@@ -77,17 +32,6 @@ void gather(const std::byte* from, const Size3& count, const std::array<size_t, 
     }
 }
 
-/// The stored bytes; nothing if there is no such file.
-std::optional<std::vector<std::byte>> stored_bytes(const std::filesystem::path& path, int64_t longest)
-{
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) {
-        if (errno == ENOENT) return std::nullopt;
-        fail(path.string(), ": cannot be examined: ", reason_of(errno));
-    }
-    return read_file(path, longest);
-}
-
 /// Sets `count` voxels to `fill`.
 void fill_voxels(std::byte* voxels, size_t count, std::span<const std::byte> fill)
 {
@@ -106,46 +50,48 @@ uint64_t checksum_of(std::span<const std::byte> stored)
     return hash == 0 ? 1 : hash;
 }
 
-ZarrVolume::ZarrVolume(std::filesystem::path array, ZarrMetadata metadata, ZarrView view)
-    : array_(std::move(array)), metadata_(std::move(metadata)), view_(std::move(view))
+ZarrVolume::ZarrVolume(ZarrPlace array, ZarrMetadata metadata, ZarrView view)
+    : chunks_(std::make_shared<const ZarrChunks>(std::move(array), std::move(metadata))), view_(std::move(view))
 {
-    view_.at.resize(metadata_.shape.size());
+    const ZarrMetadata& of_array = chunks_->metadata();
+    view_.at.resize(of_array.shape.size());
     for (int axis = 0; axis < 3; ++axis) {
-        const size_t of_array = view_.xyz[size_t(axis)];
-        size_[axis] = metadata_.shape[of_array];
-        chunk_[axis] = metadata_.chunks[of_array];
+        const size_t along = view_.xyz[size_t(axis)];
+        size_[axis] = of_array.shape[along];
+        chunk_[axis] = of_array.chunks[along];
         counts_[axis] = (size_[axis] - 1) / chunk_[axis] + 1;
     }
 }
 
+/// Along each axis of the array.
+std::vector<int64_t> ZarrVolume::numbers_of(const Size3& chunk) const
+{
+    std::vector<int64_t> numbers(view_.at.size());
+    for (size_t axis = 0; axis < numbers.size(); ++axis) numbers[axis] = view_.at[axis] / metadata().chunks[axis];
+    for (int axis = 0; axis < 3; ++axis) numbers[view_.xyz[size_t(axis)]] = chunk[axis];
+    return numbers;
+}
+
 std::filesystem::path ZarrVolume::path_of(const Size3& chunk) const
 {
-    std::vector<int64_t> index(view_.at.size());
-    for (size_t axis = 0; axis < index.size(); ++axis) index[axis] = view_.at[axis] / metadata_.chunks[axis];
-    for (int axis = 0; axis < 3; ++axis) index[view_.xyz[size_t(axis)]] = chunk[axis];
-    std::string key;
-    for (const int64_t number : index) {
-        if (!key.empty()) key += metadata_.separator;
-        key += std::to_string(number);
-    }
-    return array_ / key;
+    return chunks_->path_of(numbers_of(chunk));
 }
 
 Block ZarrVolume::load(const Size3& chunk) const
 {
-    const std::filesystem::path path = path_of(chunk);
-    const auto stored = stored_bytes(path, longest_stored(int64_t(metadata_.chunk_bytes())));
+    const std::vector<int64_t> numbers = numbers_of(chunk);
+    const auto stored = chunks_->read(numbers);
     if (!checksums_.empty()) {
         const uint64_t expected = checksums_[size_t(index_of(chunk))];
-        if (!stored && expected != 0) fail(path.string(), ": is missing; expected the chunk that the import wrote");
-        if (stored && checksum_of(*stored) != expected) {
-            fail(path.string(), ": is damaged, or another program changed it; expected what the import wrote");
-        }
+        const std::string name = chunks_->name_of(numbers);
+        if (!stored && expected != 0) fail(name, ": is missing; expected the chunk that the import wrote");
+        if (stored && checksum_of(*stored) != expected)
+            fail(name, ": is damaged, or another program changed it; expected what the import wrote");
     }
-    if (stored) return decoded(*stored, path.string());
+    if (stored) return arranged(chunks_->decoded(*stored, chunks_->name_of(numbers)));
     // An array that was removed must not look empty.
     if (!is_there()) {
-        fail((array_ / ".zarray").string(), ": cannot be found any more: ", reason_of(errno),
+        fail(chunks_->metadata_path().string(), ": cannot be found any more: ", reason_of(ENOENT),
              "; expected the array that was opened");
     }
     return {};
@@ -154,29 +100,15 @@ Block ZarrVolume::load(const Size3& chunk) const
 bool ZarrVolume::is_missing(const Size3& chunk) const
 {
     if (!checksums_.empty()) return checksums_[size_t(index_of(chunk))] == 0;
-    struct stat status {};
-    return ::stat(path_of(chunk).c_str(), &status) != 0 && errno == ENOENT;
-}
-
-bool ZarrVolume::is_there() const
-{
-    return ::access((array_ / ".zarray").c_str(), F_OK) == 0;
-}
-
-Block ZarrVolume::decoded(std::span<const std::byte> stored, const std::string& name) const
-{
-    check_stored_size(metadata_.compressor.kind, stored.size(), metadata_.chunk_bytes(), name);
-    Block chunk(metadata_.chunk_bytes());
-    decompress_chunk(metadata_.compressor.kind, stored, chunk, name);
-    if (metadata_.big_endian) swap_bytes(chunk, bytes_of(metadata_.type));
-    return arranged(std::move(chunk));
+    return chunks_->is_missing(numbers_of(chunk));
 }
 
 Block ZarrVolume::arranged(Block chunk) const
 {
-    const std::vector<size_t> strides = strides_of(metadata_);
+    const ZarrMetadata& of_array = metadata();
+    const std::vector<size_t> strides = of_array.strides();
     const std::array<size_t, 3> stride{strides[view_.xyz[0]], strides[view_.xyz[1]], strides[view_.xyz[2]]};
-    const size_t voxel_bytes = bytes_of(metadata_.type);
+    const size_t voxel_bytes = bytes_of(of_array.type);
     const auto row = size_t(chunk_.x) * voxel_bytes;
     const size_t slice = row * size_t(chunk_.y);
     const size_t bytes = slice * size_t(chunk_.z);
@@ -185,7 +117,7 @@ Block ZarrVolume::arranged(Block chunk) const
     size_t first = 0;
     for (size_t axis = 0; axis < strides.size(); ++axis) {
         if (std::ranges::find(view_.xyz, axis) != view_.xyz.end()) continue;
-        first += size_t(view_.at[axis] % metadata_.chunks[axis]) * strides[axis];
+        first += size_t(view_.at[axis] % of_array.chunks[axis]) * strides[axis];
     }
     Block block(bytes);
     const std::byte* const from = chunk.data() + first;
@@ -199,8 +131,8 @@ Block ZarrVolume::arranged(Block chunk) const
 void ZarrVolume::read(const VoxelBox& box, std::span<std::byte> voxels,
                       const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const
 {
-    const auto voxel_bytes = int64_t(bytes_of(metadata_.type));
-    const std::span<const std::byte> fill(metadata_.fill.data(), size_t(voxel_bytes));
+    const auto voxel_bytes = int64_t(bytes_of(metadata().type));
+    const std::span<const std::byte> fill(metadata().fill.data(), size_t(voxel_bytes));
     const Size3 extent = box.size();
     SHVR_CHECK(glm::all(glm::greaterThanEqual(box.lower, Size3(0))) && glm::all(glm::lessThanEqual(box.upper, size_)) &&
                glm::all(glm::greaterThan(extent, Size3(0))));

@@ -1,5 +1,5 @@
 #pragma once
-// A volume inside a Zarr array of version 2: three of its axes, at a fixed index along the others, chunk by chunk.
+// A volume inside a Zarr array: three of its axes, at a fixed index along the others, chunk by chunk.
 //
 // A missing chunk holds the fill value; a chunk that cannot be read or decoded is an `Error` with its path. Chunks at
 // the end of an axis have the full size, and their part outside the array is never looked at. Any thread may call it.
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/formats/zarr/chunk_cache.h"
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/zarr_chunks.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -28,13 +28,14 @@ uint64_t checksum_of(std::span<const std::byte> stored);
 
 class ZarrVolume {
 public:
-    ZarrVolume(std::filesystem::path array, ZarrMetadata metadata, ZarrView view);
+    ZarrVolume(ZarrPlace array, ZarrMetadata metadata, ZarrView view);
 
-    const ZarrMetadata& metadata() const { return metadata_; }
+    const ZarrMetadata& metadata() const { return chunks_->metadata(); }
     const Size3& size() const { return size_; }      ///< voxels
     const Size3& chunk() const { return chunk_; }    ///< voxels of a chunk
     const Size3& counts() const { return counts_; }  ///< chunks
     int64_t index_of(const Size3& chunk) const { return shvr::index_of(chunk, counts_); }
+    /// The file of a chunk, or of the shard that holds it.
     std::filesystem::path path_of(const Size3& chunk) const;
 
     /// Sets the checksums, by `index_of`, that stored chunks are compared with from now on. Not while other threads
@@ -44,21 +45,20 @@ public:
     /// The voxels of a chunk, x fastest, in native byte order; empty if all are the fill value.
     Block load(const Size3& chunk) const;
 
-    /// True if the chunk is not stored, and should not be: it holds the fill value. Reads nothing.
+    /// True if the chunk is not stored, and should not be: it holds the fill value. Reads at most the index of a shard.
     bool is_missing(const Size3& chunk) const;
     /// Whether the array still exists where it was opened.
-    bool is_there() const;
+    bool is_there() const { return chunks_->is_there(); }
 
     /// Copies the voxels of `box`, which lies inside the volume, x fastest. `get` returns the chunks.
     void read(const VoxelBox& box, std::span<std::byte> voxels,
               const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const;
 
 private:
-    Block decoded(std::span<const std::byte> stored, const std::string& name) const;
+    std::vector<int64_t> numbers_of(const Size3& chunk) const;
     Block arranged(Block chunk) const;
 
-    std::filesystem::path array_;
-    ZarrMetadata metadata_;
+    std::shared_ptr<const ZarrChunks> chunks_;
     ZarrView view_;
     Size3 size_{0}, chunk_{0}, counts_{0};
     std::vector<uint64_t> checksums_;

@@ -1,0 +1,235 @@
+#include "engine/formats/zarr/zarr_chunks.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/formats/byte_order.h"
+#include "engine/formats/zarr/zarr_codec.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
+
+/// A chunk's place in a shard, as the index has it.
+struct IndexEntry {
+    uint64_t offset, bytes;
+    auto operator<=>(const IndexEntry&) const = default;
+};
+
+uint64_t end_of(const IndexEntry& entry)
+{
+    uint64_t end = 0;
+    return __builtin_add_overflow(entry.offset, entry.bytes, &end) ? ~uint64_t{0} : end;
+}
+
+/// The places of which bytes belong to another place as well, ascending. Equal places are one: some writers store equal
+/// chunks once.
+std::vector<IndexEntry> overlapping(std::vector<IndexEntry> entries)
+{
+    std::ranges::sort(entries);
+    const auto repeated = std::ranges::unique(entries);
+    entries.erase(repeated.begin(), repeated.end());
+    std::vector<IndexEntry> found;
+    const IndexEntry* last = nullptr;  // the one that reaches furthest so far
+    for (const IndexEntry& entry : entries) {
+        if (entry.bytes == 0) continue;
+        if (last != nullptr && entry.offset < end_of(*last)) found.insert(found.end(), {*last, entry});
+        if (last == nullptr || end_of(entry) > end_of(*last)) last = &entry;
+    }
+    std::ranges::sort(found);
+    return found;
+}
+
+}  // namespace
+
+ZarrChunks::ZarrChunks(ZarrPlace array, ZarrMetadata metadata)
+    : array_(std::move(array)), metadata_(std::move(metadata)), indices_(KEPT_INDEX_BYTES)
+{}
+
+std::string ZarrChunks::key_of(std::span<const int64_t> chunk) const
+{
+    std::vector<int64_t> numbers(chunk.begin(), chunk.end());
+    if (metadata_.sharding) {
+        for (size_t axis = 0; axis < numbers.size(); ++axis)
+            numbers[axis] /= metadata_.sharding->shape[axis] / metadata_.chunks[axis];
+    }
+    return metadata_.key_of(numbers);
+}
+
+std::filesystem::path ZarrChunks::path_of(std::span<const int64_t> chunk) const
+{
+    return array_.path_of(key_of(chunk));
+}
+
+std::string ZarrChunks::name_of(std::span<const int64_t> chunk) const
+{
+    std::string name = path_of(chunk).string();
+    if (!metadata_.sharding) return name;
+    name += " (chunk ";
+    for (size_t axis = 0; axis < chunk.size(); ++axis) name += sentence(axis == 0 ? "" : ",", chunk[axis]);
+    return name + ")";
+}
+
+std::optional<std::vector<std::byte>> ZarrChunks::read(std::span<const int64_t> chunk) const
+{
+    const std::string key = key_of(chunk);
+    const int64_t longest = longest_stored(int64_t(metadata_.chunk_bytes()));
+    if (!metadata_.sharding) return array_.store->read(array_.key(key), longest);
+    const Part part = part_of(chunk, key);
+    if (part.offset == ABSENT && part.bytes == ABSENT) return std::nullopt;
+    if (part.offset == SHARED && part.bytes == 0)
+        fail(name_of(chunk), ": shares bytes with another chunk of its shard; expected a place of its own");
+    const auto index = uint64_t(metadata_.sharding->index_bytes(metadata_.chunks));
+    const auto shard = uint64_t(array_.store->size_of(array_.key(key)).value_or(0));
+    const uint64_t lower = metadata_.sharding->is_index_first ? index : 0;
+    const uint64_t upper = metadata_.sharding->is_index_first ? shard : shard - std::min(shard, index);
+    if (part.offset < lower || part.offset > upper || part.bytes > upper - part.offset) {
+        fail(name_of(chunk), ": is said to be ", part.bytes, " bytes at byte ", part.offset,
+             "; expected them between bytes ", lower, " and ", upper, " of the shard");
+    }
+    if (part.bytes > uint64_t(longest))
+        fail(name_of(chunk), ": holds ", part.bytes, " bytes; expected at most ", longest);
+    std::vector<std::byte> stored(size_t(part.bytes));
+    array_.store->read_part(array_.key(key), int64_t(part.offset), stored);
+    return stored;
+}
+
+bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
+{
+    const std::string key = key_of(chunk);
+    if (!metadata_.sharding) return array_.store->lacks(array_.key(key));
+    try {
+        const Part part = part_of(chunk, key);
+        return part.offset == ABSENT && part.bytes == ABSENT;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// Of the chunk or shard with this key; empty if it is of none.
+std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
+{
+    const std::vector<int64_t>& side = metadata_.sharding ? metadata_.sharding->shape : metadata_.chunks;
+    std::string_view rest = key;
+    if (metadata_.has_prefix) rest.remove_prefix(std::min<size_t>(rest.size(), 2));
+    std::vector<int64_t> numbers;
+    while (numbers.size() < side.size()) {
+        const size_t end = std::min(rest.size(), rest.find(metadata_.separator));
+        const std::optional<int64_t> number = whole_of(rest.substr(0, end));
+        const size_t axis = numbers.size();
+        if (!number || *number < 0 || *number > (metadata_.shape[axis] - 1) / side[axis]) return {};
+        numbers.push_back(*number);
+        rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+    // Other spellings of the same numbers, as in "00", are other keys.
+    return metadata_.key_of(numbers) == key ? numbers : std::vector<int64_t>();
+}
+
+/// Each chunk of a shard that lies in the array.
+template <class Take>
+bool ZarrChunks::list_shard(std::span<const int64_t> shard, const Take& take) const
+{
+    const ZarrSharding& sharding = *metadata_.sharding;
+    const size_t axes = shard.size();
+    std::vector<int64_t> first(axes), count(axes), chunk(axes);
+    for (size_t axis = 0; axis < axes; ++axis) {
+        const int64_t along = sharding.shape[axis] / metadata_.chunks[axis];
+        first[axis] = shard[axis] * along;
+        count[axis] = std::min(along, (metadata_.shape[axis] - 1) / metadata_.chunks[axis] + 1 - first[axis]);
+    }
+    const std::string key = metadata_.key_of(shard);
+    for (chunk = first;;) {
+        const Part part = part_of(chunk, key);
+        if ((part.offset != ABSENT || part.bytes != ABSENT) && !take(chunk)) return false;
+        size_t axis = axes;
+        while (axis > 0 && ++chunk[axis - 1] == first[axis - 1] + count[axis - 1]) {
+            chunk[axis - 1] = first[axis - 1];
+            --axis;
+        }
+        if (axis == 0) return true;
+    }
+}
+
+bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
+                      const std::function<void(std::span<const int64_t>)>& take) const
+{
+    const auto counted = [&](std::span<const int64_t> chunk) {
+        for (size_t axis = 0; axis < chunk.size(); ++axis)
+            if (at[axis].value_or(chunk[axis]) != chunk[axis]) return true;
+        if (--most < 0) return false;
+        take(chunk);
+        return true;
+    };
+    const bool is_in_folder = metadata_.has_prefix && metadata_.separator == '/';
+    return array_.store->list(array_.key(is_in_folder ? "c/" : ""), [&](std::string_view name) {
+        const std::vector<int64_t> numbers = numbers_of(is_in_folder ? "c/" + std::string(name) : std::string(name));
+        if (numbers.empty()) return true;
+        return metadata_.sharding ? list_shard(numbers, counted) : counted(numbers);
+    });
+}
+
+Block ZarrChunks::decoded(std::span<const std::byte> stored, const std::string& name) const
+{
+    check_stored_size(metadata_.codecs, stored.size(), metadata_.chunk_bytes(), name);
+    Block chunk(metadata_.chunk_bytes());
+    decode_chunk(metadata_.codecs, stored, chunk, name);
+    if (metadata_.big_endian) swap_bytes(chunk, bytes_of(metadata_.type));
+    return chunk;
+}
+
+ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::string& shard) const
+{
+    const ZarrSharding& sharding = *metadata_.sharding;
+    size_t place = 0;
+    for (const size_t axis : sharding.order) {
+        const int64_t along = sharding.shape[axis] / metadata_.chunks[axis];
+        place = place * size_t(along) + size_t(chunk[axis] % along);
+    }
+    uint64_t number = 0;  // of the shard; unsigned, for it may wrap around in arrays of absurd sizes
+    for (size_t axis = 0; axis < chunk.size(); ++axis) {
+        const int64_t shards = (metadata_.shape[axis] - 1) / sharding.shape[axis] + 1;
+        number = number * uint64_t(shards) + uint64_t(chunk[axis] / (sharding.shape[axis] / metadata_.chunks[axis]));
+    }
+    const auto index = indices_.get({0, int64_t(number)}, [&] { return index_of(shard); });
+    if (index->empty()) return {ABSENT, ABSENT};
+    Part part{};
+    std::memcpy(&part, index->data() + place * sizeof(Part), sizeof(Part));
+    return part;
+}
+
+/// The parts of a shard, one for each chunk; empty if there is no such shard.
+Block ZarrChunks::index_of(const std::string& shard) const
+{
+    const ZarrSharding& sharding = *metadata_.sharding;
+    const std::string name = array_.path_of(shard).string();
+    const std::optional<int64_t> bytes = array_.store->size_of(array_.key(shard));
+    if (!bytes) return {};
+    const int64_t index_bytes = sharding.index_bytes(metadata_.chunks);
+    if (*bytes < index_bytes)
+        fail(name, ": holds ", *bytes, " bytes; expected at least ", index_bytes, ", the index of a shard");
+    Block stored(static_cast<size_t>(index_bytes));
+    array_.store->read_part(array_.key(shard), sharding.is_index_first ? 0 : *bytes - index_bytes, stored);
+    std::span<const std::byte> content = stored;
+    for (int i = 0; i < sharding.checksums; ++i) content = without_checksum(content, name + " (index)");
+    Block index(content.begin(), content.end());
+    if (sharding.is_big_endian) swap_bytes(index, sizeof(uint64_t));
+
+    std::vector<IndexEntry> entries(index.size() / sizeof(IndexEntry));
+    std::memcpy(entries.data(), index.data(), index.size());
+    std::vector<IndexEntry> present;
+    for (const IndexEntry& entry : entries) {
+        if (entry != IndexEntry{ABSENT, ABSENT}) present.push_back(entry);
+    }
+    const std::vector<IndexEntry> shared = overlapping(std::move(present));
+    if (shared.empty()) return index;
+    for (IndexEntry& entry : entries) {
+        if (std::ranges::binary_search(shared, entry)) entry = {SHARED, 0};
+    }
+    std::memcpy(index.data(), entries.data(), index.size());
+    return index;
+}
+
+}  // namespace shvr

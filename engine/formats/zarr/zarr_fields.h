@@ -1,0 +1,26 @@
+#pragma once
+// What the metadata of both versions of Zarr have in common. For zarr_metadata.cpp and v3/. Any thread.
+
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "engine/base/json.h"
+#include "engine/formats/zarr/zarr_metadata.h"
+
+namespace shvr {
+
+/// Of an array or a chunk: 1 to 16 whole numbers above 0.
+std::vector<int64_t> read_zarr_sides(const JsonNode& node);
+/// As `read_zarr_sides`, one for each axis of the array.
+std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes);
+
+/// Sets `fill` from "fill_value", for the type that is set already. Version 3 may give floats by their bits, as in
+/// "0x7fc00000".
+void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata);
+nlohmann::json zarr_fill(const ZarrMetadata& metadata);
+
+/// Refuses `node`, the shape of a chunk, if it holds more than LARGEST_CHUNK_BYTES.
+void check_zarr_chunk(const JsonNode& node, const ZarrMetadata& metadata);
+
+}  // namespace shvr

@@ -1,0 +1,45 @@
+#pragma once
+// A zip archive that is read at random: its directory once, when it is opened; entries, stored or deflated, by name.
+// Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Any thread may call it, all at once.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/formats/zip/zip_directory.h"
+
+namespace shvr {
+
+class ZipArchive {
+public:
+    /// Fails if the file cannot be read or its directory is damaged. The file stays open.
+    explicit ZipArchive(std::filesystem::path path);
+
+    const std::filesystem::path& path() const { return path_; }
+    /// All entries, by name. Their sizes are claims until they are read.
+    const std::vector<ZipEntry>& entries() const { return directory_.entries; }
+    /// Null if there is none.
+    const ZipEntry* find(std::string_view name) const;
+
+    /// The decoded bytes, whose size and CRC-32 are as the directory says. Fails if there are more than `max_bytes`, or
+    /// the entry is encrypted, compressed in another way, damaged, or not in the file.
+    std::vector<std::byte> read(const ZipEntry& entry, int64_t max_bytes) const;
+    /// Whether parts of it can be read: it is stored as it is.
+    static bool is_plain(const ZipEntry& entry);
+    /// Bytes of a plain entry from `offset` on, of which the entry has enough. Its CRC-32 is not checked.
+    void read_part(const ZipEntry& entry, int64_t offset, std::span<std::byte> part) const;
+
+private:
+    std::string name_of(const ZipEntry& entry) const;
+    uint64_t data_of(const ZipEntry& entry) const;
+    void read_at(uint64_t offset, std::span<std::byte> bytes) const;
+
+    std::filesystem::path path_;
+    FileDescriptor file_;
+    ZipDirectory directory_;
+};
+
+}  // namespace shvr
