@@ -213,7 +213,10 @@ PaintOp Document::dab() const
 
 TraceDefaults Document::trace_defaults() const
 {
-    return {.spacing = volume().spacing, .radius_voxels = brush().radius_voxels, .group = brush().group};
+    return {.spacing = volume().spacing,
+            .radius_voxels = brush().radius_voxels,
+            .group = brush().group,
+            .size = volume().size};
 }
 
 std::optional<uint32_t> Document::nearby_node() const

@@ -214,6 +214,15 @@ std::vector<std::string> camera_sides()
     return names;
 }
 
+std::string side_of_largest_face(const VolumeInfo& volume)
+{
+    const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
+    // The areas of two faces have the ratio of the other two sides' lengths: nothing overflows.
+    const bool right_is_larger = extent.y > 2.0 * extent.x, top_is_larger = extent.y > 2.0 * extent.z;
+    if (!right_is_larger && !top_is_larger) return "front";
+    return extent.z >= extent.x ? "right" : "top";
+}
+
 Camera camera_of(const CameraSpec& spec, const VolumeInfo& volume)
 {
     if (const auto* view = std::get_if<SideView>(&spec)) return camera_of_view(*view, volume);

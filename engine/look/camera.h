@@ -86,6 +86,10 @@ void check_camera(const Camera& camera);
 /// 30 degrees with a margin of 5 %.
 Camera camera_looking(const std::string& side, const VolumeInfo& volume);
 std::vector<std::string> camera_sides();
+/// The side to look from where nobody chose one: "front", unless that shows less than half of the area of another face,
+/// as it does for a stack of few slices. Then the largest face, from the "top" or the "right" ("right" if these two are
+/// equal, since z is up there).
+std::string side_of_largest_face(const VolumeInfo& volume);
 Camera camera_of(const CameraSpec& spec, const VolumeInfo& volume);
 
 }  // namespace shvr

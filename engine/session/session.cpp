@@ -31,6 +31,8 @@ bool is_session_file(const fs::path& path)
 /// The session file that `path` refers to; empty if it is a volume file.
 fs::path session_file_of(const fs::path& path)
 {
+    if (path.empty())
+        fail("the file name is empty; expected a session file (.json), a project folder or a volume file");
     std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
         if (leads_into_archive(path)) return {};
@@ -120,7 +122,8 @@ fs::path journal_beside(const fs::path& session_file)
 
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume)
 {
-    const std::string name = name_or_json.empty() ? "front" : name_or_json;
+    const bool is_chosen = !name_or_json.empty() || session.cameras.contains("front");
+    const std::string name = !is_chosen ? side_of_largest_face(volume) : name_or_json.empty() ? "front" : name_or_json;
     const std::string origin = "camera";
     if (is_camera_object(name)) {
         const JsonDocument document = session_document(name, origin);

@@ -54,7 +54,7 @@ struct Session {
     /// in a session that was only read. Not written.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
-    std::string camera_name;                    ///< the one to use, as `camera_named` takes it; empty: "front"
+    std::string camera_name;                    ///< the one to use, as `camera_named` takes it; may be empty
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< `open_session` turns it into a function and clears it
     Groups groups;
@@ -122,7 +122,8 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 /// range: the brush's default threshold.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
-/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: "front".
+/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the one
+/// that the session names "front", or else that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
 /// Writes every key in the form that `parse_session` reads. Paths inside `folder` (if that is a project's shvr: inside

@@ -101,7 +101,7 @@ void camera_fields(Fields& f, Session& session)
     f.other("camera", read, written,
             {.meaning = "the camera to use: the name of one of `cameras`, a side, or a camera object",
              .allowed = "name or object",
-             .standard = "`\"front\"`"});
+             .standard = "`\"front\"`, or for a stack of few slices `\"top\"` or `\"right\"`"});
 
     std::vector<std::string> names;
     for (const auto& [name, camera] : session.cameras) names.push_back(name);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/outliers.h"
 
 namespace shvr {
 namespace {
@@ -79,48 +79,6 @@ VolumeStatistics measure_integers(const VolumeSource& source)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Outliers are few: at most this share of the voxels at each end, or one of a thousand or more. And they are far: this
-/// many times the range of all other voxels away.
-constexpr double OUTLIER_SHARE = 1e-5;
-constexpr int64_t FEWEST_VOXELS = 1000;
-constexpr double OUTLIER_DISTANCE = 4.0;
-
-/// A histogram by the leading bits of the values as doubles: sign, exponent and 8 bits of the mantissa. Keys sort like
-/// values, so one pass finds quantiles to within 0.4 % of their size.
-class Sketch {
-public:
-    void add(double value) { ++counts_[key_of(value)]; }
-
-    /// The range of the values without `left_out` of them at each end, rounded outwards; there must be more values than
-    /// that.
-    ValueRange without(int64_t left_out) const
-    {
-        size_t lower = 0;
-        for (int64_t found = counts_[0]; found <= left_out; found += counts_[lower]) ++lower;
-        size_t upper = counts_.size() - 1;
-        for (int64_t found = counts_[upper]; found <= left_out; found += counts_[upper]) --upper;
-        return {value_of(lower, 0), value_of(upper, ~uint64_t{0} >> KEY_BITS)};
-    }
-
-private:
-    static constexpr int KEY_BITS = 20;
-    static constexpr uint64_t SIGN = uint64_t{1} << 63;
-
-    /// The bits of negative numbers sort in reverse.
-    static size_t key_of(double value)
-    {
-        const auto bits = std::bit_cast<uint64_t>(value);
-        return size_t(((bits & SIGN) != 0 ? ~bits : bits | SIGN) >> (64 - KEY_BITS));
-    }
-    static double value_of(size_t key, uint64_t rest)
-    {
-        const uint64_t ordered = uint64_t(key) << (64 - KEY_BITS) | rest;
-        return std::bit_cast<double>((ordered & SIGN) != 0 ? ordered & ~SIGN : ~ordered);
-    }
-
-    std::vector<int64_t> counts_ = std::vector<int64_t>(size_t{1} << KEY_BITS);
-};
-
 /// Calls `take(double)` for every finite voxel.
 template <class T, class Take>
 void for_each_finite(const VolumeSource& source, const Take& take)
@@ -137,30 +95,14 @@ void for_each_finite(const VolumeSource& source, const Take& take)
 
 /// Excludes outliers from the statistics' range, if there are any.
 template <class T>
-void find_bulk(const VolumeSource& source, const Sketch& sketch, int64_t finite, VolumeStatistics& statistics)
+void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
 {
-    const double most = std::numeric_limits<double>::max();
-    if (finite < FEWEST_VOXELS) return;
-    const ValueRange middle = sketch.without(std::max<int64_t>(1, int64_t(OUTLIER_SHARE * double(finite))));
-    const double lower = std::max(middle.lower, statistics.minimum);
-    const double upper = std::min(middle.upper, statistics.maximum);
-    const double reach = OUTLIER_DISTANCE * (upper - lower);
-    // If nearly all voxels are equal, the few others are the interesting ones.
-    if (!(reach > 0.0)) return;
-    const ValueRange fence{std::max(lower - reach, -most), std::min(upper + reach, most)};
-    if (fence.lower <= statistics.minimum && fence.upper >= statistics.maximum) return;
     // All integers have their own codes anyway.
     if (std::is_integral_v<T> && statistics.maximum - statistics.minimum <= 65535.0) return;
-    ValueRange bulk{statistics.maximum, statistics.minimum};
-    for_each_finite<T>(source, [&](double value) {
-        if (value < fence.lower || value > fence.upper) {
-            ++statistics.beyond_bulk;
-            return;
-        }
-        bulk.lower = std::min(bulk.lower, value);
-        bulk.upper = std::max(bulk.upper, value);
-    });
-    statistics.bulk = bulk;
+    const std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
+    if (!bulk) return;
+    statistics.bulk = bulk->range;
+    statistics.beyond_bulk = bulk->outliers;
 }
 
 template <class T>
@@ -171,12 +113,12 @@ VolumeStatistics measure_wide(const VolumeSource& source)
     ValueRange all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     long double sum = 0.0L;
     int64_t finite = 0;
-    Sketch sketch;
+    OutlierFinder outliers(voxel_count(source.info()));
     for_each_finite<T>(source, [&](double value) {
         all.lower = std::min(all.lower, value);
         all.upper = std::max(all.upper, value);
         sum += static_cast<long double>(value);
-        sketch.add(value);
+        outliers.add(value);
         ++finite;
     });
     statistics.not_finite = voxel_count(source.info()) - finite;
@@ -184,7 +126,7 @@ VolumeStatistics measure_wide(const VolumeSource& source)
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
     statistics.mean = double(sum / static_cast<long double>(finite));
-    find_bulk<T>(source, sketch, finite, statistics);
+    find_bulk<T>(outliers, statistics);
     const ValueRange range = statistics.range();
     for_each_finite<T>(source, [&](double value) { ++statistics.histogram[bin_of(range, value)]; });
     return statistics;
@@ -297,14 +239,17 @@ std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
 {
     std::vector<std::string> warnings;
     if (statistics.not_finite > 0) {
-        warnings.push_back(
-            sentence(statistics.not_finite, " voxels are NaN or infinite and are left out of every number"));
+        const bool is_one = statistics.not_finite == 1;
+        warnings.push_back(sentence(statistics.not_finite, is_one ? " voxel is" : " voxels are",
+                                    " NaN or infinite and ", is_one ? "is" : "are", " left out of every number"));
     }
     if (statistics.bulk) {
-        warnings.push_back(sentence(statistics.beyond_bulk, " voxels lie far outside ", statistics.bulk->lower, " to ",
-                                    statistics.bulk->upper, ", where all others are (they reach from ",
-                                    statistics.minimum, " to ", statistics.maximum,
-                                    "), and are shown as if they were at its ends"));
+        const bool is_one = statistics.beyond_bulk == 1;
+        warnings.push_back(sentence(
+            statistics.beyond_bulk, is_one ? " voxel lies" : " voxels lie", " far outside ", statistics.bulk->lower,
+            " to ", statistics.bulk->upper, ", where all others are (with ", is_one ? "it" : "them", " the range is ",
+            statistics.minimum, " to ", statistics.maximum, "), and ",
+            is_one ? "is shown as if it were" : "are shown as if they were", " at the nearer end of that range"));
     }
     if (statistics.measured_level > 0) {
         warnings.push_back(sentence("intensities were measured on level ", statistics.measured_level,

@@ -61,10 +61,10 @@ private:
 };
 
 /// One pass over the whole volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits
-/// need a second pass for the histogram, whose range the first one finds, and a third one if a few outliers are left
-/// out of that range. A volume without a finite voxel has minimum = maximum = mean = 0. Statistics that the source
-/// knows are not measured. If the volume has coarser levels and more than MAX_VOXELS_MEASURED voxels, the finest level
-/// with no more than that is measured instead, or else the coarsest (VolumeStatistics::measured_level).
+/// need a second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume
+/// without a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured. If the
+/// volume has coarser levels and more than MAX_VOXELS_MEASURED voxels, the finest level with no more than that is
+/// measured instead, or else the coarsest (VolumeStatistics::measured_level).
 VolumeStatistics measure(const VolumeSource& source);
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 

@@ -30,10 +30,24 @@ class Usage(CliTest):
                 self.check_refused(*arguments, status=2)
 
     def test_an_unknown_command_is_named_beside_the_known_ones(self):
-        self.check_refused("reander", "a", status=2, says=['"reander"', "render", "view"])
+        self.check_refused("reander", "a", status=2, says=['"reander" is an unknown command', "render", "view"])
+        self.check_refused("--sise", "1", status=2, says=['"--sise" is an unknown option', "see shvr --help"])
 
     def test_wrong_usage_names_the_help_of_its_command(self):
         self.check_refused("render", "a", "-o", "a.png", "--sise", "1", status=2, says=["--sise", "see shvr render --help"])
+
+    def test_an_empty_name_is_wrong_usage(self):
+        session, picture = self.write_session(), self.folder / "a.png"
+        for arguments, says in [(["info", ""], "argument 2, after info, is empty"), ([""], "argument 1 is empty"),
+                                (["render", "", "-o", picture], "argument 2, after render, is empty"),
+                                (["render", session, "-o", ""], "after -o, is empty"),
+                                (["render", session, "--output="], "--output is empty"),
+                                (["annotate", session, "--script", ""], "after --script, is empty"),
+                                (["import", session, ""], "argument 3, after"),
+                                (["phantom", "tubes", "-o", ""], "after -o, is empty"),
+                                (["evaluate", "--truth-mask", "", "--mask", picture], "after --truth-mask, is empty")]:
+            with self.subTest(arguments=arguments):
+                self.check_refused(*arguments, status=2, says=[says])
 
     def test_the_version_is_told(self):
         self.assertRegex(self.check("--version").stdout, r"^shvr \d+\.\d+\.\d+\n$")

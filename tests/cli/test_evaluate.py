@@ -91,6 +91,44 @@ class Evaluate(CliTest):
                                "--volume", self.session, "--slack", "0.5")
         self.assertEqual((result["segments"], result["topological_errors"]), ([0, 3], 3))
 
+    def test_two_ways_between_two_branches_are_no_error(self):
+        mask = self.mask("truth.mask", lambda x, y, z: 1)
+        trace = self.folder / "anastomosis.txt"
+        places = [(8, 12, 10), (20, 12, 10), (14, 18, 10), (2, 12, 10), (28, 12, 10)]
+        trace.write_text("".join("-v {}, {}, {}, 1, 1\n".format(*place) for place in places)
+                         + "".join(f"-l {a}, {b}, 1\n" for a, b in [(0, 1), (0, 2), (2, 1), (0, 3), (1, 4)]))
+        result = self.evaluate("--truth-mask", mask, "--truth-trace", trace, "--trace", trace, "--volume", self.session)
+        self.assertEqual((result["segments"], result["topological_errors"]), ([4, 4], 0))
+        self.assertEqual(result["centreline_most_um"], 0)
+
+    def test_the_greatest_distance_is_not_that_of_samples(self):
+        mask = self.mask("truth.mask", lambda x, y, z: 1)
+        truth, trace = self.folder / "truth.txt", self.folder / "trace.txt"
+        truth.write_text("-v 4, 12, 10, 1, 1\n-v 28, 12, 10, 1, 1\n-l 0, 1, 1\n")
+        trace.write_text("-v 4, 12, 10, 1, 1\n-v 9, 15, 14, 1, 1\n-v 28, 12, 10, 1, 1\n-l 0, 1, 1\n-l 1, 2, 1\n")
+        result = self.evaluate("--truth-mask", mask, "--truth-trace", truth, "--trace", trace, "--volume", self.session)
+        self.assertAlmostEqual(result["centreline_most_um"], 5000, places=5)  # 3, 4, 5 voxels of 1 mm
+
+    def test_groups_that_do_not_match_are_said_and_can_be_matched(self):
+        truth = self.mask("truth.mask", lambda x, y, z: 255 if x < 8 else 0)  # as other programs write masks
+        mine = self.mask("mine.mask", lambda x, y, z: 1 if x < 8 else 2 if x < 16 else 0)
+        voxels = 8 * self.SIZE[1] * self.SIZE[2]
+        for arguments in [(), ("--volume", self.session)]:
+            told = ["evaluate", "--truth-mask", truth, "--mask", mine, *arguments]
+            result = self.check_json(*told)
+            self.assertAlmostEqual(result["dice"], 2 / 3)
+            self.assertEqual(result["dice_by_group"], {"1": 0, "2": 0, "255": 0})
+            self.assertEqual(result["voxels_by_group"],
+                             {"truth": {"255": voxels}, "mask": {"1": voxels, "2": voxels}})
+            self.assertEqual(len(result["warnings"]), 1)
+            for words in ["truth.mask: holds group 255, but", "mine.mask holds groups 1 and 2", "--truth-group 255=1"]:
+                self.assertIn(words, result["warnings"][0])
+            self.assertEqual(self.check(*told).stderr, f"warning: {result['warnings'][0]}\n")
+            result = self.check_json(*told, "--truth-group", "255=1")
+            self.assertEqual((result["dice_by_group"], result["warnings"]), ({"1": 1, "2": 0}, []))
+        for text in ["255", "0=1", "1=256", "=", "a=b", "1=2=3"]:
+            self.check_refused(*told, "--truth-group", text, status=2, says=["--truth-group", text, "255=1"])
+
     def test_what_is_missing_or_does_not_fit_is_said(self):
         mask = self.mask("a.mask", lambda x, y, z: 1)
         trace = self.trace("a.txt", self.TRUTH)

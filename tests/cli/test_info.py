@@ -1,4 +1,4 @@
-"""shvr info: descriptions of files."""
+"""shvr info: what a file holds."""
 import unittest
 
 from harness import CliTest, Volume, run
@@ -85,7 +85,13 @@ class Info(CliTest):
         info = self.check_json("info", Volume((20, 20, 20), values, voxel_type="float").write(self.folder))
         self.assertGreater(info["max"], 9e29)
         self.assertEqual((info["window"]["lower"], round(info["window"]["upper"], 9)), (0.0, 99.0))
-        self.assertTrue(any(warning.startswith("1 voxels lie far outside 0 to 99,") for warning in info["warnings"]))
+        self.assertTrue(any(warning.startswith("1 voxel lies far outside 0 to 99,") for warning in info["warnings"]))
+
+    def test_settings_of_a_bare_volume_warn_of_nothing_else(self):
+        header = Volume.noise((5, 4, 3), seed=1).write(self.folder)
+        plain = self.check_json("info", header)
+        for arguments in [("--channel", "1"), ("--set", "render.step_voxels=0.5")]:
+            self.assertEqual(self.check_json("info", header, *arguments)["warnings"], plain["warnings"])
 
     def test_people_read_aligned_lines(self):
         header = Volume.noise((20, 17, 13), seed=1, spacing=(0.5, 0.5, 2.0)).write(self.folder)

@@ -1,4 +1,4 @@
-"""shvr label: components of whole volumes, checked in plain Python and with python3-zarr."""
+"""shvr label: connected components of whole volumes, compared with a breadth-first search and read by python3-zarr."""
 import itertools
 import json
 import random
@@ -11,8 +11,8 @@ from test_import import python_with_zarr
 
 KEYS = ["components", "foreground_voxels", "largest_voxels", "seconds", "kept", "largest", "output", "type", "peak_bytes"]
 
-# Runs in an interpreter that has python3-zarr: checks a label image's metadata and each level against the one before by
-# the rule: the most frequent label; of equally frequent ones not 0, and of those the smallest.
+# Runs in an interpreter that has python3-zarr. Prints a label image's metadata, and the coarse voxels that break the rule
+# of downscaling: the most frequent label of the finer level; among equally frequent labels the smallest other than 0.
 ZARR = """
 import json, sys
 import numpy, zarr
@@ -59,7 +59,7 @@ class Label(CliTest):
         return self.check_json("label", self.header, *arguments)
 
     def expected(self, threshold, connectivity):
-        """Labels in the order of first voxels, x fastest."""
+        """The label of each voxel: components are numbered by their first voxel, x fastest."""
         voxels = [voxel[::-1] for voxel in itertools.product(*map(range, self.SIZE[::-1]))]
         above = {voxel for voxel in voxels if self.volume.values[self.volume.index(voxel)] >= threshold}
         labels, count = dict.fromkeys(voxels, 0), 0
@@ -102,7 +102,7 @@ class Label(CliTest):
             info = self.check_json("info", path)
             self.assertEqual((info["size"], info["type"]), (list(self.SIZE), "uint8"))
             self.assertEqual([round(s, 6) for s in info["spacing"]], list(self.SPACING))
-            # A threshold of 1 selects all components.
+            # Labelling the labels again, from 1 on, finds the same foreground.
             again = self.check_json("label", path, "--threshold", 1, "-o", self.folder / "again.nrrd")
             self.assertEqual(again["foreground_voxels"], len(expected) - expected.count(0))
             dice = self.check_json("evaluate", "--truth-mask", self.folder / "a.mask", "--mask", path, "--volume",
@@ -135,7 +135,7 @@ class Label(CliTest):
         self.assertEqual(self.check_json("info", project)["size"], list(self.SIZE))
 
     def write_offsets(self, path, offsets):
-        """As in the thesis, for a volume of 8 bits."""
+        """An offset file of a volume of 8 bits: a signed 16-bit number for each voxel."""
         path.write_bytes(struct.pack(f"<{len(offsets)}h", *offsets))
 
     def test_density_offsets_are_added(self):
@@ -159,7 +159,7 @@ class Label(CliTest):
         self.assertEqual(result["voxels_with_offset"], sum(offset != 0 for offset in offsets))
         letter = {"uint8": "B", "uint16": "H"}[result["type"]]
         self.assertTrue(labels.read_bytes().endswith(struct.pack(f"<{len(expected)}{letter}", *expected)))
-        # A volume given directly has none.
+        # The volume on its own, without the session, has no offsets.
         self.assertEqual(self.label("--threshold", 200, "--connectivity", 26)["components"], max(bare))
         (self.folder / "raised.offset").write_bytes(bytes(9))
         self.check_refused(*arguments, says=["raised.offset", "holds 9 bytes"])

@@ -1,4 +1,4 @@
-"""Volumes larger than every budget: a sparse OME-Zarr of 4096^3 voxels, and a procedural volume of 65536^3."""
+"""Volumes that exceed every budget: a sparse OME-Zarr of 4096^3 voxels, and a procedural volume of 65536^3."""
 import json
 import os
 import re
@@ -10,15 +10,15 @@ from harness import ENVIRONMENT, SHVR, TIMEOUT_S, CliTest, Volume
 
 SIDE = 4096
 CHUNK = 64
-LEVELS = 8  # down to 32 voxels a side
+LEVELS = 8  # the coarsest has 32 voxels per side
 MARK = 200
 BUDGET_MIB = 64
-SIZE = 128  # pixels a side
+SIZE = 128  # pixels per side
 RED, WHITE = (255, 0, 0), (255, 255, 255)
 
 
 def write_sparse(folder):
-    """Marks of 64^3 voxels in the first and the last corner; all other chunks are missing, so 0, the fill value."""
+    """Cubes of 64^3 voxels in the first and the last corner. All other chunks are missing: they have the fill value, 0."""
     multiscales = [{"version": "0.4", "name": "sparse",
                     "axes": [{"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"],
                     "datasets": [{"path": str(level), "coordinateTransformations": [
@@ -38,10 +38,10 @@ def write_sparse(folder):
             "fill_value": 0, "order": "C", "filters": None, "dimension_separator": "/"}))
         for last in (False, True):
             corner = (side - 1) // CHUNK if last else 0
-            begin = side - mark - corner * CHUNK if last else 0  # within its chunk
+            begin = side - mark - corner * CHUNK if last else 0  # relative to its chunk
             chunk = array / str(corner) / str(corner) / str(corner)
             chunk.parent.mkdir(parents=True, exist_ok=True)
-            # On coarse levels both corners are in one chunk.
+            # On coarse levels, one chunk holds both corners.
             voxels = bytearray(chunk.read_bytes()) if chunk.exists() else bytearray(CHUNK ** 3)
             for z in range(begin, begin + mark):
                 for y in range(begin, begin + mark):
@@ -52,7 +52,7 @@ def write_sparse(folder):
 
 
 def read_png(path):
-    """Rows of RGBA pixels; of 8-bit RGBA files whose rows are filtered in any of PNG's five ways."""
+    """Rows of RGBA pixels of an 8-bit RGBA file. Rows may have any of the five filter types of PNG."""
     data = path.read_bytes()
     width, height = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
     packed, at = b"", 8
@@ -88,7 +88,7 @@ def session_of(volume, eye, target, height):
 
 class Large(CliTest):
     def render(self, session):
-        """The object of --json, the picture, and the largest resident set in bytes."""
+        """The JSON object, the picture, and the peak of resident memory in bytes."""
         path = self.write_json("session.json", session)
         picture = self.folder / "a.png"
         with subprocess.Popen([SHVR, "render", path, "-o", picture, "--camera", "corner", "--budget-device",
@@ -101,7 +101,7 @@ class Large(CliTest):
         return json.loads(out), read_png(picture), 1024 * usage.ru_maxrss
 
     def check_bytes(self, result, resident):
-        """The program's own accounting, and its memory beyond that of an almost empty picture."""
+        """The memory that the program reports, and its resident memory beyond that of a tiny volume's picture."""
         budget = BUDGET_MIB << 20
         self.assertLessEqual(result["bytes"]["peak_device"], budget)
         self.assertLessEqual(result["bytes"]["peak_host"], budget)
@@ -110,11 +110,12 @@ class Large(CliTest):
         self.assertLessEqual(resident - base, 1.05 * 2 * budget)
 
     def assert_color(self, color, expected, where):
-        """Rays end when they are nearly opaque."""
+        """Allows for rays that end as soon as they are nearly opaque."""
         self.assertLessEqual(max(abs(one - other) for one, other in zip(color, expected)), 4, (color, expected, where))
 
     def check_corner(self, pixels):
-        """A pixel is a voxel and the picture's centre is the volume's corner: the mark fills its lower left quarter."""
+        """Pixels are as large as voxels, and the centre of the picture is a corner of the volume, so that the cube in that
+        corner fills the lower left quarter."""
         half = SIZE // 2
         for y, row in enumerate(pixels):
             for x, color in enumerate(row):
@@ -123,7 +124,7 @@ class Large(CliTest):
 
     def test_marks_in_the_corners_of_a_sparse_4096(self):
         sparse = write_sparse(self.folder / "sparse.zarr")
-        # From the front, through all of the empty volume.
+        # From the front, so that rays cross the whole empty volume.
         far = session_of({"path": str(sparse)}, [SIDE, -200, SIDE], [SIDE, SIDE, SIDE], SIZE)
         result, pixels, resident = self.render(far)
         self.assertIs(result["complete"], True)
@@ -141,14 +142,14 @@ class Large(CliTest):
         self.assertGreaterEqual(result["bricks"]["finest_level"], 5)
         last = SIZE - 1
         colored = {(x, y) for y, row in enumerate(pixels) for x, color in enumerate(row) if color != WHITE}
-        self.assertIn((0, last), colored)  # the first corner, below on the left
+        self.assertIn((0, last), colored)  # the first corner, at the bottom left
         self.assertIn((last, 0), colored)
         self.assertEqual([(x, y) for x, y in colored if x + last - y > 6 and last - x + y > 6], [])
 
     def test_a_procedural_65536(self):
         volume = {"procedural": "sphere", "size": [65536] * 3}
-        # The upper end of the visible sphere: where its density, a ramp of 125 +- 1000 / 65536 a voxel around a radius
-        # of 0.35, falls to 60.
+        # The top of the visible sphere, where the intensity falls to 60: it is 125 at a radius of 0.35 of the side, and
+        # changes by 1000 / 65536 per voxel.
         top = 32768 + 0.35 * 65536 + (125 - 60) * 65.536
         result, pixels, resident = self.render(session_of(volume, [32768, 0, top], [32768, 32768, top], 4096))
         self.assertIs(result["complete"], True)
@@ -158,10 +159,10 @@ class Large(CliTest):
 
 
 class Plain(CliTest):
-    """A file without levels that is larger than the device's budget."""
+    """A file without levels that does not fit into the device budget."""
 
     def write_plain(self):
-        """64 MiB of zeros in a sparse file."""
+        """64 MiB of zeros, as a sparse file."""
         header = Volume((8, 8, 8), bytes(512)).write(self.folder, "plain")
         header.write_text(header.read_text().replace("sizes: 8 8 8", "sizes: 512 512 256"))
         os.truncate(self.folder / "plain.raw", 512 * 512 * 256)
@@ -170,7 +171,7 @@ class Plain(CliTest):
     def test_levels_that_do_not_fit_are_refused_and_both_remedies_work(self):
         plain, project, picture = self.write_plain(), self.folder / "p.zarr", self.folder / "a.png"
         draw = ["-o", picture, "--size", "32x32", "--budget-device", "64", "--budget-host"]
-        # (1/8 + 1/64 + ...) of 64 MiB, and two slices of 512 x 512.
+        # Coarser levels take (1/8 + 1/64 + ...) of 64 MiB, and building them takes two slices of 512 x 512 voxels.
         said = self.check_refused("render", plain, *draw, "32",
                                   says=["plain", "takes 10 MiB; expected at most 8 MiB, a quarter of --budget-host"])
         enough = re.search(r"use --budget-host (\d+), or make a project with `shvr import FILE PROJECT`", said)[1]

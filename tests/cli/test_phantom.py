@@ -1,4 +1,4 @@
-"""shvr phantom: synthetic volumes as files."""
+"""shvr phantom: synthetic volumes, written as files."""
 import json
 import struct
 import unittest
@@ -47,7 +47,7 @@ class Phantom(CliTest):
 
 
 class LinearPictures(CliTest):
-    """shvr render -o OUT.pfm (belongs into test_render.py)."""
+    """shvr render -o OUT.pfm: pictures of linear light, whose pixels have a closed form."""
 
     def test_linear_light_in_floats_from_the_bottom(self):
         session = self.write_session(render={"size": [3, 2], "background": "#bc00ff"},

@@ -157,5 +157,14 @@ class Trace(CliTest):
         self.assertEqual((self.folder / "veins.swc").read_bytes(), before)
 
 
+    def test_a_node_far_outside_the_volume_is_refused(self):
+        self.annotate([node(-3, 12, 12), node(24, 24, 24), {"op": "move", "to": [24, 24, 25.4]}, expect(2, 1)])
+        script = self.write_script("far.jsonl", [node(5, 5, 5), node(-30, 12, 12)])
+        self.check_refused("annotate", self.session, "--script", script, "--quiet",
+                           says=["far.jsonl:2: the node at -30 12 12 is 30 voxel widths outside the volume of 24 x 24 x 24"])
+        script = self.write_script("moved.jsonl", [{"op": "select", "node": 0}, {"op": "move", "to": [5, 5, 1e6]}])
+        self.check_refused("annotate", self.session, "--script", script, "--quiet", says=["moved.jsonl:2", "outside the volume"])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -60,7 +60,8 @@ public:
         const ProbeSettings& probe = opened.session.probe;
         TraceEffect effect = in_words([&] {
             const BrushSettings& brush = probe.brush;
-            return effect_of(op, trace(), {opened.source->info().spacing, brush.radius_voxels, brush.group});
+            const VolumeInfo& volume = opened.source->info();
+            return effect_of(op, trace(), {volume.spacing, brush.radius_voxels, brush.group, volume.size});
         });
         if (effect.selection)
             opened.annotator->work().select_trace(std::move(*effect.selection));

@@ -31,8 +31,9 @@ Described describe(const InfoCommandOptions& options)
     const bool is_bare = is_there && !is_project && path.extension() != ".json";
     OpenedSession opened;
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
-    if (is_bare && options.common.settings.empty()) {
-        opened.source = open_volume(path);
+    if (is_bare) {
+        const std::vector<std::string>& settings = options.common.settings;
+        opened.source = settings.empty() ? open_volume(path) : open_unmeasured_session(path, settings).source;
         opened.statistics = measure(*opened.source);
         opened.warnings = warnings_of(opened.statistics);
     } else if (is_bare) {

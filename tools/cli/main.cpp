@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <string_view>
 
 #include "engine/base/text.h"
 #include "tools/cli/cli.h"
@@ -21,12 +23,30 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
     return text + "; see " + command + " --help";
 }
 
-std::string unknown_command(const CLI::App& program, const std::string& name)
+/// What the first argument is instead of a command.
+std::string no_command(const CLI::App& program, const std::string& found)
 {
     std::string known;
     for (const CLI::App* command : program.get_subcommands({}))
         known += (known.empty() ? "" : ", ") + command->get_name();
-    return shvr::in_quotes(name) + " is no command of shvr; expected one of: " + known;
+    return shvr::in_quotes(found) + (found.starts_with('-') ? " is an unknown option" : " is an unknown command") +
+           "; expected one of " + known + "; see shvr --help";
+}
+
+/// No option and no name may be empty: a script with an unset variable would otherwise read or write something else.
+void refuse_empty(int argc, char** argv)
+{
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i], before = i > 1 ? argv[i - 1] : "";
+        const bool is_empty_option =
+            argument.starts_with("--") && argument.find('=') == argument.size() - 1;  // --output=
+        if (!argument.empty() && !is_empty_option) continue;
+        if (is_empty_option)
+            throw shvr::UsageError(
+                shvr::sentence(argument.substr(0, argument.size() - 1), " is empty; expected a value"));
+        throw shvr::UsageError(shvr::sentence("argument ", i, before.empty() ? "" : ", after ", before,
+                                              before.empty() ? "" : ",", " is empty; expected a name or a value"));
+    }
 }
 
 int run(int argc, char** argv)
@@ -46,6 +66,7 @@ int run(int argc, char** argv)
     shvr::cli::add_profile(program);
     shvr::cli::add_phantom(program);
     shvr::cli::add_view(program);
+    refuse_empty(argc, argv);
     try {
         char view[] = "view";
         char* alone[] = {argv[0], view};
@@ -56,8 +77,7 @@ int run(int argc, char** argv)
     } catch (const CLI::Success& asked) {  // --help, --version
         return program.exit(asked);
     } catch (const CLI::ParseError& error) {
-        if (argv[1][0] != '-' && program.get_subcommands().empty())
-            throw shvr::UsageError(unknown_command(program, argv[1]));
+        if (program.get_subcommands().empty()) throw shvr::UsageError(no_command(program, argv[1]));
         throw shvr::UsageError(usage_error(program, error));
     }
     return Exit::done;

@@ -50,7 +50,11 @@ TraceCourse::TraceCourse(const TraceGraph& trace) : segments_(segments_of(trace)
         }
         lengths_.push_back(along);
     }
-    longest_half_ *= 1.0 + 1e-9;  // positions are rounded
+    // Positions are rounded.
+    longest_half_ *= 1.0 + 1e-9;
+    for (const Piece& piece : pieces_)
+        for (int axis = 0; axis < 3; ++axis)
+            rounding_ = std::max({rounding_, 1e-13 * std::abs(piece.a[axis]), 1e-13 * std::abs(piece.b[axis])});
 }
 
 TraceCourse::Foot TraceCourse::foot_on(const Piece& piece, const glm::dvec3& position)
@@ -64,12 +68,12 @@ TraceCourse::Foot TraceCourse::foot_on(const Piece& piece, const glm::dvec3& pos
 std::vector<TraceCourse::Near> TraceCourse::near(const TraceSample& sample, double slack) const
 {
     std::map<size_t, Near> nearest;
-    const double reach = sample.radius + largest_radius_ + slack;
+    const double reach = sample.radius + largest_radius_ + slack + rounding_;
     for (const uint32_t number : middles_.within(sample.position, reach + longest_half_)) {
         const Piece& piece = pieces_[number];
         const Foot foot = foot_on(piece, sample.position);
         const double radius = (1.0 - foot.t) * piece.radius_a + foot.t * piece.radius_b;
-        if (foot.distance > sample.radius + radius + slack) continue;
+        if (foot.distance > sample.radius + radius + slack + rounding_) continue;
         const double along = piece.along + foot.t * glm::length(piece.b - piece.a);
         const auto [found, is_new] = nearest.try_emplace(piece.segment, Near{piece.segment, foot.distance, along});
         if (!is_new && foot.distance < found->second.distance) found->second = {piece.segment, foot.distance, along};
@@ -79,14 +83,20 @@ std::vector<TraceCourse::Near> TraceCourse::near(const TraceSample& sample, doub
     return all;
 }
 
-double TraceCourse::distance_to(const glm::dvec3& position) const
+std::optional<TraceCourse::Nearest> TraceCourse::nearest_to(const glm::dvec3& position) const
 {
     const std::optional<uint32_t> first = middles_.nearest(position);
-    if (!first) return std::numeric_limits<double>::infinity();
-    double least = foot_on(pieces_[*first], position).distance;
-    for (const uint32_t number : middles_.within(position, least + longest_half_))
-        least = std::min(least, foot_on(pieces_[number], position).distance);
-    return least;
+    if (!first) return std::nullopt;
+    Nearest nearest{*first, distance_to_piece(*first, position)};
+    for (const uint32_t number : middles_.within(position, nearest.distance + longest_half_))
+        if (const double distance = distance_to_piece(number, position); distance < nearest.distance)
+            nearest = {number, distance};
+    return nearest;
+}
+
+double TraceCourse::distance_to_piece(size_t piece, const glm::dvec3& position) const
+{
+    return foot_on(pieces_[piece], position).distance;
 }
 
 }  // namespace shvr

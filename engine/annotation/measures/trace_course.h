@@ -3,6 +3,7 @@
 // of the pieces' midpoints gives candidates within half of the longest piece's length, and distances are to the pieces.
 // Any thread may query.
 
+#include <optional>
 #include <vector>
 
 #include "engine/annotation/trace/trace_index.h"
@@ -31,10 +32,18 @@ public:
         double distance;
         double along;  ///< distance from the start of the segment
     };
-    /// The segments within `slack` of touching a ball, each at its nearest position; ascending.
+    /// The segments within `slack` of touching a ball (or of touching it but for rounding), each at its nearest
+    /// position; ascending.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
-    /// Distance to the nearest position of any segment; infinite if there is none.
-    double distance_to(const glm::dvec3& position) const;
+    struct Nearest {
+        size_t piece;  ///< a straight part of a segment
+        double distance;
+    };
+    /// The nearest position of any segment; nothing if there is none.
+    std::optional<Nearest> nearest_to(const glm::dvec3& position) const;
+    double distance_to_piece(size_t piece, const glm::dvec3& position) const;
+    /// How far rounding may take a distance from the true one.
+    double rounding() const { return rounding_; }
 
 private:
     struct Piece {
@@ -53,6 +62,7 @@ private:
     std::vector<Piece> pieces_;
     TraceIndex middles_;  ///< numbers are places in `pieces_`
     double longest_half_ = 0.0, largest_radius_ = 0.0;
+    double rounding_ = 0.0;
 };
 
 }  // namespace shvr

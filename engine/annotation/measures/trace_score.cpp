@@ -60,6 +60,8 @@ Dice DiceCounter::result() const
     for (size_t group = 1; group < 256; ++group) {
         const int64_t sum = in_a_[group] + in_b_[group];
         painted += sum;
+        if (in_a_[group] > 0) dice.voxels_in_a[uint8_t(group)] = in_a_[group];
+        if (in_b_[group] > 0) dice.voxels_in_b[uint8_t(group)] = in_b_[group];
         if (sum > 0) dice.by_group[uint8_t(group)] = 2.0 * double(in_both_[group]) / double(sum);
     }
     if (painted > 0) dice.painted = 2.0 * double(painted_in_both_) / double(painted);

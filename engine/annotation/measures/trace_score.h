@@ -17,6 +17,7 @@ namespace shvr {
 struct Dice {
     std::optional<double> painted;       ///< 2 |A and B| / (|A| + |B|) of all that is painted; nothing where nothing is
     std::map<uint8_t, double> by_group;  ///< groups that are in either
+    std::map<uint8_t, int64_t> voxels_in_a, voxels_in_b;  ///< of each group that is there
 };
 /// Counts pairs of voxels, a batch at a time.
 class DiceCounter {
@@ -44,16 +45,20 @@ BallScores score_nodes(const TraceGraph& trace, const Mask& truth, const glm::dv
 /// A ball at the middle of each, with its radius there.
 BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 
-/// A position of a trace is *near* one of the truth where their balls are within `slack` of touching.
+/// A position of a trace is *near* one of the truth where their balls are within `slack` of touching. Branches and ends
+/// of the truth are paired with nodes of the trace near them (each with its own, branches with branches first, the
+/// nearest first), and the trace is cut there into segments. Both are multigraphs: a segment of the trace *stands for*
+/// one of the truth if their ends are paired and each of them is near the other for all of its length; each stands for
+/// at most one, and if several join the same two nodes, those with the smallest mean squared distance come first.
 struct TraceComparison {
-    /// Of the truth's segments. Found: both ends have a node of the trace near them (each end its own, the nearest
-    /// first, branches before others), and the paths between these two that stay near the segment and pass no other
-    /// such node pass all of it. A segment that is traced in part is not found.
+    /// Of the truth's segments. Found: one stands for it; or both ends are paired, and those paths between the two
+    /// nodes that stay near the segment, pass no other such node and stand for nothing else pass all of it. A segment
+    /// that is traced in part is not found.
     int64_t segments_found = 0, segments_total = 0;
-    /// Segments of the trace (cut at those nodes) that leave the truth or go over to a segment that does not begin
-    /// there.
+    /// Segments of the trace that leave the truth or go over to a segment that does not begin there.
     int64_t wrong = 0;
-    /// Segments that follow a part of the truth that another segment follows, too.
+    /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
+    /// the surroundings of their ends or, where both join the same two nodes, for half of what one of them follows.
     int64_t doubled = 0;
     /// Ends of the trace near a branch of the truth that is traced, but not joined to it.
     int64_t gaps = 0;

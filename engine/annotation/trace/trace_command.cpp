@@ -4,6 +4,7 @@
 
 #include "engine/annotation/trace/trace_edit.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace shvr {
 
@@ -17,6 +18,7 @@ public:
     {
         const TraceNode node{at(op.at), length(op.radius_voxels.value_or(defaults_.radius_voxels)),
                              op.group.value_or(defaults_.group)};
+        check_place(op.at, node.radius);
         return {sentence("node, group ", int(node.group)), add_node(trace_, node), {}};
     }
     TraceEffect operator()(const SelectOp& op) const
@@ -53,7 +55,12 @@ public:
         }
         return {"link", link_selected(trace_, *to), {}};
     }
-    TraceEffect operator()(const MoveOp& op) const { return {"move", move_selected(trace_, at(op.to)), {}}; }
+    TraceEffect operator()(const MoveOp& op) const
+    {
+        const std::optional<uint32_t> moved = trace_.selection().node();
+        if (moved) check_place(op.to, trace_.node(*moved).radius);
+        return {"move", move_selected(trace_, at(op.to)), {}};
+    }
     TraceEffect operator()(const DeleteOp&) const { return {"delete", delete_selected(trace_), {}}; }
     TraceEffect operator()(const GroupOp& op) const
     {
@@ -73,6 +80,17 @@ public:
 private:
     glm::dvec3 at(const glm::dvec3& voxel) const { return voxel * defaults_.spacing; }
     double length(double voxels) const { return voxels * defaults_.spacing.x; }
+    /// Tubes may leave the volume, but what lies farther outside is a mistake in the coordinates.
+    void check_place(const glm::dvec3& voxel, double radius) const
+    {
+        const glm::dvec3 size(defaults_.size), spacing = defaults_.spacing;
+        const double outside = glm::length((voxel - glm::clamp(voxel, glm::dvec3(0.0), size)) * spacing);
+        const double allowed = radius + std::max({spacing.x, spacing.y, spacing.z});
+        if (defaults_.size == Size3(0) || outside <= allowed) return;
+        fail("the node at ", digits_of(voxel), " is ", outside / length(1.0), " voxel widths outside the volume of ",
+             defaults_.size.x, " x ", defaults_.size.y, " x ", defaults_.size.z, " voxels; expected at most ",
+             allowed / length(1.0), ", its radius and the longest side of a voxel");
+    }
     void check_distance(const char* what, double away, const std::optional<double>& within_voxels) const
     {
         if (within_voxels && away > length(*within_voxels))

@@ -7,6 +7,7 @@
 
 #include "engine/annotation/trace/trace_op.h"
 #include "engine/annotation/trace/tracing.h"
+#include "engine/volume/volume.h"
 
 namespace shvr {
 
@@ -15,6 +16,7 @@ struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< of the volume
     double radius_voxels = 6.0;  ///< the probe's
     uint8_t group = 1;           ///< that the probe paints
+    Size3 size{0};               ///< of the volume, in voxels; 0: unknown, and nodes may lie anywhere
 };
 
 struct TraceEffect {
@@ -23,7 +25,8 @@ struct TraceEffect {
     std::optional<TraceSelection> selection;  ///< the new selection
 };
 
-/// Fails if the operation cannot be carried out, or its target is farther away than it allows.
+/// Fails if the operation cannot be carried out, if its target is farther away than it allows, or if it would put a
+/// node farther outside the volume than its radius and the longest side of a voxel.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
 }  // namespace shvr

@@ -346,3 +346,33 @@ TEST_CASE("a side view turns to the viewer's right, tilts upwards and comes clos
           doctest::Approx(0.5 * glm::distance(far_camera.eye, far_camera.target)).epsilon(1e-13));
     CHECK(camera_of(far_camera, volume) == far_camera);
 }
+
+TEST_CASE("a stack of few slices is looked at from its largest face, and everything else from the front")
+{
+    struct Case {
+        glm::dvec3 extent;
+        const char* side;
+    };
+    for (const Case& c : {Case{{512, 512, 512}, "front"},
+                          {{512, 512, 256}, "front"},  // half of the largest face is enough
+                          {{512, 512, 255}, "top"},
+                          {{512, 512, 1}, "top"},
+                          {{512, 1, 512}, "front"},
+                          {{1, 512, 512}, "right"},
+                          {{255, 512, 512}, "right"},
+                          {{168, 165, 641}, "front"},
+                          {{641, 168, 165}, "front"},
+                          {{165, 641, 168}, "right"},  // otherwise seen from its end
+                          {{100, 1000, 100}, "right"},
+                          {{100, 1000, 99}, "top"}}) {
+        CAPTURE(c.extent.x);
+        CAPTURE(c.extent.y);
+        CAPTURE(c.extent.z);
+        VolumeInfo volume;
+        volume.size = {8, 4, 2};
+        volume.spacing = c.extent / glm::dvec3(volume.size);
+        CHECK(side_of_largest_face(volume) == c.side);
+        volume.spacing *= 0x1p-40;
+        CHECK(side_of_largest_face(volume) == c.side);
+    }
+}

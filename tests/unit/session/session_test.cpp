@@ -528,6 +528,13 @@ TEST_CASE("cameras are found by name, by side and as JSON")
     CHECK_THROWS_WITH(camera_named(session, R"({"side": "back", "zoom": "x"})", volume),
                       "camera: key zoom is \"x\"; expected a number above 0 (0.001 ... 1000)");
     CHECK_THROWS_AS(camera_named(session, "{", volume), Error);
+    // Nobody chose: the side with the largest face, unless the session says what "front" means.
+    VolumeInfo slices = volume;
+    slices.spacing = {1, 1, 0.1};
+    CHECK(camera_named(session, "", slices) == camera_looking("bottom", slices));
+    session.cameras.erase("front");
+    CHECK(camera_named(session, "", slices) == camera_looking("top", slices));
+    CHECK(camera_named(session, "front", slices) == camera_looking("front", slices));
     for (const std::string& side : camera_sides())
         CHECK(parse(with("\"camera\": \"" + side + "\"")).camera_name == side);
 }

@@ -16,6 +16,7 @@
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
 
@@ -260,4 +261,33 @@ TEST_CASE("the selected node is marked yellow where it is or where it is dragged
     CHECK(dragged.lines[0].to == work.trace().node(1).position);
     work.perform(SelectSegmentOp{});
     CHECK(trace_marks(work.trace(), std::nullopt, 1.0).lines.size() == 2);
+}
+
+TEST_CASE("a node may lie outside the volume by its radius and a voxel, and is refused beyond")
+{
+    Tracing work;
+    const auto said = [&](const TraceOp& op) {
+        TraceDefaults defaults = DEFAULTS;
+        defaults.size = {10, 20, 30};
+        return error_of([&] { static_cast<void>(effect_of(op, work.trace(), defaults)); });
+    };
+    // Spacing 2, 3, 4; the probe's radius is 5 voxels of 2, and the longest side of a voxel 4.
+    for (const glm::dvec3& inside :
+         {glm::dvec3{0, 0, 0}, {10, 20, 30}, {-7, 10, 10}, {17, 10, 10}, {5, -4.6, 10}, {5, 10, 33.5}})
+        CHECK(said(work.node_at(inside)) == "");
+    for (const glm::dvec3& outside :
+         {glm::dvec3{-7.1, 10, 10}, {17.1, 10, 10}, {5, -4.7, 10}, {5, 10, 33.6}, {-6, -4, 10}, {1e300, 0, 0}})
+        CHECK(said(work.node_at(outside)).find("voxel widths outside the volume of 10 x 20 x 30 voxels") !=
+              std::string::npos);
+    CHECK(said(work.node_at({-9, 10, 10})) ==
+          "the node at -9 10 10 is 9 voxel widths outside the volume of 10 x 20 x 30 voxels; expected at most 7, its "
+          "radius and the longest side of a voxel");
+    NodeOp thin = work.node_at({-3, 0, 0});
+    thin.radius_voxels = 0.5;
+    CHECK(said(thin) != "");
+    work.perform(work.node_at({5, 10, 10}));
+    CHECK(said(MoveOp{{-7, 10, 10}}) == "");
+    CHECK(said(MoveOp{{-7.1, 10, 10}}) != "");
+    // Without a volume, nodes may lie anywhere.
+    work.perform(work.node_at({1e6, 0, 0}));
 }

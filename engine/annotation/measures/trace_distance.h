@@ -1,0 +1,19 @@
+#pragma once
+// How far a trace lies from the truth, along its length. Any thread may call this.
+
+#include <optional>
+
+#include "engine/annotation/measures/trace_course.h"
+
+namespace shvr {
+
+/// Of the distance from the trace's positions to the nearest position of the truth.
+struct TraceDistance {
+    /// From 16 samples of each internode; exact where the nearest internode of the truth does not change between them.
+    double root_mean_square = 0.0;
+    double greatest = 0.0;  ///< at most one part in 10^9 too small, and rounding
+};
+/// Nothing if the trace has no length or the truth no internodes.
+std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth);
+
+}  // namespace shvr
