@@ -160,7 +160,12 @@ void Scene::make_room(uint64_t bytes)
     occlusion_.clear();
     volume_.reset();
     mask_.reset();
-    load(bytes);
+    try {
+        load(bytes);
+    } catch (const gpu::BudgetError&) {
+        load(0);  // the scene stays, without what it has no room for
+        throw;
+    }
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)

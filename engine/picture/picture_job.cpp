@@ -178,15 +178,20 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
+/// Loads the bricks that light comes from, as far as there is room.
+void PictureJob::load_around()
+{
+    if (pane().shot.is_slice || !scene().has_occlusion(look_)) return;
+    scene().want_occlusion(look_);
+    scene().advance(true);
+}
+
 /// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
 void PictureJob::renew_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     if (pane().shot.is_slice) return;
-    if (scene().has_occlusion(look_)) {
-        scene().want_occlusion(look_);
-        scene().advance(true);
-    }
+    load_around();
     while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST))
         append(picture_.passes,
                renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
@@ -235,6 +240,7 @@ void PictureJob::draw_completely(const PicturePart& part)
         renew_occlusion();
         passes = draw(part);
         scene().advance(true);
+        load_around();  // bricks seen again may have been lit while there was no room for those around them
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) break;
         if (volume.state() == State::limited) break;

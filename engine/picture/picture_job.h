@@ -43,6 +43,7 @@ private:
     std::vector<gpu::PassReport> draw(const PicturePart& part);
     void draw_completely(const PicturePart& part);
     void note_limited();
+    void load_around();
     void renew_occlusion();
     Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }

@@ -123,6 +123,9 @@ TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is 
     const Source source = open_procedural({.kind = "tubes", .size = {320, 320, 320}, .seed = 3});
     Scenery scenery = scenery_of(source->info(), {96, 80});
     check_budgets("from afar", source, scenery, {16, 64});
+    Scenery lit = scenery;
+    lit.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
+    check_budgets("with ambient occlusion", source, lit, {16, 24});
     scenery.document.mask = painted_mask(source->info().size, 6);  // 5.4 MB
     check_budgets("painted", source, scenery, {16, 24});
 }
