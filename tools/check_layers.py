@@ -53,7 +53,7 @@ MAY_INCLUDE = {
     "tests": "*",
     "tools": "engine/base engine/volume engine/graph engine/components engine/formats/export engine/projects "
     "engine/annotation/files engine/annotation/measures engine/annotation/trace engine/annotation/work engine/session "
-    "engine/live shaders ui",
+    "engine/picture engine/live shaders ui",
 }
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "haptics"]

@@ -311,14 +311,18 @@ void App::follow_look()
     document.screen.advance();
 }
 
+std::filesystem::path App::screenshot_stem() const
+{
+    return std::filesystem::path(document_->session_path).replace_extension();
+}
+
 void App::follow_screenshots()
 {
     if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
         screenshots_.drop_large();  // paint would show in some of its parts only
         say("The large screenshot was cancelled by painting");
     }
-    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
-    const Screenshots::Turn turn = screenshots_.advance(document_->screen, stem, !something_moves());
+    const Screenshots::Turn turn = screenshots_.advance(document_->screen, screenshot_stem(), !something_moves());
     if (!turn.said.empty()) say(turn.said);
     if (!turn.progress.empty()) status_ = turn.progress;
 }

@@ -73,6 +73,7 @@ private:
     void follow_device();
     void follow_stroke();
     void follow_look();
+    std::filesystem::path screenshot_stem() const;
     void follow_screenshots();
     void extend_stroke();
     std::string finish_stroke();

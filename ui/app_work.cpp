@@ -57,7 +57,7 @@ void App::apply(const Screenshot& action)
     session.render.size = viewport_.pixels() * session.interaction.screenshot_scale;
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
-    screenshots_.take_large(std::make_unique<PictureJob>(*renderer_, session, document_->camera, options));
+    screenshots_.take_large(screenshot_stem(), *renderer_, session, document_->camera, options);
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
 }

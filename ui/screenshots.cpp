@@ -7,18 +7,22 @@
 
 namespace shvr::ui {
 
-namespace {
-
-/// "scan-view-1.png", or with the first free number.
-std::filesystem::path free_path(const std::filesystem::path& stem)
+/// "scan-view-1.png", or with the first free number. The large one has its name before its file is there.
+std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) const
 {
     for (int number = 1;; ++number) {
         std::filesystem::path path = sentence(stem.string(), "-view-", number, ".png");
-        if (!std::filesystem::exists(path)) return path;
+        if (!std::filesystem::exists(path) && !(large_ && path == large_path_)) return path;
     }
 }
 
-}  // namespace
+void Screenshots::take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session,
+                             const Camera& camera, const RenderOptions& options)
+{
+    large_.reset();
+    large_path_ = free_path(stem);
+    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options);
+}
 
 Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still)
 {
@@ -31,19 +35,23 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
         write(screen.read_back(), stem);
         return {};
     }
-    return large_ && is_still ? advance_large(stem) : Turn{};
+    return large_ && is_still ? advance_large() : Turn{};
 }
 
-Screenshots::Turn Screenshots::advance_large(const std::filesystem::path& stem)
+Screenshots::Turn Screenshots::advance_large()
 {
-    std::unique_ptr<PictureJob> job = std::move(large_);  // dropped here if it fails
-    if (job->is_done()) {
-        write(to_image8(job->take().image), stem);
-        return {};
+    if (large_->is_writing()) return {};
+    std::unique_ptr<PictureFile> picture = std::move(large_);  // dropped here if it fails
+    if (picture->is_committing()) {
+        picture->commit();
+        return {.said = "Screenshot: " + large_path_.string(), .progress = {}};
     }
-    job->step();
-    const int percent = int(100.0 * job->progress());
-    large_ = std::move(job);
+    if (picture->is_drawn())
+        picture->begin_commit();
+    else
+        picture->step();
+    const int percent = int(100.0 * picture->progress());
+    large_ = std::move(picture);
     return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
 }
 

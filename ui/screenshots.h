@@ -1,6 +1,7 @@
 #pragma once
 // Saves pictures of the view: as shown, once it is sharp, or larger, rendered part by part while nothing else needs
-// drawing. Compressing the file is slow and runs on a thread; everything else runs on the main thread.
+// drawing, and written as it is made. Compressing is slow and runs on a thread; everything else runs on the main
+// thread.
 
 #include <filesystem>
 #include <functional>
@@ -10,7 +11,7 @@
 #include <string>
 
 #include "engine/live/screen.h"
-#include "engine/picture/picture_job.h"
+#include "engine/picture/picture_file.h"
 
 namespace shvr::ui {
 
@@ -18,7 +19,9 @@ class Screenshots {
 public:
     /// Requests a picture of the view as shown.
     void take() { is_wanted_ = true; }
-    void take_large(std::unique_ptr<PictureJob> job) { large_ = std::move(job); }
+    /// `stem` as for `advance`. Fails where the file cannot be written.
+    void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
+                    const RenderOptions& options);
     /// Abandons a large picture, since its volume changes or goes away.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
@@ -35,12 +38,14 @@ public:
     void wait() const;
 
 private:
+    std::filesystem::path free_path(const std::filesystem::path& stem) const;
     void write(Image8 image, const std::filesystem::path& stem);
-    Turn advance_large(const std::filesystem::path& stem);
+    Turn advance_large();
 
     bool is_wanted_ = false;
-    std::unique_ptr<PictureJob> large_;  ///< in progress
-    std::future<std::string> written_;   ///< message about it
+    std::unique_ptr<PictureFile> large_;  ///< in progress
+    std::filesystem::path large_path_;
+    std::future<std::string> written_;  ///< message about it
 };
 
 }  // namespace shvr::ui

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "engine/base/error.h"
 
@@ -27,19 +28,29 @@ double srgb_decode(double encoded)
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
+void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded)
+{
+    SHVR_CHECK(light.size() == encoded.size(), light.size(), " != ", encoded.size());
+    for (size_t pixel = 0; pixel < light.size(); pixel += 4) {
+        // Backgrounds repeat, and powers are slow.
+        if (pixel > 0 && std::memcmp(&light[pixel], &light[pixel - 4], 4 * sizeof(float)) == 0) {
+            std::copy_n(&encoded[pixel - 4], 4, &encoded[pixel]);
+            continue;
+        }
+        const double alpha = double(light[pixel + 3]);
+        encoded[pixel + 3] = byte_of(alpha);
+        for (size_t channel = pixel; channel < pixel + 3; ++channel)
+            encoded[channel] =
+                encoded[pixel + 3] == 0 ? uint8_t(0) : byte_of(srgb_encode(double(light[channel]) / alpha));
+    }
+}
+
 Image8 to_image8(const ImageF& image)
 {
     const size_t values = 4 * size_t(image.width) * size_t(image.height);
     SHVR_CHECK(image.rgba.size() == values, image.rgba.size(), " != ", values);
     Image8 encoded{image.width, image.height, std::vector<uint8_t>(values)};
-    for (size_t pixel = 0; pixel < values; pixel += 4) {
-        const double alpha = double(image.rgba[pixel + 3]);
-        encoded.rgba[pixel + 3] = byte_of(alpha);
-        if (encoded.rgba[pixel + 3] == 0) continue;
-        for (size_t channel = pixel; channel < pixel + 3; ++channel) {
-            encoded.rgba[channel] = byte_of(srgb_encode(double(image.rgba[channel]) / alpha));
-        }
-    }
+    encode_pixels(image.rgba, encoded.rgba);
     return encoded;
 }
 

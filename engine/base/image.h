@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace shvr {
@@ -30,6 +31,8 @@ double srgb_decode(double encoded);
 /// Un-premultiplies, clamps to 0..1, encodes and rounds to nearest. Alpha is not encoded. A pixel whose alpha rounds to
 /// 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` tells whether there is any.
 Image8 to_image8(const ImageF& image);
+/// The same for pixels of both kinds, of equal number.
+void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded);
 
 /// Counts values (not pixels) that are NaN or infinite. Any such value is a defect, which the caller reports.
 size_t count_not_finite(const ImageF& image);

@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <csetjmp>
 #include <cstring>
+#include <exception>
+#include <functional>
 #include <optional>
 #include <string>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 
 namespace shvr {
 namespace {
@@ -98,6 +102,160 @@ struct PngImage {
     ~PngImage() { png_image_free(&image); }
 };
 
+/// Calls libpng, which reports errors by longjmp: nothing with a destructor may live between here and there.
+template <class Call>
+bool succeeds(png_structp png, const Call& call)
+{
+    if (setjmp(png_jmpbuf(png)) != 0) return false;
+    call();
+    return true;
+}
+
+/// Encodes a picture row by row, and hands on the bytes as they are made.
+class PngStream {
+public:
+    using Take = std::function<void(Bytes)>;
+    PngStream(int64_t width, int64_t height, std::string_view name, Take take) : name_(name), take_(std::move(take))
+    {
+        png_.write = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, note_error, nullptr);
+        png_.info = png_.write ? png_create_info_struct(png_.write) : nullptr;
+        if (!png_.info) refuse();
+        png_set_write_fn(png_.write, this, hand_on, nullptr);
+        check(succeeds(png_.write, [&] {
+            png_set_IHDR(png_.write, png_.info, png_uint_32(width), png_uint_32(height), 8, PNG_COLOR_TYPE_RGB_ALPHA,
+                         PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+            png_set_sRGB(png_.write, png_.info, PNG_sRGB_INTENT_PERCEPTUAL);
+            png_write_info(png_.write, png_.info);
+        }));
+    }
+    PngStream(const PngStream&) = delete;
+    PngStream& operator=(const PngStream&) = delete;
+
+    /// The next row, 8-bit RGBA.
+    void add(const uint8_t* row)
+    {
+        check(succeeds(png_.write, [&] { png_write_row(png_.write, row); }));
+    }
+    void end()
+    {
+        check(succeeds(png_.write, [&] { png_write_end(png_.write, png_.info); }));
+    }
+
+private:
+    static void hand_on(png_structp png, png_bytep data, size_t bytes)
+    {
+        auto* const stream = static_cast<PngStream*>(png_get_io_ptr(png));
+        if (!stream->takes({reinterpret_cast<const std::byte*>(data), bytes})) png_error(png, "stopped");
+    }
+    [[noreturn]] static void note_error(png_structp png, png_const_charp message)
+    {
+        auto* const stream = static_cast<PngStream*>(png_get_error_ptr(png));
+        std::strncpy(stream->message_.data(), message, stream->message_.size() - 1);
+        png_longjmp(png, 1);
+    }
+    bool takes(Bytes bytes) noexcept
+    {
+        try {
+            take_(bytes);
+            return true;
+        } catch (...) {
+            failure_ = std::current_exception();
+            return false;
+        }
+    }
+    void check(bool is_good)
+    {
+        if (is_good) return;
+        if (failure_) std::rethrow_exception(failure_);
+        refuse();
+    }
+    [[noreturn]] void refuse() { fail(name_, ": cannot be encoded as PNG: ", message_.data()); }
+
+    std::string name_;
+    Take take_;
+    std::exception_ptr failure_;
+    std::array<char, 128> message_{"memory is exhausted"};
+    struct Handles {
+        png_structp write = nullptr;
+        png_infop info = nullptr;
+        ~Handles() { png_destroy_write_struct(&write, &info); }
+    } png_;
+};
+
+class PngWriter final : public ImageWriter {
+public:
+    PngWriter(const std::filesystem::path& path, int64_t width, int64_t height)
+        : width_(width),
+          rows_left_(height),
+          file_(path),
+          png_(width, height, path.string(), [this](Bytes bytes) { file_.append(bytes); })
+    {}
+    void add_row(const uint8_t* row)
+    {
+        SHVR_CHECK(rows_left_-- > 0);
+        png_.add(row);
+    }
+    void add(const ImageF& rows) override
+    {
+        SHVR_CHECK(rows.width == width_, rows.width, " != ", width_);
+        row_.resize(4 * size_t(width_));
+        for (size_t at = 0; at < rows.rgba.size(); at += row_.size()) {
+            encode_pixels({&rows.rgba[at], row_.size()}, row_);
+            add_row(row_.data());
+        }
+    }
+    void commit() override
+    {
+        SHVR_CHECK(rows_left_ == 0, rows_left_);
+        png_.end();
+        file_.commit();
+    }
+
+private:
+    int64_t width_, rows_left_;
+    std::vector<uint8_t> row_;
+    AtomicWriter file_;
+    PngStream png_;
+};
+
+/// The format stores rows from the bottom up, so that the first row added is the file's last.
+class PfmWriter final : public ImageWriter {
+public:
+    PfmWriter(const std::filesystem::path& path, int64_t width, int64_t height)
+        : width_(width), rows_left_(height), file_(path)
+    {
+        // The sign of the scale gives the byte order: negative is little-endian.
+        const char* scale = std::endian::native == std::endian::little ? "-1.0" : "1.0";
+        const std::string header = sentence("PF\n", width, " ", height, "\n", scale, "\n");
+        file_.write_at(0, std::as_bytes(std::span(header)));
+        header_bytes_ = int64_t(header.size());
+    }
+    void add(const ImageF& rows) override
+    {
+        SHVR_CHECK(rows.width == width_, rows.width, " != ", width_);
+        constexpr size_t CHANNELS = 3;
+        row_.resize(CHANNELS * size_t(width_));
+        const size_t row_values = 4 * size_t(width_);
+        for (size_t begin = 0; begin < rows.rgba.size(); begin += row_values) {
+            for (size_t x = 0; x < size_t(width_); ++x)
+                std::copy_n(&rows.rgba[begin + 4 * x], CHANNELS, &row_[CHANNELS * x]);
+            SHVR_CHECK(rows_left_-- > 0);
+            const std::span<const std::byte> bytes = std::as_bytes(std::span(row_));
+            file_.write_at(header_bytes_ + rows_left_ * int64_t(bytes.size()), bytes);
+        }
+    }
+    void commit() override
+    {
+        SHVR_CHECK(rows_left_ == 0, rows_left_);
+        file_.commit();
+    }
+
+private:
+    int64_t width_, rows_left_, header_bytes_ = 0;
+    std::vector<float> row_;
+    AtomicWriter file_;
+};
+
 }  // namespace
 
 Image8 decode_png(Bytes file, std::string_view name)
@@ -120,18 +278,13 @@ Image8 decode_png(Bytes file, std::string_view name)
 std::vector<std::byte> encode_png(const Image8& image, std::string_view name)
 {
     check_size(image.width, image.height, name);
-    const size_t values = 4 * size_t(image.width) * size_t(image.height);
-    SHVR_CHECK(image.rgba.size() == values, image.rgba.size(), " != ", values);
-    PngImage png;
-    png.image.width = static_cast<png_uint_32>(image.width);
-    png.image.height = static_cast<png_uint_32>(image.height);
-    png.image.format = PNG_FORMAT_RGBA;
-    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png.image);
-    std::vector<std::byte> file(bytes);
-    if (png_image_write_to_memory(&png.image, file.data(), &bytes, 0, image.rgba.data(), 0, nullptr) == 0) {
-        fail(name, ": cannot be encoded as PNG: ", png.image.message);
-    }
-    file.resize(bytes);
+    const size_t row_bytes = 4 * size_t(image.width), bytes = row_bytes * size_t(image.height);
+    SHVR_CHECK(image.rgba.size() == bytes, image.rgba.size(), " != ", bytes);
+    std::vector<std::byte> file;
+    PngStream png(image.width, image.height, name,
+                  [&](Bytes more) { file.insert(file.end(), more.begin(), more.end()); });
+    for (size_t at = 0; at < bytes; at += row_bytes) png.add(&image.rgba[at]);
+    png.end();
     return file;
 }
 
@@ -142,29 +295,30 @@ Image8 read_png(const std::filesystem::path& path)
 
 void write_png(const std::filesystem::path& path, const Image8& image)
 {
-    write_file_atomically(path, encode_png(image, path.string()));
+    check_size(image.width, image.height, path.string());
+    const size_t row_bytes = 4 * size_t(image.width), bytes = row_bytes * size_t(image.height);
+    SHVR_CHECK(image.rgba.size() == bytes, image.rgba.size(), " != ", bytes);
+    PngWriter writer(path, image.width, image.height);
+    for (size_t at = 0; at < bytes; at += row_bytes) writer.add_row(&image.rgba[at]);
+    writer.commit();
 }
 
 void write_pfm(const std::filesystem::path& path, const ImageF& image)
 {
     check_size(image.width, image.height, path.string());
-    const auto row_values = 4 * size_t(image.width);
-    const auto rows = size_t(image.height);
-    SHVR_CHECK(image.rgba.size() == row_values * rows, image.rgba.size(), " != ", row_values * rows);
-    // The sign of the scale gives the byte order: negative is little-endian.
-    const char* scale = std::endian::native == std::endian::little ? "-1.0" : "1.0";
-    const std::string header = sentence("PF\n", image.width, " ", image.height, "\n", scale, "\n");
-    constexpr size_t PIXEL_BYTES = 3 * sizeof(float);
-    std::vector<std::byte> file(header.size() + PIXEL_BYTES * (row_values / 4) * rows);
-    std::memcpy(file.data(), header.data(), header.size());
-    std::byte* next = file.data() + header.size();
-    for (size_t row = rows; row-- > 0;) {  // from the bottom up
-        for (size_t at = row * row_values; at < (row + 1) * row_values; at += 4) {
-            std::memcpy(next, &image.rgba[at], PIXEL_BYTES);
-            next += PIXEL_BYTES;
-        }
-    }
-    write_file_atomically(path, file);
+    PfmWriter writer(path, image.width, image.height);
+    writer.add(image);
+    writer.commit();
+}
+
+std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height)
+{
+    const auto is_side = [](int64_t pixels) { return pixels >= 1 && pixels <= MAX_IMAGE_SIDE; };
+    if (!is_side(width) || !is_side(height))
+        fail(path.string(), ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_SIDE,
+             " along each side");
+    if (lower_case(path.extension().string()) == ".pfm") return std::make_unique<PfmWriter>(path, width, height);
+    return std::make_unique<PngWriter>(path, width, height);
 }
 
 }  // namespace shvr

@@ -1,10 +1,11 @@
 #pragma once
-// Reads and writes PNG files, and writes PFM files. Writes 8-bit RGBA with an sRGB chunk; reads every kind of PNG.
-// Files are untrusted: sizes are checked before memory is allocated. Any thread may call these.
+// Reads and writes PNG files, and writes PFM files. Writes 8-bit RGBA with an sRGB chunk, row by row if wanted; reads
+// every kind of PNG. Files are untrusted: sizes are checked before memory is allocated. Any thread may call these.
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,10 @@
 
 namespace shvr {
 
-/// Larger pictures are neither read nor written.
+/// Pixels of a picture that is read, or written from memory.
 inline constexpr int64_t MAX_IMAGE_PIXELS = int64_t{1} << 28;
+/// Pixels along each side of a picture that is written row by row.
+inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
 
 /// Grey, palette and colour files of 1 to 16 bits become 8-bit RGBA. Values are taken as sRGB unless the file says
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels
@@ -22,6 +25,25 @@ inline constexpr int64_t MAX_IMAGE_PIXELS = int64_t{1} << 28;
 Image8 read_png(const std::filesystem::path& path);
 /// Replaces an existing file atomically; leaves it untouched on failure (atomic_file.h).
 void write_png(const std::filesystem::path& path, const Image8& image);
+
+/// A picture file that is written row by row, in memory of a few rows. It appears under its name with `commit`;
+/// without it, the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
+class ImageWriter {
+public:
+    virtual ~ImageWriter() = default;
+    ImageWriter(const ImageWriter&) = delete;
+    ImageWriter& operator=(const ImageWriter&) = delete;
+
+    /// The next rows, from the top; as wide as the picture. Fails where they cannot be written.
+    virtual void add(const ImageF& rows) = 0;
+    /// All rows have been added.
+    virtual void commit() = 0;
+
+protected:
+    ImageWriter() = default;
+};
+/// As `write_pfm` where the name ends in .pfm, as `write_png` otherwise; both as `to_image8` for light.
+std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height);
 
 /// Portable float map, "PF": the picture's RGB unchanged, in linear light premultiplied by alpha; alpha is left out.
 /// Replaces an existing file like `write_png`.

@@ -17,9 +17,12 @@ BrickAtlas::BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, uint64_t sl
     const gpu::DeviceTraits& traits = memory.device().traits();
     slots_ = atlas_layout(slots, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
     const glm::uvec3 texels = slots_ * gpu::BRICK_TEXELS;
-    codes_ = memory.create("atlas", filtered ? image_desc(Format::r16_unorm, texels)
-                                             : image_desc(Format::r32_uint, texels / glm::uvec3(2, 1, 1)));
-    cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, slots_ * gpu::BRICK_CELLS));
+    const auto create_image = [&](const char* name, const ResourceDesc& desc) {
+        return memory.create(name, desc, gpu::Placement::device, "the volume");
+    };
+    codes_ = create_image("atlas", filtered ? image_desc(Format::r16_unorm, texels)
+                                            : image_desc(Format::r32_uint, texels / glm::uvec3(2, 1, 1)));
+    cell_ranges_ = create_image("cell ranges", image_desc(Format::r32_uint, slots_ * gpu::BRICK_CELLS));
     for (Staging& staging : staging_)
         staging.bytes =
             memory.create("brick staging", buffer_desc(BATCH * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),

@@ -12,16 +12,34 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t MASK_BRICKS_IN_UPLOAD = 128;  // bricks per upload: 4 MiB of staging
+constexpr uint64_t MASK_FEWEST_BRICKS = 8, MASK_SPARE_SHARE = 16;
+constexpr uint64_t MASK_BRICK_BYTES = uint64_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZE * gpu::BRICK_SIZE;
 
 }  // namespace
 
-void DeviceMask::grow(uint64_t bricks)
+uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
+{
+    // The slot that stays unused, rows of the atlas that are not full, and a table with three numbers an entry.
+    constexpr uint64_t ROW = 16;
+    const uint64_t bricks = painted_bricks + painted_bricks / MASK_SPARE_SHARE + MASK_FEWEST_BRICKS + ROW;
+    return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;
+}
+
+glm::uvec3 DeviceMask::layout_of(uint64_t bricks) const
 {
     const gpu::DeviceTraits& traits = memory_.device().traits();
+    return atlas_layout(bricks + 1, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
+}
+
+/// Room for `bricks`, and for half as many more where that leaves half of the memory, a sixteenth otherwise.
+void DeviceMask::grow(uint64_t bricks)
+{
     atlas_.reset();
+    const bool has_spare = (bricks + bricks / 2) * MASK_BRICK_BYTES <= memory_.device_bytes_left() / 2;
     const glm::uvec3 slots =
-        atlas_layout(bricks + 1, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
-    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE));
+        layout_of(std::max<uint64_t>(bricks + bricks / (has_spare ? 2 : MASK_SPARE_SHARE), MASK_FEWEST_BRICKS));
+    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE), gpu::Placement::device,
+                            "what is painted");
     free_slots_.clear();
     slots_.clear();
     // The first corner is NO_SLOT. Slots are taken from the end of the list.
@@ -73,8 +91,7 @@ bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
     }
     const bool grows = added.size() > free_slots_.size();
     if (grows) {
-        const uint64_t needed = slots_.size() + added.size();
-        grow(std::max<uint64_t>(needed + needed / 2, 8));
+        grow(slots_.size() + added.size());
         added = mask.painted_bricks();
     }
     for (const int64_t brick : added) {
@@ -114,7 +131,7 @@ void DeviceMask::send_table(const Mask& mask)
         hashed_ ? buffer_desc(entries.size() * sizeof(uint32_t)) : image_desc(Format::r32_uint, counts);
     if (!table_ || table_.desc() != desc) {
         table_.reset();
-        table_ = memory_.create("mask table", desc);
+        table_ = memory_.create("mask table", desc, gpu::Placement::device, "what is painted");
     }
     FrameGraph graph;
     const Resource from = graph.upload<uint32_t>("mask table entries", entries);

@@ -19,6 +19,8 @@ public:
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}
 
+    /// Device memory that a mask with so many painted bricks takes at least.
+    static uint64_t bytes_for(uint64_t painted_bricks);
     /// Uploads `bricks` of `mask` (the changed ones); grows the atlas where they do not fit. Does not wait: frames
     /// submitted later see them.
     void update(const Mask& mask, std::span<const int64_t> bricks);
@@ -37,6 +39,7 @@ private:
     void send_bricks(const Mask& mask, std::span<const int64_t> bricks);
     void send_table(const Mask& mask);
     void grow(uint64_t bricks);
+    glm::uvec3 layout_of(uint64_t bricks) const;
     void submit(FrameGraph graph);
     std::vector<uint32_t> dense_table(const Mask& mask) const;
     std::vector<uint32_t> hashed_table(const Mask& mask) const;

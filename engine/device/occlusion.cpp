@@ -17,6 +17,19 @@ namespace {
 /// In addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
+uint64_t slice_bytes(uint32_t bricks)
+{
+    uint64_t bytes = occlusion_near_desc(bricks).bytes;
+    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) bytes += occlusion_around_desc(size, bricks).bytes;
+    return bytes;
+}
+
+/// How many bricks are renewed at once: what they take meanwhile is at most a sixteenth of the budget.
+uint32_t slice_for(uint64_t device_budget)
+{
+    return uint32_t(std::clamp<uint64_t>(device_budget / 16 / slice_bytes(1), 1, gpu::OCCLUSION_SLICE));
+}
+
 template <class Visit>
 void for_each_offset(int reach, const Visit& visit)
 {
@@ -46,14 +59,34 @@ void Occlusion::clear()
     revision_ = 0;
 }
 
+uint64_t Occlusion::slot_bytes()
+{
+    constexpr uint64_t TEXELS = gpu::BRICK_TEXELS;
+    uint64_t bytes = TEXELS * TEXELS * TEXELS;
+    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+        const uint64_t side = gpu::BRICK_SIZE >> (size + 1);
+        bytes += side * side * side;
+    }
+    return bytes;
+}
+
+uint64_t Occlusion::scratch_bytes(uint64_t device_budget)
+{
+    return slice_bytes(slice_for(device_budget));
+}
+
 void Occlusion::create(const glm::uvec3& slots)
 {
-    values_ = memory_.create("occlusion values", image_desc(Format::r8_uint, gpu::BRICK_TEXELS * slots));
-    near_ = memory_.create("occlusion scratch", occlusion_near_desc());
+    slice_ = slice_for(memory_.device_budget());
+    const auto create_image = [&](const char* name, const ResourceDesc& desc) {
+        return memory_.create(name, desc, gpu::Placement::device, "ambient occlusion");
+    };
+    values_ = create_image("occlusion values", image_desc(Format::r8_uint, gpu::BRICK_TEXELS * slots));
+    near_ = create_image("occlusion scratch", occlusion_near_desc(slice_));
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         cells_[size] =
-            memory_.create("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
-        around_[size] = memory_.create("occlusion scratch", occlusion_around_desc(size));
+            create_image("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
+        around_[size] = create_image("occlusion scratch", occlusion_around_desc(size, slice_));
     }
     images_are_new_ = true;
 }
@@ -254,7 +287,7 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
 {
     SHVR_CHECK(look_.has_value());
     sync();
-    const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, gpu::OCCLUSION_SLICE));
+    const std::vector<BrickKey> keys = nearest(eye, std::min<size_t>(most.bricks, slice_));
     if (keys.empty()) return {};
     OcclusionBinding images = bring_up_to_date(graph);
     std::vector<BrickKey> needed;

@@ -47,6 +47,10 @@ public:
     /// changed.
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
+    /// Device memory for each slot of the atlas, and besides, under that budget.
+    static uint64_t slot_bytes();
+    static uint64_t scratch_bytes(uint64_t device_budget);
+
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     /// For each level: how many bricks on each side of a brick its light comes from.
     std::vector<int> reach() const;
@@ -102,6 +106,7 @@ private:
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> cells_;
     gpu::Storage near_;
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
+    uint32_t slice_ = gpu::OCCLUSION_SLICE;  ///< bricks that the scratch images hold
     bool images_are_new_ = false;
     Entries entries_;
     uint64_t revision_ = 0;  ///< of the volume's places()

@@ -10,8 +10,6 @@ namespace shvr {
 
 namespace {
 
-/// Room for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
-constexpr uint64_t FEWEST_SLOTS = 64;
 /// Levels with at most this many bricks are always on the device.
 constexpr int64_t COARSE_BRICKS = 64;
 
@@ -21,15 +19,23 @@ int64_t brick_total(const Size3& size, int level)
     return counts.x * counts.y * counts.z;
 }
 
-uint64_t slots_for(const VolumeInfo& info, int levels, uint64_t bytes)
+/// As many as fit, rounded as atlas_layout rounds.
+uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
 {
     uint64_t useful = 1;
     for (int level = 0; level < levels; ++level)
         useful += uint64_t(std::min<int64_t>(brick_total(info.size, level), int64_t{1} << 40));
-    const uint64_t slots = std::min(useful, bytes / BrickAtlas::slot_bytes());
-    if (slots < std::min(useful, FEWEST_SLOTS))
-        fail(info.name, ": ", bytes >> 20, " MiB of device memory are left for its bricks; expected at least ",
-             (FEWEST_SLOTS * BrickAtlas::slot_bytes() >> 20) + 1);
+    const uint64_t most = bytes / BrickAtlas::slot_bytes();
+    const auto made = [&](uint64_t slots) {
+        const glm::u64vec3 layout(
+            atlas_layout(slots, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu));
+        return layout.x * layout.y * layout.z;
+    };
+    uint64_t slots = std::min(useful, most);
+    while (slots > PagedVolume::MIN_SLOTS && made(slots) > most) --slots;
+    if (slots < std::min(useful, PagedVolume::MIN_SLOTS))
+        fail(info.name, ": ", gpu::mebibytes(bytes), " of device memory are left for its bricks; expected at least ",
+             gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes()), ", as a larger --budget-device gives");
     return slots;
 }
 
@@ -42,11 +48,13 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       source_(std::move(source)),
       options_(options),
       levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
-      atlas_(executor, memory, slots_for(source_->info(), levels_, options.device_bytes), options.filtered),
+      atlas_(executor, memory, slots_for(memory.device().traits(), source_->info(), levels_, options.device_bytes),
+             options.filtered),
       slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
       store_(*source_, window, options.host_bytes, options.threads)
 {
-    cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS));
+    cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS),
+                               gpu::Placement::device, "the volume");
     pin_coarse_levels();
 }
 
@@ -66,7 +74,8 @@ void PagedVolume::pin_coarse_levels()
         if (level < levels_ - 1) continue;
         if (coarse_.size() >= slots_.count() / 2)
             fail(info().name, ": its coarsest level has ", coarse_.size(), " bricks and the device has room for ",
-                 slots_.count(), "; expected a coarser level, as `shvr import` makes");
+                 slots_.count(), "; expected a coarser level, as `shvr import` makes, or --budget-device ",
+                 (4 * coarse_.size() * BrickAtlas::slot_bytes() >> 20) + 1);
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
         atlas_.flush();
@@ -233,7 +242,7 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
     const uint64_t bytes = entries_.size() * sizeof(uint32_t);
     if (!directory_ || directory_.desc().bytes < bytes) {
         directory_.reset();
-        directory_ = memory_.create("page directory", buffer_desc(bytes));
+        directory_ = memory_.create("page directory", buffer_desc(bytes), gpu::Placement::device, "the view");
     }
     return graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
                       graph.import("page directory", directory_.import()), {{0, 0, bytes}}, "upload page directory");

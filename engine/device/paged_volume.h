@@ -25,6 +25,9 @@ namespace shvr {
 
 class PagedVolume final : public DeviceVolume {
 public:
+    /// Room for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
+    static constexpr uint64_t MIN_SLOTS = 64;
+
     struct Options {
         bool filtered = false;      ///< VolumeBinding
         int threads = 1;            ///< loader threads

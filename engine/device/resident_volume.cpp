@@ -83,13 +83,16 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
     atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
     const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
     const uint32_t codes_per_texel = filtered ? 1 : 2;
-    atlas_ = memory.create("atlas", image_desc(filtered ? Format::r16_unorm : Format::r32_uint,
-                                               codes / glm::uvec3(codes_per_texel, 1, 1)));
-    page_table_ = memory.create("page table", buffer_desc(bricks * sizeof(uint32_t)));
-    cell_ranges_ = memory.create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
-    leap_ = memory.create("leap grid", image_desc(Format::r32_uint, cell_counts_));
+    const auto create = [&](const char* name, const ResourceDesc& desc) {
+        return memory.create(name, desc, gpu::Placement::device, "the volume");
+    };
+    atlas_ = create("atlas", image_desc(filtered ? Format::r16_unorm : Format::r32_uint,
+                                        codes / glm::uvec3(codes_per_texel, 1, 1)));
+    page_table_ = create("page table", buffer_desc(bricks * sizeof(uint32_t)));
+    cell_ranges_ = create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
+    leap_ = create("leap grid", image_desc(Format::r32_uint, cell_counts_));
     for (gpu::Storage& scratch : leap_scratch_)
-        scratch = memory.create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
+        scratch = create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
 
     Uploader uploader(executor, memory, bricks, codes_per_texel);
     std::vector<uint32_t> slots;  // bricks arrive in the order of their index

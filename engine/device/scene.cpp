@@ -15,16 +15,21 @@ namespace shvr {
 namespace {
 
 // Shares of the device memory that is free when a volume is loaded.
-/// A resident volume may take nearly all: pictures in parts, mask and tables need little more.
-constexpr uint64_t RESIDENT_SIXTEENTHS = 15;
-/// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, whose size is not known yet.
+/// A resident volume may take all but what pictures in parts and tables need.
+constexpr uint64_t PICTURE_SIXTEENTHS = 1;
+/// The least that is kept for these: tables of one or two megabytes, the directory of bricks, parts of 64 pixels a
+/// side.
+constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
+/// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// With ambient occlusion, which then takes about as much as the bricks.
+/// With ambient occlusion, which then takes half as much as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
 /// More than any view on a common screen needs: 27 000 bricks.
 constexpr uint64_t MAX_ATLAS_BYTES = uint64_t{2} << 30;
 /// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
+/// As many bricks as a view may have leaves (page_tree.h).
+constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
@@ -40,58 +45,143 @@ bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
-bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options)
+uint64_t bytes_for_pictures(const gpu::Memory& memory)
 {
-    const uint64_t bytes = ResidentVolume::bytes_for(source.info());
-    return (options.with_occlusion ? 2 * bytes : bytes) <= memory.device_bytes_left() / 16 * RESIDENT_SIXTEENTHS;
+    return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
 }
 
-bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options)
+/// Device bytes beside the volume, and for each byte of it twice over with ambient occlusion.
+bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
+                   uint64_t reserved_bytes)
+{
+    const uint64_t bytes = ResidentVolume::bytes_for(source.info());
+    const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes;
+    return beside <= memory.device_bytes_left() &&
+           (options.with_occlusion ? 2 * bytes : bytes) <= memory.device_bytes_left() - beside;
+}
+
+bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
+           uint64_t reserved_bytes = 0)
 {
     if (options.paging != Paging::automatic) return options.paging == Paging::always;
-    return source.levels() > 1 || !fits_resident(memory, source, options);
+    return source.levels() > 1 || !fits_resident(memory, source, options, reserved_bytes);
+}
+
+int64_t finest_bricks(const VolumeInfo& info)
+{
+    const glm::i64vec3 counts(brick_counts(info.size));
+    return counts.x * counts.y * counts.z;
+}
+
+/// A budget under which `bytes` are left beside what pictures need, in MiB.
+uint64_t budget_for(uint64_t bytes)
+{
+    return (std::max(bytes + MIN_PICTURE_BYTES, bytes / (16 - PICTURE_SIXTEENTHS) * 16) >> 20) + 1;
+}
+
+/// Device memory for the atlas of paged bricks.
+uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool with_occlusion, uint64_t reserved_bytes)
+{
+    const uint64_t budget = memory.device_budget(), left = memory.device_bytes_left();
+    const uint64_t of_slot = BrickAtlas::slot_bytes();
+    const uint64_t with_light = of_slot + (with_occlusion ? Occlusion::slot_bytes() : 0);
+    const auto scratch = [&](uint64_t of_budget) { return with_occlusion ? Occlusion::scratch_bytes(of_budget) : 0; };
+    const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes + scratch(budget);
+    const uint64_t room = left - std::min(left, beside);
+    // Layouts of images round up.
+    const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
+    if (room < fewest)
+        throw gpu::BudgetError(
+            sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
+                     reserved_bytes > 0 ? sentence(", ", gpu::mebibytes(reserved_bytes), " of them for paint and trace")
+                                        : std::string(),
+                     ", and ", gpu::mebibytes(left), " of the budget of ", gpu::mebibytes(budget),
+                     " are left; expected at least --budget-device ",
+                     budget_for(budget - left + reserved_bytes + scratch(UINT64_MAX) + fewest)));
+    const uint64_t fifths = with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
+    return std::min(
+        {MAX_ATLAS_BYTES, std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
+}
+
+/// Device memory for a trace, an upper bound.
+uint64_t trace_bytes(const TraceGraph& trace)
+{
+    const size_t surfaces = trace.nodes().size() + trace.internodes().size();
+    if (surfaces == 0) return 0;
+    return (surfaces + SurfaceForest::MAX_SURFACES_ADDED) * (sizeof(gpu::Surface) + 2 * sizeof(gpu::SurfaceNode));
 }
 
 }  // namespace
 
 Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
              const VolumeStatistics& statistics, const Options& options)
-    : memory_(memory),
+    : executor_(executor),
+      memory_(memory),
+      source_(std::move(source)),
+      options_(options),
       statistics_(statistics),
-      mask_(executor, memory, pages(memory, *source, options)),
+      draws_finest_(options.paging == Paging::automatic && source_->levels() == 1 &&
+                    finest_bricks(source_->info()) <= MAX_FINEST_BRICKS),
       occlusion_(memory),
       surfaces_(memory),
       tables_(memory)
 {
-    const IntensityWindow window = window_for(source->info().type, statistics);
-    const bool filtered = filters(traits(), options.sampling);
-    if (!pages(memory, *source, options)) {
-        offsets_ = std::make_shared<OffsetSource>(std::move(source));
-        volume_ = std::make_unique<ResidentVolume>(executor, memory, offsets_, window, filtered, options.threads);
+    load(0);
+}
+
+/// `reserved_bytes`: of device memory, for what is shown beside the volume.
+void Scene::load(uint64_t reserved_bytes)
+{
+    memory_.free_idle();
+    const IntensityWindow window = window_for(source_->info().type, statistics_);
+    const bool filtered = filters(traits(), options_.sampling);
+    const bool is_paged = pages(memory_, *source_, options_, reserved_bytes);
+    mask_.emplace(executor_, memory_, is_paged);
+    if (!is_paged) {
+        offsets_ = std::make_shared<OffsetSource>(source_);
+        volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads);
         return;
     }
-    const uint64_t fifths = options.with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
     const PagedVolume::Options paged{
         .filtered = filtered,
-        .threads = options.threads,
-        .host_bytes = options.host_bytes / HOST_SHARES,
-        .device_bytes = std::min(MAX_ATLAS_BYTES, memory.device_bytes_left() / 5 * fifths)};
-    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes));
-    volume_ = std::make_unique<PagedVolume>(executor, memory, offsets_, window, paged);
+        .threads = options_.threads,
+        .host_bytes = options_.host_bytes / HOST_SHARES,
+        .device_bytes = atlas_bytes(memory_, source_->info(), options_.with_occlusion, reserved_bytes)};
+    source_ = with_levels(std::move(source_), options_.host_bytes);
+    offsets_ = std::make_shared<OffsetSource>(source_);
+    volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
+}
+
+/// Keeps `bytes` of device memory free, beside what pictures need, by loading the volume with fewer bricks.
+void Scene::make_room(uint64_t bytes)
+{
+    memory_.free_idle();
+    if (bytes + bytes_for_pictures(memory_) <= memory_.device_bytes_left()) return;
+    occlusion_.clear();
+    volume_.reset();
+    mask_.reset();
+    try {
+        load(bytes);
+    } catch (const gpu::BudgetError&) {
+        load(0);  // the scene stays, without what it has no room for
+        throw;
+    }
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     static_cast<void>(filters(memory.device().traits(), options.sampling));
-    return !pages(memory, source, options) && fits_resident(memory, source, options);
+    return !pages(memory, source, options) && fits_resident(memory, source, options, 0);
 }
 
 // ---- Changes --------------------------------------------------------------------------------------------------------
 
 void Scene::show(const Document& document)
 {
-    if (const std::vector<int64_t> painted = document.mask.painted_bricks(); !painted.empty())
-        update_mask(document.mask, painted);
+    const std::vector<int64_t> painted = document.mask.painted_bricks();
+    const uint64_t bytes = (painted.empty() ? 0 : DeviceMask::bytes_for(painted.size())) + trace_bytes(document.trace);
+    if (bytes > 0) make_room(bytes);
+    if (!painted.empty()) update_mask(document.mask, painted);
     std::vector<VoxelBox> raised;
     for (const int64_t brick : document.density.painted_bricks()) raised.push_back(document.density.box_of(brick));
     if (!raised.empty()) update_density(document.density, raised);
@@ -108,7 +198,7 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
 {
-    mask_.update(mask, bricks);
+    mask_->update(mask, bricks);
     volume_->note_painted(mask, bricks);
     for (const int64_t brick : bricks) {
         VoxelBox voxels = voxels_of({0, position_of(brick, mask.brick_counts())}, info().size);
@@ -239,7 +329,7 @@ bool Scene::has_occlusion(const Look& look)
     if (occlusion_has_no_room_) return false;
     if (occlusion_.exists_for(*volume_)) return true;
     try {
-        occlusion_.look(occlusion_look(look), *volume_, mask_);
+        occlusion_.look(occlusion_look(look), *volume_, *mask_);
     } catch (const Error& error) {
         occlusion_.clear();
         occlusion_has_no_room_ = true;
@@ -251,15 +341,15 @@ bool Scene::has_occlusion(const Look& look)
 void Scene::want_occlusion(const Look& look)
 {
     const Occlusion::Look wanted = occlusion_look(look);
-    occlusion_.look(wanted, *volume_, mask_);
+    occlusion_.look(wanted, *volume_, *mask_);
     volume_->want_around(occlusion_.reach());
     volume_->look_by(wanted.visibility);
 }
 
 void Scene::add_occlusion(FrameGraph& graph, const Camera& camera, const Occlusion::Most& most)
 {
-    const std::optional<MaskBinding> mask = mask_.import(graph);
-    const VolumeBinding volume = volume_->prepare(graph, mask_, mask, false);
+    const std::optional<MaskBinding> mask = mask_->import(graph);
+    const VolumeBinding volume = volume_->prepare(graph, *mask_, mask, false);
     for (const VoxelBox& voxels : occlusion_.next(graph, volume, mask, camera.eye / info().spacing, most))
         note_changed(voxels, Cause::light);
 }

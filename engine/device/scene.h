@@ -47,14 +47,20 @@ public:
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
-    const DeviceMask& mask() const { return mask_; }
+    /// Whether pictures draw the finest level everywhere: the volume has no other, so it would be resident under a
+    /// larger budget, and budgets change no picture. Live views draw it as coarse as the screen allows.
+    bool draws_finest() const { return draws_finest_; }
+    const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
     SurfaceScene& surfaces() { return surfaces_; }
+    bool has_surfaces() const { return !surfaces_.empty(); }
     LookTables& tables() { return tables_; }
 
     // ---- Changes
 
-    /// Shows all paint and offsets of the document.
+    /// Shows all paint and offsets of the document, and keeps room for its trace: where there is too little, the
+    /// volume is loaded again with fewer bricks. Call it before anything else refers to this scene's volume. Fails
+    /// where the budget does not hold them.
     void show(const Document& document);
     /// Shows these changes, which the document already contains: paint, offsets and, once show_surfaces() has been
     /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails where
@@ -113,14 +119,20 @@ public:
     std::vector<std::string> take_messages();
 
 private:
+    void load(uint64_t reserved_bytes);
+    void make_room(uint64_t bytes);
     Occlusion::Look occlusion_look(const Look& look);
     void note_changed(const VoxelBox& voxels, Cause cause);
 
+    gpu::Executor& executor_;
     gpu::Memory& memory_;
+    std::shared_ptr<const VolumeSource> source_;
+    Options options_;
     VolumeStatistics statistics_;
+    bool draws_finest_ = false;
     std::shared_ptr<OffsetSource> offsets_;  ///< the source that volume_ reads from
     std::unique_ptr<DeviceVolume> volume_;
-    DeviceMask mask_;
+    std::optional<DeviceMask> mask_;
     Occlusion occlusion_;
     bool occlusion_has_no_room_ = false;
     SurfaceScene surfaces_;

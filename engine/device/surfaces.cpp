@@ -52,8 +52,11 @@ void SurfaceScene::set(SurfaceForest forest)
 {
     gpu::Storage nodes, list;
     if (!forest.nodes().empty()) {
-        nodes = memory_.create("surface nodes", buffer_desc(forest.max_nodes() * sizeof(gpu::SurfaceNode)));
-        list = memory_.create("surface list", buffer_desc(forest.max_surfaces() * sizeof(gpu::Surface)));
+        const auto create_buffer = [&](const char* name, uint64_t bytes) {
+            return memory_.create(name, buffer_desc(bytes), gpu::Placement::device, "the surfaces of the trace");
+        };
+        nodes = create_buffer("surface nodes", forest.max_nodes() * sizeof(gpu::SurfaceNode));
+        list = create_buffer("surface list", forest.max_surfaces() * sizeof(gpu::Surface));
     }
     nodes_ = std::move(nodes);
     list_ = std::move(list);

@@ -478,10 +478,12 @@ Executor::Executor(Device& device, Memory& memory) : device_(device), memory_(me
     if (result < 0) vkDestroySampler(device.handle(), sampler_, nullptr);
     check(result, "vkCreateCommandPool");
     device.set_name(VK_OBJECT_TYPE_COMMAND_POOL, reinterpret_cast<uint64_t>(pool_), "executor");
+    memory.free_idle_by([this] { trim(); });
 }
 
 Executor::~Executor()
 {
+    memory_.free_idle_by({});
     vkDeviceWaitIdle(device_.handle());
     vkDestroyCommandPool(device_.handle(), pool_, nullptr);
     vkDestroySampler(device_.handle(), sampler_, nullptr);

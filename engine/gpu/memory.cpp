@@ -8,11 +8,6 @@ namespace shvr::gpu {
 
 namespace {
 
-std::string mebibytes(uint64_t bytes)
-{
-    return sentence(double((bytes + 1023) / 1024) / 1024.0, " MiB");
-}
-
 /// Memory types in order of preference; every implementation has the last one.
 std::optional<uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                     std::initializer_list<VkMemoryPropertyFlags> wishes)
@@ -37,6 +32,13 @@ std::optional<uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& prop
 }
 
 }  // namespace
+
+std::string mebibytes(uint64_t bytes)
+{
+    constexpr uint64_t TENTHS = 10, MIB = uint64_t{1} << 20;
+    const uint64_t tenths = bytes / MIB * TENTHS + (bytes % MIB * TENTHS + MIB - 1) / MIB;
+    return sentence(double(tenths) / double(TENTHS), " MiB");
+}
 
 VkFormat vulkan_format(Format format)
 {
@@ -111,7 +113,12 @@ Memory::Object& Memory::object(uint32_t id)
     return found->second;
 }
 
-Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placement placement)
+void Memory::free_idle()
+{
+    if (free_idle_) free_idle_();
+}
+
+Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placement placement, const char* purpose)
 {
     const VkPhysicalDeviceLimits& limits = device_.traits().limits;
     Object object{.name = name, .desc = desc, .placement = placement};
@@ -145,7 +152,7 @@ Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placem
             device_.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(object.image), name);
             vkGetImageMemoryRequirements(device_.handle(), object.image, &needs);
         }
-        allocate(object, needs);
+        allocate(object, needs, purpose);
         if (object.image) {
             SHVR_VK(vkBindImageMemory(device_.handle(), object.image, object.memory, 0));
             const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -167,22 +174,37 @@ Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placem
     return {*this, id};
 }
 
-void Memory::allocate(Object& object, const VkMemoryRequirements& needs)
+void Memory::refuse(bool on_device, uint64_t bytes, const char* purpose) const
+{
+    const uint64_t used = on_device ? device_bytes_ : host_bytes_;
+    const uint64_t budget = on_device ? budget_.device_bytes : budget_.host_bytes;
+    if (on_device)
+        throw BudgetError(sentence("device memory: ", purpose, " needs ", mebibytes(bytes), ", and ",
+                                   mebibytes(budget - used), " of ", mebibytes(budget),
+                                   " are left; expected a larger budget, as --budget-device ",
+                                   (2 * (used + bytes) >> 20) + 1, " gives"));
+    throw BudgetError(sentence("host memory: ", purpose, " needs ", mebibytes(bytes), ", and ",
+                               mebibytes(budget - used), " of ", mebibytes(budget),
+                               " for transfers are left; expected a larger budget, as --budget-host ",
+                               (2 * (used + bytes) >> 19) + 1, " gives"));
+}
+
+void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const char* purpose)
 {
     const bool on_device = object.placement == Placement::device;
     uint64_t& used = on_device ? device_bytes_ : host_bytes_;
     uint64_t& peak = on_device ? peak_device_bytes_ : peak_host_bytes_;
     const uint64_t budget = on_device ? budget_.device_bytes : budget_.host_bytes;
-    if (needs.size > budget || used > budget - needs.size)
-        fail(on_device ? "device" : "host", " memory: '", object.name, "' needs ", mebibytes(needs.size), "; ",
-             mebibytes(used), " of the budget of ", mebibytes(budget), " are in use");
+    const auto fits = [&] { return needs.size <= budget && used <= budget - needs.size; };
+    if (!fits()) free_idle();
+    if (!fits()) refuse(on_device, needs.size, purpose);
     const auto type = memory_type(device_.memory_properties(), needs.memoryTypeBits, object.placement);
     if (!type) fail("device ", device_.traits().name, " has no memory type for '", object.name, "'");
     const VkMemoryAllocateInfo info{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
     const VkResult result = vkAllocateMemory(device_.handle(), &info, nullptr, &object.memory);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        fail("the device is out of memory: '", object.name, "' needs ", mebibytes(needs.size), "; SHVR uses ",
+        fail("the device is out of memory: ", purpose, " needs ", mebibytes(needs.size), "; SHVR uses ",
              mebibytes(used), "; a smaller --budget-device may help");
     check(result, "vkAllocateMemory");
     object.bytes = needs.size;

@@ -1,9 +1,11 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard limits. Every allocation is checked against its budget first.
+// (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, idle
+// memory is freed.
 //
 // One thread at a time.
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -24,6 +26,15 @@ struct Budget {
     uint64_t device_bytes = 0;  ///< 0: three quarters of the device's memory
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
+
+/// A budget does not hold what is needed; the message names the budget and a remedy.
+class BudgetError : public Error {
+public:
+    using Error::Error;
+};
+
+/// "1.5 MiB", rounded up to a tenth.
+std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
@@ -59,8 +70,12 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// Fails, naming the resource, its size and what is left, if the budget or the device cannot hold it.
-    Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device);
+    /// Throws BudgetError if the budget cannot hold it. `purpose`: what it is for, in the user's words.
+    Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
+                   const char* purpose = "a step of the work");
+    /// Set a function that frees memory which is allocated and idle; it is called before a budget refuses.
+    void free_idle_by(std::function<void()> free_idle) { free_idle_ = std::move(free_idle); }
+    void free_idle();
 
     /// Vulkan's side of a storage, for the executor.
     struct Object {
@@ -84,6 +99,7 @@ public:
     uint64_t peak_host_bytes() const { return peak_host_bytes_; }
     uint64_t device_budget() const { return budget_.device_bytes; }
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes_; }
+    uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes_; }
     std::map<std::string, uint64_t> bytes_by_name() const;
     Device& device() { return device_; }
 
@@ -91,7 +107,8 @@ private:
     friend class Storage;
     void wait_idle() const noexcept;
     void release(uint32_t id) noexcept;
-    void allocate(Object& object, const VkMemoryRequirements& needs);
+    void allocate(Object& object, const VkMemoryRequirements& needs, const char* purpose);
+    [[noreturn]] void refuse(bool on_device, uint64_t bytes, const char* purpose) const;
     void destroy(Object& object) noexcept;
 
     Device& device_;
@@ -100,6 +117,7 @@ private:
     uint32_t next_id_ = 1;
     uint64_t device_bytes_ = 0, host_bytes_ = 0;
     uint64_t peak_device_bytes_ = 0, peak_host_bytes_ = 0;
+    std::function<void()> free_idle_;
 };
 
 VkFormat vulkan_format(Format format);

@@ -212,23 +212,34 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }
 
-/// The pixels that a stroke touches, and its coverage of each.
+/// The pixels of `pane` that a stroke touches, and its coverage of each. Stroke coordinates start at `origin`.
 template <class Paint>
-void for_each_covered(const Stroke& stroke, const PixelBox& pane, const Paint& paint)
+void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const PixelBox& pane, const Paint& paint)
 {
-    const glm::dvec2 from = stroke.from + glm::dvec2(pane.begin), to = stroke.to + glm::dvec2(pane.begin);
+    const glm::dvec2 from = stroke.from + glm::dvec2(origin), to = stroke.to + glm::dvec2(origin);
     const double reach = 0.5 * stroke.width + 0.5;
     const glm::dvec2 lower = glm::max(glm::floor(glm::min(from, to) - reach), glm::dvec2(pane.begin));
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    for (int y = int(lower.y); y < int(upper.y); ++y)
-        for (int x = int(lower.x); x < int(upper.x); ++x) {
+    // A row meets a short piece of a long stroke: the rest of the row is not looked at.
+    const auto x_at = [&](double y) {
+        return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
+    };
+    for (int y = int(lower.y); y < int(upper.y); ++y) {
+        int begin = int(lower.x), end = int(upper.x);
+        if (way.y != 0.0) {
+            const double above = x_at(y - reach), below = x_at(y + 1.0 + reach);
+            begin = std::max(begin, int(std::floor(std::max(std::min(above, below) - reach, lower.x))) - 1);
+            end = std::min(end, int(std::ceil(std::min(std::max(above, below) + reach, upper.x))) + 1);
+        }
+        for (int x = begin; x < end; ++x) {
             const glm::dvec2 at = glm::dvec2(x, y) + 0.5 - from;
             const double share = square > 0.0 ? std::clamp(glm::dot(at, way) / square, 0.0, 1.0) : 0.0;
             const double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
             if (covered > 0.0) paint(size_t(x), size_t(y), covered);
         }
+    }
 }
 
 }  // namespace
@@ -275,11 +286,14 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     return strokes.taken();
 }
 
-void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane)
+void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane, uint32_t first_row)
 {
+    PixelBox rows = pane;
+    rows.begin.y = std::max(rows.begin.y, first_row);
+    rows.end.y = std::min(rows.end.y, first_row + uint32_t(image.height));
     for (const Stroke& stroke : strokes)
-        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
-            float* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+        for_each_covered(stroke, pane.begin, rows, [&](size_t x, size_t y, double covered) {
+            float* const pixel = &image.rgba[4 * (x + size_t(image.width) * (y - first_row))];
             for (int c = 0; c < 4; ++c)
                 pixel[c] = float(pixel[c] + covered * ((c < 3 ? stroke.color[c] : 1.0) - pixel[c]));
         });
@@ -288,7 +302,7 @@ void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox
 void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane)
 {
     for (const Stroke& stroke : strokes)
-        for_each_covered(stroke, pane, [&](size_t x, size_t y, double covered) {
+        for_each_covered(stroke, pane.begin, pane, [&](size_t x, size_t y, double covered) {
             uint8_t* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
             for (int c = 0; c < 3; ++c) {
                 const double light = glm::mix(srgb_decode(pixel[c] / 255.0), stroke.color[c], covered);

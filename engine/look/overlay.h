@@ -49,8 +49,8 @@ std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pi
                                       double radius);
 
 /// Anti-aliased, over premultiplied light. `pane`: the pixels of the picture that stroke coordinates refer to; nothing
-/// is drawn outside.
-void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane);
+/// is drawn outside. `image` holds all of the picture's rows from `first_row` on, or some of them.
+void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane, uint32_t first_row = 0);
 /// The same on a screen's opaque pixels.
 void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane);
 

@@ -31,16 +31,16 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 }  // namespace
 
-ResourceDesc occlusion_near_desc()
+ResourceDesc occlusion_near_desc(uint32_t jobs)
 {
     constexpr uint32_t SIDE = gpu::OCCLUSION_NEAR_SIDE;
-    return image_desc(Format::r32_uint, {SIDE, SIDE, SIDE * gpu::OCCLUSION_SLICE});
+    return image_desc(Format::r32_uint, {SIDE, SIDE, SIDE * jobs});
 }
 
-ResourceDesc occlusion_around_desc(uint32_t size)
+ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
 {
     const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MAX_APRON;
-    return image_desc(Format::r8_uint, {side, side, side * gpu::OCCLUSION_SLICE});
+    return image_desc(Format::r8_uint, {side, side, side * jobs});
 }
 
 OcclusionTaps occlusion_taps(double radius)

@@ -16,13 +16,13 @@ struct OcclusionBinding {
     std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r8ui; half of BRICK_SIZE a side, a quarter
 };
 
-/// Temporary data gathered for a slice of bricks: images for OCCLUSION_SLICE jobs.
+/// Temporary data gathered for a slice of bricks: images for as many jobs, at most OCCLUSION_SLICE.
 struct OcclusionScratch {
     Resource near;                                        ///< r32ui, see near_opacity
     std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r8ui, cells with aprons
 };
-ResourceDesc occlusion_near_desc();
-ResourceDesc occlusion_around_desc(uint32_t size);
+ResourceDesc occlusion_near_desc(uint32_t jobs);
+ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 
 /// Where rays sample opacity, and the weight of each sample. Lengths in units of the brick's level.
 struct OcclusionTaps {

@@ -118,6 +118,13 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
     return drawn;
 }
 
+FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
+{
+    FrameGraph graph;
+    static_cast<void>(prepare(graph, scene, look, shot, part, false));
+    return graph;
+}
+
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
 {
     Prepared prepared = prepare(graph, scene, look, shot, part, false);

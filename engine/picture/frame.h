@@ -44,6 +44,9 @@ struct Drawn {
 /// premultiplied, over the background. The graph must be submitted before any graph made later.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false);
+/// What all parts of a shot need before their rays are followed, whatever their size: tables, directory, surfaces. The
+/// graph must be submitted before any graph made later. Parts are drawn without it as well.
+FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 /// Adds the passes that find what is visible at one pixel: an image of one texel, with the position and 1, or 0.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 

@@ -23,20 +23,31 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
     }
 }
 
-/// A pane in parts, the first one last.
-std::vector<PicturePart> parts_of(const glm::uvec2& pixels, const RenderOptions& options, const VolumeInfo& volume)
+/// Bytes of a pixel that a picture is read back with.
+constexpr uint64_t PIXEL_BYTES = 4 * sizeof(float);
+/// At most so much of the host's memory is for the band that is drawn; another one may still be written.
+constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
+/// More is on the device beside a part's own images: tables and the directory of bricks.
+constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
+
+/// Bytes on the device for a pixel of a part, as frame.cpp adds images.
+uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe)
 {
-    const std::optional<VoxelBox> always_shown = voxels_of_shell(options.probe, volume);
-    const uint32_t side = options.part_pixels;
+    uint64_t images_of_eye = 0;
+    if (!shot.is_slice && (scene.has_surfaces() || (probe && probe->ball_share > 0.0))) ++images_of_eye;
+    if (probe && probe->preview) images_of_eye += 2;
+    return PIXEL_BYTES * (1 + (shot.right_eye ? 2 * (1 + images_of_eye) : images_of_eye));
+}
+
+/// Some rows of a pane in parts, the first one last.
+std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows, uint32_t side)
+{
     std::vector<PicturePart> parts;
-    for (uint32_t y = 0; y < pixels.y; y += side)
-        for (uint32_t x = 0; x < pixels.x; x += side) {
-            const glm::uvec2 begin(x, y);
-            parts.push_back({.pixels = pixels,
-                             .begin = begin,
-                             .end = glm::min(begin + side, pixels),
-                             .probe = options.probe,
-                             .always_shown = always_shown});
+    for (uint32_t y = rows.begin.y; y < rows.end.y; y += side)
+        for (uint32_t x = rows.begin.x; x < rows.end.x; x += side) {
+            PicturePart& part = parts.emplace_back(whole);
+            part.begin = {x, y};
+            part.end = glm::min(part.begin + side, rows.end);
         }
     std::ranges::reverse(parts);
     return parts;
@@ -67,14 +78,17 @@ uint64_t area_of(const PicturePart& part)
 
 }  // namespace
 
-PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options)
-    : renderer_(renderer), look_(session.look()), options_(options), size_(look_.render.size)
+PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
+                       TakeRows take_rows)
+    : renderer_(renderer),
+      look_(session.look()),
+      options_(options),
+      take_rows_(std::move(take_rows)),
+      size_(look_.render.size)
 {
     const VolumeInfo& info = scene().info();
-    const uint64_t bytes = uint64_t(size_.x) * size_.y * 4 * sizeof(float);
-    if (bytes > renderer_.host_budget())
-        fail("render.size is ", size_.x, " x ", size_.y, " pixels, which take ", bytes >> 20,
-             " MiB of memory; expected at most the host's budget, ", renderer_.host_budget() >> 20, " MiB");
+    if (scene().draws_finest()) look_.render.detail = 0.0;
+    always_shown_ = voxels_of_shell(options_.probe, info);
     const glm::dvec3 probe_voxel = session.probe.voxel.value_or(0.5 * glm::dvec3(info.size));
     panes_ = panes_of(session.view, camera, size_, info, probe_voxel);
     overlay_ = {.main = camera,
@@ -86,19 +100,90 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
                           .color = probe->color,
                           .is_outlined = options_.outlines_probe};
     }
-    picture_.image = {int(size_.x), int(size_.y), std::vector<float>(size_t(size_.x) * size_.y * 4)};
-    begin_pane();
+    const uint64_t row_bytes = PIXEL_BYTES * size_.x;
+    const uint64_t band_bytes = std::min(MAX_BAND_BYTES, renderer_.memory().host_bytes_left() / 8);
+    band_rows_ = uint32_t(std::clamp<uint64_t>(band_bytes / row_bytes, 1, size_.y));
+    begin_band();
 }
 
-void PictureJob::begin_pane()
+PictureJob::~PictureJob()
 {
-    parts_ = parts_of(pane().pixels(), options_, scene().info());
+    renderer_.note_picture_bytes(0);
 }
 
-void PictureJob::end_pane()
+void PictureJob::begin_band()
 {
-    const PixelBox& box = pane().box;
-    draw_strokes(picture_.image, strokes_of(pane(), overlay_, scene().info()), box);
+    band_begin_ = band_end_;
+    band_end_ = std::min(band_begin_ + band_rows_, size_.y);
+    const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
+    // Whoever takes the rows may hold a band while the next one is drawn; a part is copied once more.
+    constexpr uint64_t BANDS = 2;
+    renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
+                                 PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
+    band_ = {int(size_.x), int(band_end_ - band_begin_), std::vector<float>(values)};
+    pane_ = 0;
+    begin_parts();
+    if (parts_.empty()) end_band();  // a row that panes leave free
+}
+
+/// The parts of the pane within the band; of the next pane, where this one has none there.
+void PictureJob::begin_parts()
+{
+    for (; pane_ < panes_.size(); ++pane_) {
+        const PixelBox& box = pane().box;
+        const PixelBox met{{box.begin.x, std::max(box.begin.y, band_begin_)},
+                           {box.end.x, std::min(box.end.y, band_end_)}};
+        if (met.empty()) continue;
+        const PicturePart whole{.pixels = pane().pixels(),
+                                .begin = glm::uvec2(0),
+                                .end = glm::uvec2(0),
+                                .probe = options_.probe,
+                                .always_shown = always_shown_};
+        parts_ = parts_of(whole, {met.begin - box.begin, met.end - box.begin}, part_side());
+        return;
+    }
+}
+
+/// The side of parts that the memory which is left holds twice: parts at borders have images of their own.
+uint32_t PictureJob::part_side()
+{
+    gpu::Memory& memory = renderer_.memory();
+    const uint64_t of_pixel = device_bytes_per_pixel(scene(), pane().shot, options_.probe);
+    uint64_t side = options_.part_pixels;
+    const auto fits = [&](uint64_t spare) {
+        const uint64_t left = memory.device_bytes_left();
+        return side * side * of_pixel <= (left - std::min(left, spare)) / 2 &&
+               side * side * PIXEL_BYTES <= memory.host_bytes_left() / 2;
+    };
+    static_cast<void>(!pane().shot.is_slice && scene().has_occlusion(look_));  // takes its memory
+    if (fits(BESIDE_PARTS)) return uint32_t(side);
+    // What is needed whatever the part's size is made now, so that the rest is known.
+    renderer_.executor().run(
+        prepared(
+            scene(), look_, pane().shot,
+            {.pixels = pane().pixels(), .begin = glm::uvec2(0), .end = glm::uvec2(1), .always_shown = always_shown_}),
+        {.timestamps = false});
+    memory.free_idle();
+    while (side > 1 && !fits(0)) side = (side + 1) / 2;
+    return uint32_t(side);
+}
+
+/// Draws lines over the band and hands it on.
+void PictureJob::end_band()
+{
+    for (const Pane& each : panes_)
+        draw_strokes(band_, strokes_of(each, overlay_, scene().info()), each.box, band_begin_);
+    take_rows_(std::exchange(band_, {}));
+    if (band_end_ < size_.y) return begin_band();
+    renderer_.note_picture_bytes(0);
+}
+
+/// Loads the bricks that light comes from, as far as there is room.
+void PictureJob::load_around()
+{
+    if (pane().shot.is_slice || !scene().has_occlusion(look_)) return;
+    scene().want_occlusion(look_);
+    scene().advance(true);
 }
 
 /// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
@@ -106,10 +191,7 @@ void PictureJob::renew_occlusion()
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     if (pane().shot.is_slice) return;
-    if (scene().has_occlusion(look_)) {
-        scene().want_occlusion(look_);
-        scene().advance(true);
-    }
+    load_around();
     while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST))
         append(picture_.passes,
                renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
@@ -118,14 +200,13 @@ void PictureJob::renew_occlusion()
 void PictureJob::step()
 {
     SHVR_CHECK(!is_done());
-    if (parts_.empty()) {
-        ++pane_;
-        begin_pane();
-    }
     const PicturePart part = parts_.back();
     parts_.pop_back();
     draw_completely(part);
-    if (parts_.empty()) end_pane();
+    if (!parts_.empty()) return;
+    ++pane_;
+    begin_parts();
+    if (parts_.empty()) end_band();
 }
 
 /// Draws a part with the bricks on the device; stores its pixels, and reports the visited bricks to the volume.
@@ -142,7 +223,7 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
     const std::byte* row = result.read_backs[pixels].data();
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
-        std::memcpy(&picture_.image.rgba[4 * (origin.x + size_t(size_.x) * (origin.y + y))], row, row_bytes);
+        std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
     picture_.wall_ms += result.wall_ms;
     return std::move(result.passes);
 }
@@ -159,6 +240,7 @@ void PictureJob::draw_completely(const PicturePart& part)
         renew_occlusion();
         passes = draw(part);
         scene().advance(true);
+        load_around();  // bricks seen again may have been lit while there was no room for those around them
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) break;
         if (volume.state() == State::limited) break;
@@ -168,15 +250,26 @@ void PictureJob::draw_completely(const PicturePart& part)
         return;
     }
     drawn_pixels_ += area_of(part);
+    if (volume.state() == State::limited) note_limited();
     picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
     append(picture_.passes, std::move(passes));
 }
 
+/// One ray needs more bricks than there is room for.
+void PictureJob::note_limited()
+{
+    if (!picture_.warnings.empty()) return;
+    const DeviceVolume::Counts counts = scene().volume().counts().value_or(DeviceVolume::Counts{});
+    const uint64_t budget = renderer_.memory().device_budget() >> 20;
+    picture_.warnings.push_back(sentence(
+        "the light along one ray passes more bricks of the volume than the ", counts.slots, " that a device budget of ",
+        budget, " MiB has room for; expected a larger one, as --budget-device ", 2 * budget, " gives"));
+}
+
 Picture PictureJob::take()
 {
-    SHVR_CHECK(is_done());
-    picture_.complete = picture_.complete && !scene().occlusion_has_no_room();
-    picture_.warnings = scene().take_messages();
+    picture_.complete = is_complete();
+    for (std::string& message : scene().take_messages()) picture_.warnings.push_back(std::move(message));
     return std::move(picture_);
 }
 

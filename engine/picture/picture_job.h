@@ -1,6 +1,12 @@
 #pragma once
-// A picture that is made part by part, so that it may be larger than the device can hold and leaves time for other work
-// in between. The parts together equal a picture drawn whole, bit for bit. One thread, the renderer's.
+// A picture that is made part by part and handed on in bands of rows, so that it may be larger than device and host can
+// hold, and leaves time for other work in between. The parts together equal a picture drawn whole, bit for bit. One
+// thread, the renderer's.
+//
+//   picture -> bands of rows, as high as the host has room for -> panes that a band meets -> parts, as large as the
+//   device has room for -> quarters, where a part needs more bricks than there is room for
+
+#include <functional>
 
 #include "engine/look/overlay.h"
 #include "engine/picture/renderer.h"
@@ -9,23 +15,35 @@ namespace shvr {
 
 class PictureJob {
 public:
-    /// Fails where the host's budget cannot hold the picture.
-    PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options);
+    /// Takes the next rows from the top, as wide as the picture.
+    using TakeRows = std::function<void(ImageF rows)>;
+    PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
+               TakeRows take_rows);
+    ~PictureJob();
+    PictureJob(const PictureJob&) = delete;
+    PictureJob& operator=(const PictureJob&) = delete;
 
-    bool is_done() const { return parts_.empty() && pane_ + 1 >= panes_.size(); }
+    bool is_done() const { return parts_.empty() && band_end_ == size_.y; }
     /// Draws the next part and waits for it, and for paged bricks: a part is drawn again until all bricks that its rays
-    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters.
+    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters. Hands on
+    /// the rows of a band that is done.
     void step();
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
-    /// The picture, once it is done.
+    /// Whether nothing is missing from what is drawn so far.
+    bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room(); }
+    /// All but the image. Call it once no step follows.
     Picture take();
 
 private:
-    void begin_pane();
-    void end_pane();
+    void begin_parts();
+    void begin_band();
+    void end_band();
+    uint32_t part_side();
     std::vector<gpu::PassReport> draw(const PicturePart& part);
     void draw_completely(const PicturePart& part);
+    void note_limited();
+    void load_around();
     void renew_occlusion();
     Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }
@@ -33,11 +51,16 @@ private:
     Renderer& renderer_;
     Look look_;
     RenderOptions options_;
+    TakeRows take_rows_;
     glm::uvec2 size_;
+    std::optional<VoxelBox> always_shown_;
     OverlayScene overlay_;
     std::vector<Pane> panes_;
+    uint32_t band_rows_ = 1;
+    uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
+    ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< parts of the pane still to be drawn, the next one last
+    std::vector<PicturePart> parts_;  ///< of the pane within the band, still to be drawn, the next one last
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
 };

@@ -49,20 +49,37 @@ Scene& Renderer::scene() const
 uint64_t Renderer::host_bytes() const
 {
     const auto counts = scene_ ? scene_->volume().counts() : std::nullopt;
-    return memory_.host_bytes() + (counts ? counts->host_bytes : 0);
+    return memory_.host_bytes() + (counts ? counts->host_bytes : 0) + picture_bytes_;
 }
 
 uint64_t Renderer::peak_host_bytes() const
 {
     const auto counts = scene_ ? scene_->volume().counts() : std::nullopt;
-    return memory_.peak_host_bytes() + (counts ? counts->peak_host_bytes : 0);
+    return memory_.peak_host_bytes() + (counts ? counts->peak_host_bytes : 0) + peak_picture_bytes_;
+}
+
+void Renderer::note_picture_bytes(uint64_t bytes)
+{
+    picture_bytes_ = bytes;
+    peak_picture_bytes_ = std::max(peak_picture_bytes_, bytes);
 }
 
 Picture Renderer::render(const Session& session, const Camera& camera, const RenderOptions& options)
 {
-    PictureJob job(*this, session, camera, options);
+    const glm::uvec2 size = session.render.size;
+    const size_t values = size_t(size.x) * size.y * 4;
+    if (values * sizeof(float) > host_budget_)
+        fail("render.size is ", size.x, " x ", size.y, " pixels, which take ", values * sizeof(float) >> 20,
+             " MiB of memory; expected at most the host's budget, ", host_budget_ >> 20, " MiB");
+    ImageF image{int(size.x), int(size.y), {}};
+    image.rgba.reserve(values);
+    PictureJob job(*this, session, camera, options, [&](const ImageF& rows) {
+        image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+    });
     while (!job.is_done()) job.step();
-    return job.take();
+    Picture picture = job.take();
+    picture.image = std::move(image);
+    return picture;
 }
 
 std::optional<glm::dvec3> Renderer::pick(const Look& look, const Camera& camera, const glm::uvec2& pixels,

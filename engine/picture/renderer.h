@@ -18,7 +18,7 @@ struct RenderOptions {
     bool count_work = false;      ///< keep the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
-    /// Side in pixels of the parts that are drawn one at a time; bounds the device memory that any picture takes.
+    /// Side in pixels of the parts that are drawn one at a time, at most: smaller where memory is short.
     uint32_t part_pixels = 1024;
 };
 
@@ -47,9 +47,11 @@ public:
     gpu::Executor& executor() { return executor_; }
     /// The host's part of the budget, in bytes.
     uint64_t host_budget() const { return host_budget_; }
-    /// Host bytes in use: mapped memory, and bricks kept on the host.
+    /// Host bytes in use: mapped memory, bricks kept on the host, and a picture that is being made.
     uint64_t host_bytes() const;
     uint64_t peak_host_bytes() const;
+    /// What the picture that is being made takes now, for these accounts.
+    void note_picture_bytes(uint64_t bytes);
 
     /// Replaces the scene by one of this volume. The `settings` for sampling and paging decide how the device holds the
     /// bricks. `with_occlusion`: reserves room for ambient occlusion. On failure the previous scene stays if both fit
@@ -61,7 +63,8 @@ public:
     DeviceVolume& volume() const { return scene().volume(); }
     const VolumeStatistics& statistics() const { return scene().statistics(); }
 
-    /// Draws `session` (its look and its panes) from `camera`. Waits for the device.
+    /// Draws `session` (its look and its panes) from `camera`. Waits for the device. Fails where the host's budget
+    /// cannot hold the picture.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
     /// What is visible at a pixel: where its ray becomes half opaque, in volume space. `probe`: drawn as in the
     /// picture. Waits for the device.
@@ -74,6 +77,7 @@ private:
     gpu::Memory memory_;
     gpu::Executor executor_;
     int threads_;
+    uint64_t picture_bytes_ = 0, peak_picture_bytes_ = 0;
     std::unique_ptr<Scene> scene_;
 };
 

@@ -1,8 +1,12 @@
 """shvr render: pictures."""
 import json
+import os
+import signal
+import subprocess
+import time
 import unittest
 
-from harness import CliTest, Volume, read_png_header
+from harness import ENVIRONMENT, SHVR, CliTest, Volume, read_png_header
 
 KEYS = ["size", "complete", "passes", "counters", "bytes", "warnings"]
 
@@ -115,7 +119,69 @@ class Render(CliTest):
 
     def test_a_budget_that_is_too_small_names_what_did_not_fit(self):
         session = self.write_session(volume={"procedural": "sphere", "size": [128, 128, 128]})
-        self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1", says=["device memory", "bricks"])
+        said = self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1",
+                                  says=["device memory", "picture", "--budget-device"])
+        enough = said.split("--budget-device ")[1].split()[0]
+        self.render(session, "a.png", "--budget-device", enough)
+
+    def test_every_budget_draws_the_same_bytes(self):
+        session = self.write_session(volume={"procedural": "tubes", "size": [128, 128, 128], "seed": 3})
+        large, _ = self.render(session, "large.png", "--budget-device", "1024", "--size", "1024x1024")
+        for mib in [16, 24, 64]:
+            small, result = self.render(session, f"{mib}.png", "--budget-device", mib, "--size", "1024x1024")
+            self.assertIs(result["complete"], True)
+            self.assertLessEqual(result["bytes"]["peak_device"], mib << 20)
+            self.assertEqual(small.read_bytes(), large.read_bytes(), mib)
+
+    def test_sizes_are_whole_numbers_up_to_65536(self):
+        session = self.write_session()
+        for size in ["65537x1", "1x65537", "0x5", "5", "5x", "x5", "5x5x5", "4294967297x1", "-1x5", "5x5 ", "1e3x5"]:
+            self.check_refused("render", session, "-o", self.folder / "a.png", f"--size={size}", status=2,
+                               says=["--size", size, "65536"])
+        self.render(session, "wide.png", "--size", "65536x1")
+        self.assertEqual(read_png_header(self.folder / "wide.png"), (65536, 1))
+
+    def peak_of(self, *arguments):
+        """The object of --json, and the largest resident set in bytes."""
+        with subprocess.Popen([SHVR, "render", *map(str, arguments), "--json"], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
+            out, err = process.stdout.read(), process.stderr.read()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out), 1024 * usage.ru_maxrss
+
+    def test_a_large_picture_takes_the_memory_of_a_band_of_rows_and_is_accounted(self):
+        # Nearly empty, so that only its pixels take time; whole it would take 512 MiB of light and 128 of bytes.
+        session = self.write_session(transfer_function={"points": [
+            {"intensity": 250, "color": "#204080", "opacity": 0.0}, {"intensity": 255, "color": "#204080", "opacity": 1.0}]})
+        for name in ["a.png", "a.pfm"]:
+            picture = self.folder / name
+            _, least = self.peak_of(session, "-o", picture, "--size", "16x16")
+            result, resident = self.peak_of(session, "-o", picture, "--size", "16384x2048")
+            self.assertLess(resident - least, 160 << 20)
+            self.assertLess(result["bytes"]["peak_host"], 160 << 20)
+            self.assertGreater(result["bytes"]["peak_host"], 32 << 20)
+            if name == "a.pfm":
+                self.assertEqual(picture.stat().st_size, len("PF\n16384 2048\n-1.0\n") + 16384 * 2048 * 12)
+        self.assertEqual(read_png_header(self.folder / "a.png"), (16384, 2048))
+
+    def test_a_stopped_picture_leaves_the_old_file_and_nothing_else(self):
+        session = self.write_session(volume={"procedural": "tubes", "size": [64, 64, 64], "seed": 3})
+        picture, _ = self.render(session, "a.png")
+        before = picture.read_bytes()
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            with subprocess.Popen([SHVR, "render", session, "-o", picture, "--size", "65536x65536"],
+                                  stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
+                while not list(self.folder.glob(".shvr-*.tmp")):
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                process.send_signal(number)
+                said = process.stderr.read()
+                self.assertEqual(process.wait(), 1, said)
+            self.assertIn("a.png: stopped", said)
+            self.assertEqual(picture.read_bytes(), before)
+            self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.png", "session.json"])
 
 
 if __name__ == "__main__":

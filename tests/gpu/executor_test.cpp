@@ -88,14 +88,18 @@ TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch 
     CHECK(whole == tiled);
 }
 
-TEST_CASE_FIXTURE(Fixture, "an allocation over the budget is refused by name before it is made, and nothing is lost")
+TEST_CASE_FIXTURE(Fixture,
+                  "an allocation over the budget is refused before it is made, with a remedy, and nothing is lost")
 {
     const gpu::Storage some = memory.create("some", buffer_desc(uint64_t(40) << 20));
     const uint64_t used = memory.device_bytes();
-    const std::string message =
-        message_of([&] { static_cast<void>(memory.create("atlas", buffer_desc(uint64_t(30) << 20))); });
-    CHECK(message.find("'atlas' needs 30 MiB") != std::string::npos);
-    CHECK(message.find("40 MiB of the budget of 64 MiB") != std::string::npos);
+    const std::string message = message_of([&] {
+        static_cast<void>(
+            memory.create("atlas", buffer_desc(uint64_t(30) << 20), gpu::Placement::device, "the volume"));
+    });
+    CHECK(message ==
+          "device memory: the volume needs 30 MiB, and 24 MiB of 64 MiB are left; expected a larger budget, as "
+          "--budget-device 141 gives");
     CHECK(memory.device_bytes() == used);
     CHECK(memory.create("small", buffer_desc(uint64_t(20) << 20)).desc().bytes == uint64_t(20) << 20);
     CHECK(memory.device_bytes() == used);  // the temporary has been freed
@@ -115,6 +119,18 @@ TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same
     CHECK(memory.device_bytes() == after_one);
     for (int i = 0; i < 80; ++i) run(1024);
     CHECK(memory.device_bytes() < after_one);
+}
+
+TEST_CASE_FIXTURE(Fixture, "where a budget would refuse, memory that frames have left idle is freed first")
+{
+    const auto run = [&](uint64_t mib) {
+        FrameGraph graph;
+        static_cast<void>(graph.read_back(graph.fill(graph.create("transient", buffer_desc(mib << 20)), 7)));
+        executor.run(graph);
+    };
+    for (const uint64_t mib : {20, 21, 22, 23, 24}) run(mib);
+    CHECK(memory.create("large", buffer_desc(uint64_t(50) << 20)).desc().bytes == uint64_t(50) << 20);
+    CHECK(memory.peak_device_bytes() <= memory.device_budget());
 }
 
 TEST_CASE_FIXTURE(Fixture, "frames in flight see what those before them wrote, whoever waits first")

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "engine/base/image_file.h"
 #include "engine/base/text.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/volume/unit.h"
@@ -168,12 +169,18 @@ void check_output(const char* option, const std::string& path, const std::vector
 
 glm::uvec2 parse_size(const std::string& text)
 {
-    unsigned width = 0, height = 0;
-    char end = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &end) != 2 || width < 1 || height < 1 || width > 16384 ||
-        height > 16384)
-        throw UsageError(sentence("--size is '", text, "'; expected WIDTHxHEIGHT, each 1 ... 16384, as in 512x384"));
-    return {width, height};
+    const size_t times = text.find('x');
+    const auto side = [&](const std::string& digits) {
+        const std::optional<int64_t> pixels = whole_of(digits);
+        return pixels && *pixels >= 1 && *pixels <= MAX_IMAGE_SIDE ? uint32_t(*pixels) : 0;
+    };
+    const glm::uvec2 size = times == std::string::npos
+                                ? glm::uvec2(0)
+                                : glm::uvec2(side(text.substr(0, times)), side(text.substr(times + 1)));
+    if (size.x == 0 || size.y == 0)
+        throw UsageError(sentence("--size is ", in_quotes(text), "; expected WIDTHxHEIGHT, each from 1 to ",
+                                  MAX_IMAGE_SIDE, ", as in 512x384"));
+    return size;
 }
 
 glm::dvec3 parse_spacing(const std::string& text)

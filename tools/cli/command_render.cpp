@@ -1,9 +1,11 @@
 // shvr render: a picture of a session, a project or a bare volume.
 
+#include <atomic>
+#include <csignal>
+
 #include "engine/base/file.h"
-#include "engine/base/image_file.h"
-#include "engine/base/text.h"
 #include "engine/live/previewer.h"
+#include "engine/picture/picture_file.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -20,6 +22,29 @@ struct RenderCommandOptions {
 std::string why_incomplete(const Picture& picture)
 {
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
+}
+
+std::atomic<bool> render_is_stopped = false;
+
+extern "C" void stop_rendering(int signal_number)
+{
+    render_is_stopped = true;
+    std::signal(signal_number, SIG_DFL);  // a second one ends the program at once
+}
+
+/// Draws all parts. Fails, and leaves the old file as it was, where the picture lacks something or is stopped.
+Picture draw(PictureFile& file, const RenderCommandOptions& options)
+{
+    while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
+        if (render_is_stopped) fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
+        file.step();
+    }
+    Picture picture = file.take();
+    if (!picture.complete && !options.allows_incomplete)
+        fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
+             "; --allow-incomplete writes it nevertheless");
+    file.commit();
+    return picture;
 }
 
 void run_render(RenderCommandOptions options)
@@ -39,15 +64,13 @@ void run_render(RenderCommandOptions options)
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
-    const Picture picture = opened.renderer->render(
-        opened.session, camera, {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
-    if (!picture.complete && !options.allows_incomplete)
-        fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
-             "; --allow-incomplete writes it nevertheless");
-    if (lower_case(std::filesystem::path(options.output).extension().string()) == ".pfm")
-        write_pfm(options.output, picture.image);
-    else
-        write_png(options.output, to_image8(picture.image));
+    // From here on there is a file to take away.
+    std::signal(SIGINT, stop_rendering);
+    std::signal(SIGTERM, stop_rendering);
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
+    PictureFile file(options.output, *opened.renderer, opened.session, camera,
+                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
+    const Picture picture = draw(file, options);
     check_validation(opened);
     warn(picture.warnings, options.common);
     for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);

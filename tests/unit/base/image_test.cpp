@@ -2,16 +2,19 @@
 
 #include <doctest/doctest.h>
 #include <png.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <random>
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/base/file.h"
 #include "engine/base/image_file.h"
 
 using namespace shvr;
@@ -291,4 +294,99 @@ TEST_CASE("PNG files are written and read by path")
     write_png(path, second);
     CHECK(read_png(path) == second);
     std::filesystem::remove(path);
+}
+
+namespace {
+
+ImageF noise_of_light(int width, int height)
+{
+    const Image8 bytes = noise(width, height, 7);
+    ImageF image{width, height, {}};
+    for (const uint8_t byte : bytes.rgba) image.rgba.push_back(float(byte) / 200.0f);
+    return image;
+}
+
+/// Adds an image's rows a few at a time.
+void add_in_bands(ImageWriter& writer, const ImageF& image, int band)
+{
+    const size_t row = 4 * size_t(image.width);
+    for (int y = 0; y < image.height; y += band) {
+        const int rows = std::min(band, image.height - y);
+        const auto from = image.rgba.begin() + std::ptrdiff_t(row) * y;
+        writer.add({image.width, rows, {from, from + std::ptrdiff_t(row) * rows}});
+    }
+}
+
+std::vector<std::byte> bytes_in(const std::filesystem::path& path)
+{
+    return read_file(path, 1 << 24);
+}
+
+}  // namespace
+
+TEST_CASE("pictures written row by row have the bytes of those written at once")
+{
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("shvr rows test " + std::to_string(::getpid()));
+    std::filesystem::create_directory(folder);
+    const ImageF image = noise_of_light(61, 47);
+    write_png(folder / "whole.png", to_image8(image));
+    write_pfm(folder / "whole.pfm", image);
+    CHECK(read_png(folder / "whole.png") == to_image8(image));
+    for (const char* extension : {".png", ".pfm"})
+        for (const int band : {1, 5, 47}) {
+            CAPTURE(band);
+            const std::filesystem::path path = folder / (std::string("rows") + extension);
+            const std::unique_ptr<ImageWriter> writer = image_writer(path, image.width, image.height);
+            add_in_bands(*writer, image, band);
+            CHECK(!std::filesystem::exists(path));
+            writer->commit();
+            CHECK(bytes_in(path) == bytes_in(folder / (std::string("whole") + extension)));
+            std::filesystem::remove(path);
+        }
+
+    // Abandoned, a picture leaves the old file and nothing else.
+    const std::vector<std::byte> before = bytes_in(folder / "whole.png");
+    {
+        const std::unique_ptr<ImageWriter> writer = image_writer(folder / "whole.png", 61, 47);
+        add_in_bands(*writer, noise_of_light(61, 20), 5);
+    }
+    CHECK(bytes_in(folder / "whole.png") == before);
+    CHECK(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()) == 2);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a picture may have 65536 pixels along each side and no more")
+{
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("shvr sides test " + std::to_string(::getpid()) + ".png");
+    CHECK_NOTHROW(image_writer(path, 65536, 65536));
+    for (const auto& [width, height] : {std::pair{65537, 1}, {1, 65537}, {0, 1}, {1, 0}})
+        CHECK_THROWS_WITH_AS(image_writer(path, width, height),
+                             sentence(path.string(), ": the picture is ", width, " x ", height,
+                                      " pixels; expected 1 to 65536 along each side")
+                                 .c_str(),
+                             Error);
+    CHECK(!std::filesystem::exists(path));
+}
+
+TEST_CASE("a picture that the disk does not take fails with the system's reason")
+{
+    // Noise fills the 8 KiB that libpng buffers many times over; the writer stops at the first refused byte.
+    const std::unique_ptr<ImageWriter> full =
+        image_writer(std::filesystem::temp_directory_path() / "shvr full test.png", 300, 300);
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    void (*old_handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{4096, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+    std::string said;
+    try {
+        full->add(noise_of_light(300, 300));
+    } catch (const Error& error) {
+        said = error.what();
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, old_handler);
+    CHECK(said.find("shvr full test.png: cannot be written: File too large") != std::string::npos);
 }

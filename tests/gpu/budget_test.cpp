@@ -1,0 +1,181 @@
+// Any device budget from 16 MiB on draws the same bits as a large one: in smaller parts, with fewer bricks.
+
+#include <functional>
+
+#include <doctest/doctest.h>
+
+#include "engine/live/annotator.h"
+#include "engine/picture/picture_job.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+using Source = std::shared_ptr<const VolumeSource>;
+constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
+
+struct Scenery {
+    Session session;
+    RenderOptions options;
+    Document document;
+};
+
+Scenery scenery_of(const VolumeInfo& info, const glm::uvec2& pixels)
+{
+    Scenery scenery{.session = {}, .options = {}, .document = {Mask(info.size), TraceGraph{}}};
+    scenery.session.transfer_function = TransferFunction({{90.0, glm::dvec3(0.8, 0.3, 0.1), 0.0},
+                                                          {140.0, glm::dvec3(0.9, 0.7, 0.3), 0.3},
+                                                          {255.0, glm::dvec3(1.0), 0.6}});
+    scenery.session.light.shaded = true;
+    scenery.session.render.size = pixels;
+    scenery.session.render.sampling = Sampling::exact;
+    return scenery;
+}
+
+Mask painted_mask(const Size3& size, int64_t every)
+{
+    Mask mask(size);
+    const glm::i64vec3 counts = mask.brick_counts();
+    for (int64_t brick = 0; brick < counts.x * counts.y * counts.z; brick += every)
+        mask.apply({.brick = brick, .runs = {{.first = 9000, .last = 21000, .before = 0, .after = 3}}},
+                   Direction::forwards);
+    return mask;
+}
+
+ProbeLook probe_at(const glm::dvec3& center)
+{
+    const Change change =
+        MaskBrickChange{.brick = 0, .runs = {{.first = 20000, .last = 21500, .before = 0, .after = 3}}};
+    ProbeLook probe{.center = center, .radius = 20.0, .color = {0.9, 0.4, 0.1}, .ball_share = 0.4};
+    probe.shell = ShellLook{.threshold = 110.0};
+    probe.preview = std::make_shared<PaintPreview>(preview_of({&change, 1}, Size3(128), PaintPreview::Kind::group));
+    return probe;
+}
+
+/// A renderer with its own budget, as the command line uses one.
+Picture picture_of(const Source& source, const Scenery& scenery, uint64_t device_mib)
+{
+    Renderer renderer({.device = {"", true}, .budget = {device_mib << 20, 0}, .threads = 2});
+    renderer.load(source, BYTES, scenery.session.render, shows_occlusion(scenery.session.light));
+    renderer.scene().show(scenery.document);
+    renderer.scene().show_surfaces(scenery.session.surfaces, scenery.document.trace, scenery.session.groups);
+    Picture picture = renderer.render(scenery.session, camera_looking("front", source->info()), scenery.options);
+    CHECK(renderer.memory().peak_device_bytes() <= device_mib << 20);
+    for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
+    return picture;
+}
+
+void check_budgets(const char* name, const Source& source, const Scenery& scenery,
+                   const std::vector<uint64_t>& device_mib)
+{
+    CAPTURE(std::string(name));
+    const Picture expected = picture_of(source, scenery, 1024);
+    CHECK(expected.complete);
+    for (const uint64_t mib : device_mib) {
+        CAPTURE(mib);
+        const Picture seen = picture_of(source, scenery, mib);
+        for (const std::string& warning : seen.warnings) FAIL_CHECK(warning);
+        CHECK(seen.complete);
+        CHECK(different_bits(seen.image, expected.image) == 0);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("pictures larger than a device's budget have the bits of those under a large one")
+{
+    const Source source = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});
+    check_budgets("a megapixel", source, scenery_of(source->info(), {1024, 1024}), {16, 32});
+    check_budgets("wide", source, scenery_of(source->info(), {3000, 300}), {64});
+}
+
+TEST_CASE("every kind of picture has the same bits under every budget")
+{
+    const Source source = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});
+    const Scenery plain = scenery_of(source->info(), {240, 200});
+    const std::pair<const char*, std::function<void(Scenery&)>> kinds[] = {
+        {"slices", [](Scenery& s) { s.session.view.arrangement = Arrangement::slices; }},
+        {"pre-integration", [](Scenery& s) { s.session.render.preintegration = true; }},
+        {"ambient occlusion",
+         [](Scenery& s) { s.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8}; }},
+        {"paint, surfaces and the probe, in two colours",
+         [&](Scenery& s) {
+             s.document.mask = painted_mask(source->info().size, 3);
+             s.session.surfaces = {{{10, 10, 10}, {100, 90, 95}, 2.0, 8.0, glm::dvec3(0.1, 0.9, 0.3)}};
+             s.session.view.arrangement = Arrangement::stereo;
+             s.session.view.stereo.output = StereoOutput::anaglyph;
+             s.options.probe = probe_at({64.0, 30.0, 64.0});
+             s.options.outlines_probe = true;
+         }},
+    };
+    for (const auto& [name, change] : kinds) {
+        Scenery scenery = plain;
+        change(scenery);
+        check_budgets(name, source, scenery, {16, 24, 64});
+    }
+}
+
+TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is resident")
+{
+    // 1000 bricks: 80 MB.
+    const Source source = open_procedural({.kind = "tubes", .size = {320, 320, 320}, .seed = 3});
+    Scenery scenery = scenery_of(source->info(), {96, 80});
+    check_budgets("from afar", source, scenery, {16, 64});
+    Scenery lit = scenery;
+    lit.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
+    check_budgets("with ambient occlusion", source, lit, {16, 24});
+    scenery.document.mask = painted_mask(source->info().size, 6);  // 5.4 MB
+    check_budgets("painted", source, scenery, {16, 24});
+}
+
+TEST_CASE("paint that a budget does not hold is refused in one sentence with a remedy")
+{
+    const Source source = open_procedural({.kind = "tubes", .size = {320, 320, 320}, .seed = 3});
+    Scenery scenery = scenery_of(source->info(), {16, 16});
+    scenery.document.mask = painted_mask(source->info().size, 1);
+    try {
+        static_cast<void>(picture_of(source, scenery, 16));
+        FAIL_CHECK("is not refused");
+    } catch (const gpu::BudgetError& error) {
+        const std::string said = error.what();
+        CAPTURE(said);
+        const size_t at = said.find("--budget-device ");
+        REQUIRE(at != std::string::npos);
+        CHECK(said.find("paint") != std::string::npos);
+        const auto mib = uint64_t(std::stoi(said.substr(at + 16)));
+        CHECK(mib > 32);
+        CHECK(mib < 128);
+        check_budgets("as advised", source, scenery, {mib});
+    }
+}
+
+TEST_CASE("bands of rows have the bits of a picture drawn whole, lines over them included")
+{
+    const Source source = open_procedural({.kind = "tubes", .size = {48, 48, 48}, .seed = 3});
+    Scenery scenery = scenery_of(source->info(), {600, 301});
+    scenery.options = {.probe = probe_at({24.0, 20.0, 24.0}), .outlines_probe = true};
+    scenery.options.probe->preview = nullptr;
+    for (const Arrangement arrangement : {Arrangement::single, Arrangement::overview, Arrangement::slices}) {
+        scenery.session.view.arrangement = arrangement;
+        const ImageF whole = picture_of(source, scenery, 1024).image;
+        Renderer renderer({.device = {"", true}, .budget = {0, 4 << 20}, .threads = 1});
+        renderer.load(source, BYTES, scenery.session.render);
+        ImageF image{600, 0, {}};
+        int bands = 0;
+        PictureJob job(renderer, scenery.session, camera_looking("front", source->info()), scenery.options,
+                       [&](const ImageF& rows) {
+                           image.height += rows.height;
+                           image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+                           ++bands;
+                       });
+        while (!job.is_done()) job.step();
+        CHECK(job.take().complete);
+        CHECK(bands >= 8);
+        REQUIRE(image.height == 301);
+        CHECK(different_bits(image, whole) == 0);
+        CHECK(renderer.peak_host_bytes() <= uint64_t{4} << 20);
+        for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
+    }
+}
