@@ -26,8 +26,7 @@ Described describe(const InfoCommandOptions& options)
 {
     const std::filesystem::path path = options.input;
     std::error_code ignored;
-    const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
-    const bool is_bare = std::filesystem::exists(path, ignored) && !is_project && path.extension() != ".json";
+    const bool is_bare = std::filesystem::exists(path, ignored) && session_file_of(path).empty();
     OpenedSession opened;
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare && options.common.settings.empty()) {
@@ -37,6 +36,7 @@ Described describe(const InfoCommandOptions& options)
     } else {
         opened = open_session(path, options.common.settings);
     }
+    warn_of_losses(opened.losses);
     Described described{.info = opened.source->info(),
                         .statistics = opened.statistics,
                         .warnings = std::move(opened.warnings),

@@ -44,6 +44,21 @@ void check_space(const std::string& file, const StatedSpace& stated, const Trace
              digits_of(expected.spacing), ", the spacing of this one");
 }
 
+std::string text_of(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space, Loops loops,
+                    std::vector<std::string>& notes)
+{
+    const std::string form = extension_of(path);
+    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
+    try {
+        return form == ".graphml" ? write_trace_graphml(trace, space)
+               : form == ".txt"   ? write_trace_text(trace)
+               : form == ".swc"   ? write_trace_swc(trace, space, loops, notes)
+                                  : write_trace_rsml(trace, space, loops, notes);
+    } catch (const Error& error) {
+        fail(path.string(), ": ", error.what());
+    }
+}
+
 }  // namespace
 
 TraceSpace space_of(const VolumeInfo& volume)
@@ -51,21 +66,17 @@ TraceSpace space_of(const VolumeInfo& volume)
     return {volume.size, volume.spacing, plain_unit(volume.unit)};
 }
 
+std::string trace_text(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space)
+{
+    std::vector<std::string> none;
+    return text_of(path, trace, space, Loops::refuse, none);
+}
+
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
                                     Loops loops)
 {
-    const std::string form = extension_of(path);
-    if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
     std::vector<std::string> notes;
-    std::string text;
-    try {
-        text = form == ".graphml" ? write_trace_graphml(trace, space)
-               : form == ".txt"   ? write_trace_text(trace)
-               : form == ".swc"   ? write_trace_swc(trace, space, loops, notes)
-                                  : write_trace_rsml(trace, space, loops, notes);
-    } catch (const Error& error) {
-        fail(path.string(), ": ", error.what());
-    }
+    const std::string text = text_of(path, trace, space, loops, notes);
     write_file_atomically(path, std::as_bytes(std::span(text)));
     return notes;
 }
