@@ -147,6 +147,12 @@ struct SetInteraction {
 struct Open {
     std::filesystem::path path;
 };
+/// Where another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
+struct ChooseBelief {
+    bool takes_files = false;
+};
+/// Saves all that is shown under names of its own, and opens that.
+struct WorkOnCopy {};
 struct ShowHelp {
     bool on = true;
 };
@@ -156,7 +162,7 @@ using Action = std::variant<Orbit, Roll, Move, Zoom, DragInMap, SetView, LookFro
                             SetTransferFunction, SetGroup, SetLight, SetPreintegration, SetOcclusion, UpdateOcclusion,
                             SetBlend, ProbeTo, ProbeOnto, PushProbe, ScaleProbe, SetBrush, ShowShell, ShowPreview,
                             ChooseGroup, SetTool, Paint, Trace, DragNode, SetHapticThreshold, Assist, SetProxyLaw, Undo,
-                            Redo, Save, Screenshot, SetInteraction, Open, ShowHelp, Quit>;
+                            Redo, Save, Screenshot, SetInteraction, Open, ChooseBelief, WorkOnCopy, ShowHelp, Quit>;
 using Actions = std::vector<Action>;
 
 /// Whether it may change the session other than the camera and the probe's position.
@@ -166,7 +172,7 @@ inline bool edits_session(const Action& action)
         return (std::holds_alternative<Kinds>(action) || ...);
     };
     using Harmless = std::variant<Orbit, Roll, Move, Zoom, DragInMap, LookFrom, MoveClip, ProbeTo, ProbeOnto, PushProbe,
-                                  UpdateOcclusion, Save, Screenshot, ShowHelp, Quit>;
+                                  UpdateOcclusion, Save, Screenshot, ChooseBelief, WorkOnCopy, ShowHelp, Quit>;
     return !is_one_of(static_cast<const Harmless*>(nullptr));
 }
 

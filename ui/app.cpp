@@ -56,14 +56,17 @@ void App::say(const std::string& status)
 void App::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
     const double begun_s = window_.now_s();
+    if (document_) document_->annotator.work().settle();  // it may be opened once more
     OpenedSession opened = open_session(path, settings);
+    const std::vector<std::string> losses = opened.losses;
     screenshots_.drop_large();
     View::Options view_options;
     view_options.swap_red_blue = window_.swaps_red_and_blue();
     if (document_) document_->screen.clear();
     look_again();
     try {
-        document_ = Document::open(*renderer_, std::move(opened), path, view_options, settings);
+        document_ = Document::open(*renderer_, std::move(opened), path, view_options, settings,
+                                   document_ ? document_->annotator.work().hold() : nullptr);
     } catch (const Error& error) {
         if (!document_) throw;
         bring_back(error.what());
@@ -74,6 +77,8 @@ void App::open(const std::filesystem::path& path, const std::vector<std::string>
         document_->touch.use(std::move(device), "haptic device");
     window_.set_title("SHVR");  // until the volume is visible
     std::string status = "Opened " + path.string();
+    if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
+    for (const std::string& loss : losses) status += "; " + loss;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const std::string& message : document_->messages) status += "; " + message;
     if (!device_said.empty()) status += "; " + device_said;
@@ -163,6 +168,7 @@ void App::draw()
 /// Never loses work: saves it before the window closes, and if saving fails keeps the window open.
 bool App::closes()
 {
+    if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) window_.close();
     if (!window_.should_close()) return false;
     if (!document_) return true;
     try {
@@ -173,13 +179,17 @@ bool App::closes()
     }
 }
 
-/// Paint is never discarded. Unsaved settings are discarded if the user closes the window a second time.
+/// Paint is never discarded. If the journal has all of it, the window closes when the user asks for it a second time,
+/// and unsaved settings are discarded.
 bool App::refuses_to_close(const std::string& why)
 {
-    if (document_->work_is_saved() && was_asked_to_close_) return false;
+    const bool is_kept = document_->work_is_saved() || document_->annotator.work().is_kept();
+    if (is_kept && was_asked_to_close_) return false;
     was_asked_to_close_ = true;
     say("The window stays open, since not all could be saved: " + why +
-        (document_->work_is_saved() ? "; close it again to leave without saving" : ""));
+        (document_->work_is_saved() ? "; close it again to leave without saving"
+         : is_kept                  ? "; all paint is in the journal: close it again to leave it there"
+                                    : ""));
     window_.stay_open();
     return true;
 }

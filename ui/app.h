@@ -8,6 +8,7 @@
 // probe, sketch, tiles and user interface share the device's queue in turns of a few milliseconds. The interface is
 // drawn when something changed, at most at the session's frame rate; with nothing to do the loop sleeps.
 
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -26,7 +27,8 @@ struct AppOptions {
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    bool allow_force = false;  ///< lets a haptic device with a verified profile push the hand
+    const std::atomic<bool>* stop = nullptr;  ///< once it is true, the window is asked to close, as by its button
+    bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
     glm::uvec2 window_size{1280, 800};
 };
 
@@ -124,6 +126,8 @@ private:
     void apply(const Screenshot& action);
     void apply(const SetInteraction& action);
     void apply(const Open& action);
+    void apply(const ChooseBelief& action);
+    void apply(const WorkOnCopy& action);
     void apply(const ShowHelp& action);
     void apply(const Quit& action);
 
@@ -142,7 +146,8 @@ private:
     bool look_is_stale_ = true;
     bool camera_moved_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    bool was_asked_to_close_ = false;  ///< and could not save the settings; nothing was done since
+    bool was_asked_to_close_ = false;  ///< and could not save everything; nothing was done since
+    bool was_stopped_ = false;         ///< from outside (AppOptions::stop)
     Attempt events_, touching_, recording_, painting_, previewing_, looking_, photographing_, drawing_;
     std::optional<double> undrawn_since_s_;  ///< every frame has failed since then
     Screenshots screenshots_;

@@ -43,7 +43,8 @@ void App::draw_ui()
         look_again();
     }
     if (!window_.present(layers, viewport_.layout().begin)) return;
-    if (document_ && !layers.empty()) window_.set_title(document_->volume().name + " - SHVR");
+    if (document_ && !layers.empty())
+        window_.set_title(document_->volume().name + " - SHVR" + (document_->only_looks() ? " (read only)" : ""));
     report_.presented({.number = window_.frames_presented(),
                        .begun_s = begun,
                        .moves = moves,
@@ -116,6 +117,9 @@ Model App::model()
             .undoable = document.annotator.history().undoable(),
             .redoable = document.annotator.history().redoable(),
             .is_saved = document.is_saved(),
+            .holder = document.holder,
+            .session_path = document.session_path,
+            .disputes = document.annotator.work().disputes(),
             .status = status_,
             .shows_help = shows_help_,
             .gpu_name = renderer_->device().traits().name,

@@ -74,9 +74,28 @@ void App::apply(const Open& action)
     open(action.path, {});
 }
 
-/// Saves all work as the Save command does; if the user only looked around, saves the view silently.
+void App::apply(const ChooseBelief& action)
+{
+    std::string said;
+    for (const Notice& notice : document_->annotator.choose(action.takes_files ? Belief::files : Belief::journal))
+        said += (said.empty() ? "" : "; ") + notice.text;
+    document_->drags_node = false;
+    look_again();
+    say(said);
+}
+
+void App::apply(const WorkOnCopy&)
+{
+    const std::filesystem::path copy = document_->save_copy();
+    open(copy, {});
+}
+
+/// Saves all work as the Save command does; if the user only looked around, saves the view silently. A window that only
+/// looks saves nothing, as it says; and while it is asked what to believe, annotation stays as the journal has it.
 void App::save_before_leaving()
 {
+    if (document_->only_looks()) return;
+    if (!document_->annotator.work().disputes().empty()) return document_->save_settings();
     if (document_->is_saved() && !document_->annotator.stroke_is_running()) return document_->keep_view();
     save();
 }
@@ -138,12 +157,13 @@ void App::save()
 {
     const std::string unpainted = finish_stroke();
     record_settings();
-    document_->save();
+    std::string kept;
+    for (const Notice& notice : document_->save()) kept += "; " + notice.text;
     const std::filesystem::path& trace = document_->session.trace_path;
     const bool has_trace = !trace.empty() && std::filesystem::exists(trace);
     say("Saved " + document_->session.mask_path.string() + (has_trace ? ", " + trace.string() : std::string()) +
         " and " + document_->session_path.string() +
-        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted));
+        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted) + kept);
 }
 
 void App::apply(const ShowHelp& action)

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
 #include "engine/live/trace_marks.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
@@ -17,11 +18,17 @@ const char* const WINDOW_CAMERA = "window";
 /// A session file is saved in place; for a volume, file or folder, the session file is put beside it.
 std::filesystem::path session_path_of(const std::filesystem::path& input)
 {
-    std::filesystem::path of_project = input / "shvr" / "session.json";
-    if (std::filesystem::exists(of_project)) return of_project;
-    if (input.extension() == ".json") return input;
+    if (std::filesystem::path file = session_file_of(input); !file.empty()) return file;
     std::filesystem::path beside = input.has_filename() ? input : input.parent_path();
     return beside.replace_extension(".session.json");
+}
+
+std::optional<std::string> text_of_session(const std::filesystem::path& path)
+{
+    constexpr int64_t LARGEST_SESSION = int64_t{16} << 20;
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+    return read_text(path, LARGEST_SESSION);
 }
 
 void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source, const VolumeStatistics& statistics,
@@ -33,12 +40,13 @@ void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source,
 }  // namespace
 
 std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                                         const View::Options& view_options, const std::vector<std::string>& overridden)
+                                         const View::Options& view_options, const std::vector<std::string>& overridden,
+                                         std::shared_ptr<Hold> hold)
 {
     load(renderer, opened.source, opened.statistics, opened.session);
     std::unique_ptr<Document> document(
         new Document(renderer, std::move(opened), session_path_of(input), view_options, overridden));
-    document->load_work(renderer);
+    document->load_work(renderer, std::move(hold));
     document->note_saved();
     return document;
 }
@@ -60,6 +68,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
         session.mask_path.replace_extension(".mask");
     }
     if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
+    session_text_ = text_of_session(session_path);
     surfaces = std::exchange(session.surfaces, {});
     ProbeSettings& probe = session.probe;
     probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
@@ -67,9 +76,18 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
-void Document::load_work(Renderer& renderer)
+void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
 {
-    messages = annotator.open(work_files(session, volume(), overridden_));
+    const WorkFiles files = work_files(session, volume(), overridden_);
+    std::vector<Notice> notices;
+    try {
+        notices = annotator.open(files, {.hold = std::move(hold), .program = "shvr view"});
+    } catch (const JournalTaken& taken) {
+        const std::optional<Holder> other = holder_of(files.journal);
+        holder = other ? in_words(*other) : taken.what();
+        notices = annotator.open(files, {.only_look = true});
+    }
+    for (Notice& notice : notices) messages.push_back(std::move(notice.text));
     set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
@@ -142,14 +160,26 @@ void Document::note_saved()
     saved_probe_voxel_ = probe_voxel();
 }
 
-void Document::write_session() const
+/// What another program wrote there since is kept, and the notice tells where.
+std::optional<Notice> Document::write_session()
 {
+    std::optional<Notice> notice;
     const std::string text = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
+    if (const std::optional<std::string> there = text_of_session(session_path); there && there != session_text_) {
+        const std::filesystem::path old = set_aside(session_path);
+        notice = {
+            sentence(session_path.string(), ": was written by another program since it was opened; it is kept as ",
+                     old.string(), ", and what is saved is this window's"),
+            true};
+    }
     write_file_atomically(session_path, std::as_bytes(std::span(text)));
+    session_text_ = text;
+    return notice;
 }
 
-void Document::keep_view() const
+void Document::keep_view()
 {
+    if (only_looks() || !annotator.work().disputes().empty()) return;
     const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
     std::error_code ignored;
     if (is_kept || !overridden_.empty() || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored))
@@ -162,6 +192,7 @@ void Document::keep_view() const
 
 void Document::record_settings()
 {
+    if (only_looks()) return;
     const SettingValues now = lasting_settings(session);
     annotator.change_settings(difference_of(annotator.work().settings(), now), now);
 }
@@ -173,14 +204,55 @@ void Document::take_settings()
     note_edit();
 }
 
-void Document::save()
+std::vector<Notice> Document::save()
 {
+    if (only_looks())
+        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
+                                    holder, "; expected it to be closed there, or a copy to work on"));
     if (session.density_path.empty() && annotator.document().density.voxels() > 0)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
     annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
-    annotator.work().save(label_looks(session.groups, annotator.document().mask), [this] { write_session(); });
+    std::optional<Notice> session_notice;
+    std::vector<Notice> notices =
+        annotator.work()
+            .save(label_looks(session.groups, annotator.document().mask), [&] { session_notice = write_session(); })
+            .notices;
+    if (session_notice) notices.push_back(std::move(*session_notice));
     note_saved();
+    return notices;
+}
+
+void Document::save_settings()
+{
+    if (edits_are_saved() || !overridden_.empty()) return;
+    static_cast<void>(write_session());
+    note_saved();
+}
+
+std::filesystem::path Document::save_copy() const
+{
+    const std::string stem = std::filesystem::path(session_path).replace_extension().string() + "-copy";
+    const auto named = [&](int number, const char* extension) {
+        return std::filesystem::path(number == 1 ? stem + extension : sentence(stem, number, extension));
+    };
+    const auto is_free = [&](int number) {
+        for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
+            if (is_there(named(number, extension))) return false;
+        return true;
+    };
+    int number = 1;
+    while (!is_free(number)) ++number;
+    Session copied = saved_session();
+    copied.mask_path = named(number, ".mask");
+    copied.trace_path = named(number, ".graphml");
+    copied.density_path = named(number, ".offset");
+    const std::filesystem::path copy = named(number, ".json");
+    copied.journal_path = journal_beside(copy);
+    annotator.work().save_copy(work_files(copied, volume()), label_looks(session.groups, annotator.document().mask));
+    const std::string text = to_text(copied, std::filesystem::absolute(copy).parent_path());
+    write_file_atomically(copy, std::as_bytes(std::span(text)));
+    return copy;
 }
 
 /// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left

@@ -21,11 +21,13 @@ namespace shvr::ui {
 
 struct Document {
     /// Loads the volume onto the device, then the saved work. `overridden`: "key=value" settings in which the session
-    /// differs from its file. Fails if
-    /// either cannot be loaded; then the device holds no volume. The mouse moves the probe.
+    /// differs from its file. Fails if either cannot be loaded; then the device holds no volume. The mouse moves the
+    /// probe. `hold`: of the document that this one replaces, which may be the same. Where another process writes the
+    /// work, it is only looked at.
     static std::unique_ptr<Document> open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
                                           const View::Options& view_options,
-                                          const std::vector<std::string>& overridden = {});
+                                          const std::vector<std::string>& overridden = {},
+                                          std::shared_ptr<Hold> hold = nullptr);
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
@@ -41,6 +43,7 @@ struct Document {
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every turn
     std::vector<std::string> messages;  ///< notes from opening the work
+    std::string holder;                 ///< the other process that writes the work, in words; empty: this one may
     Tool tool = Tool::paint;
     bool drags_node = false;  ///< the selected node follows the probe
 
@@ -65,7 +68,9 @@ struct Document {
     Session saved_session() const;
     /// Closing would lose no work and no setting, except perhaps the camera and the probe's position.
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
-    bool work_is_saved() const { return annotator.work().unsaved() == 0; }
+    bool work_is_saved() const { return only_looks() || annotator.work().unsaved() == 0; }
+    /// Nothing can be painted or saved: another process writes the work.
+    bool only_looks() const { return annotator.work().only_looks(); }
     /// Call after anything that may have changed the session, except the camera and the probe's position: clears the
     /// cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
@@ -73,25 +78,32 @@ struct Document {
     void record_settings();
     /// Takes the settings of the work, after undo and redo.
     void take_settings();
-    /// Writes the mask, the offsets and the trace, then the session; each file appears whole or not at all.
-    void save();
+    /// Writes the mask, the offsets and the trace, then the session; each file appears whole or not at all. What others
+    /// wrote there in the meantime is kept under other names, which the notices tell.
+    std::vector<Notice> save();
+    /// The session alone.
+    void save_settings();
+    /// Writes mask, offsets, trace and session under new names beside those of this document, which stay as they are.
+    /// Returns the path of the new session.
+    std::filesystem::path save_copy() const;
     /// Writes the session if only the camera and the probe's position changed and it already has a file. So just
     /// looking at a volume creates no file. A file that cannot be written stays as it is.
-    void keep_view() const;
+    void keep_view();
     std::vector<std::string> cameras() const;
 
 private:
     Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
              const View::Options& view_options, const std::vector<std::string>& overridden);
-    void load_work(Renderer& renderer);
+    void load_work(Renderer& renderer, std::shared_ptr<Hold> hold);
     void name_trace();
-    void write_session() const;
+    std::optional<Notice> write_session();
     bool edits_are_saved() const;
     Session edits() const;
     void note_saved();
 
-    std::vector<std::string> overridden_;  ///< settings that are not in the file
-    Session saved_edits_;                  ///< edits() of the session last read or written
+    std::vector<std::string> overridden_;      ///< settings that are not in the file
+    std::optional<std::string> session_text_;  ///< of the file, as this process last read or wrote it
+    Session saved_edits_;                      ///< edits() of the session last read or written
     Camera saved_camera_;
     glm::dvec3 saved_probe_voxel_{0.0};
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()

@@ -3,6 +3,8 @@
 // application fills it once per frame.
 
 #include <array>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,7 +46,10 @@ struct Model {
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
     bool is_saved = true;
-    std::string status;  ///< the last action, in words
+    std::string holder;  ///< who writes the project, if that is another process: then this window only looks
+    std::filesystem::path session_path{};
+    std::span<const Dispute> disputes{};  ///< saved files that others have changed; empty: nothing to choose
+    std::string status;                   ///< the last action, in words
     bool shows_help = false;
 
     // The device

@@ -4,9 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <array>
 #include <cerrno>
 #include <string>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -30,7 +31,26 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
+/// Names of temporary files; a writer that finds no free place is not listed.
+std::array<std::atomic<const char*>, 64> temporary_names{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+std::atomic<const char*>* list(const char* name)
+{
+    for (std::atomic<const char*>& place : temporary_names) {
+        const char* none = nullptr;
+        if (place.compare_exchange_strong(none, name)) return &place;
+    }
+    return nullptr;
+}
+
 }  // namespace
+
+void remove_temporary_files()
+{
+    for (std::atomic<const char*>& place : temporary_names)
+        if (const char* const name = place.exchange(nullptr)) ::unlink(name);
+}
 
 void sync_folder(const fs::path& path)
 {
@@ -47,10 +67,13 @@ void sync_folder(const fs::path& path)
 
 AtomicWriter::AtomicWriter(const fs::path& path)
     : target_(path), old_permissions_(permissions_of_old_file(path)), descriptor_(create())
-{}
+{
+    listed_ = list(temporary_.c_str());
+}
 
 AtomicWriter::~AtomicWriter()
 {
+    if (listed_) *listed_ = nullptr;
     if (!is_renamed_) ::unlink(temporary_.c_str());
 }
 
@@ -100,6 +123,7 @@ void AtomicWriter::commit()
     }
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) refuse(errno);
     is_renamed_ = true;
+    if (listed_) *std::exchange(listed_, nullptr) = nullptr;
     sync_folder(target_);
 }
 

@@ -5,6 +5,7 @@
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
 
 #include <sys/types.h>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +18,10 @@ namespace shvr {
 
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
+
+/// Removes the temporary files of all writers that have not committed. For signal handlers: calls nothing that they may
+/// not call. The program must end afterwards.
+void remove_temporary_files();
 
 class AtomicWriter {
 public:
@@ -44,6 +49,7 @@ private:
     std::optional<mode_t> old_permissions_;
     FileDescriptor descriptor_;
     bool is_renamed_ = false;
+    std::atomic<const char*>* listed_ = nullptr;  ///< where remove_temporary_files finds its name
 };
 
 }  // namespace shvr

@@ -58,12 +58,20 @@ Annotator::Annotator(Renderer& renderer)
     : renderer_(renderer), work_(renderer.volume().info().size, renderer.volume().info().type)
 {}
 
-std::vector<std::string> Annotator::open(const WorkFiles& files, Work::Start start)
+std::vector<Notice> Annotator::open(const WorkFiles& files, const Work::Opening& opening)
 {
-    std::vector<std::string> messages = work_.open(files, start);
+    std::vector<Notice> notices = work_.open(files, opening);
     renderer_.scene().show(document());
     ++revision_;
-    return messages;
+    return notices;
+}
+
+std::vector<Notice> Annotator::choose(Belief belief)
+{
+    SHVR_CHECK(!stroke_);
+    Work::Choice choice = work_.choose(belief);
+    if (choice.command) show(*choice.command);
+    return std::move(choice.notices);
 }
 
 // ---- What a brush selects -------------------------------------------------------------------------------------------

@@ -40,8 +40,9 @@ public:
     /// Counts the changes of groups and offsets.
     uint64_t revision() const { return revision_; }
 
-    /// As Work::open; also updates the device.
-    std::vector<std::string> open(const WorkFiles& files, Work::Start start = Work::Start::as_left);
+    /// As Work::open and Work::choose; also update the device.
+    std::vector<Notice> open(const WorkFiles& files, const Work::Opening& opening = {});
+    std::vector<Notice> choose(Belief belief);
 
     /// The voxels that `op` selects, whatever their group.
     VoxelSelection select(const PaintOp& op);

@@ -9,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/look/session_color.h"
+#include "engine/projects/import_files.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/transfer_presets.h"
@@ -28,7 +29,27 @@ bool is_session_file(const fs::path& path)
     return extension == ".json";
 }
 
-/// The session file that `path` refers to; empty if it is a volume file.
+/// The smallest session for a volume file.
+JsonDocument document_for_volume(const fs::path& path)
+{
+    JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
+    // Set directly, not parsed from text: a path need not be UTF-8.
+    document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
+    return document;
+}
+
+/// A project's session as it was when the project was made, where its file is missing: annotation is found, and looks
+/// are the program's own.
+JsonDocument document_for_project(const fs::path& session_file, std::vector<std::string>& losses)
+{
+    losses.push_back(sentence(session_file.string(),
+                              ": is missing; expected the project's session with its looks; a new project's is taken, "
+                              "which finds volume and annotation, and saving in the window writes it"));
+    return session_document(import_session(), session_file.string());
+}
+
+}  // namespace
+
 fs::path session_file_of(const fs::path& path)
 {
     if (path.empty())
@@ -40,20 +61,10 @@ fs::path session_file_of(const fs::path& path)
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
     }
     if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
-    const fs::path file = path / "shvr" / "session.json";
-    return fs::is_regular_file(file, ignored) ? file : fs::path();  // some volumes are folders
+    const fs::path file = path / PROJECT_SESSION;
+    const bool is_project = fs::is_regular_file(file, ignored) || fs::exists(path / PROJECT_RECORD, ignored);
+    return is_project ? file : fs::path();  // some volumes are folders
 }
-
-/// The smallest session for a volume file.
-JsonDocument document_for_volume(const fs::path& path)
-{
-    JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
-    // Set directly, not parsed from text: a path need not be UTF-8.
-    document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
-    return document;
-}
-
-}  // namespace
 
 std::unique_ptr<VolumeSource> open_source(const Session& session)
 {
@@ -69,17 +80,18 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
 {
     const fs::path session_file = session_file_of(path);
     const fs::path file = session_file.empty() ? path : session_file;
-    JsonDocument document = session_file.empty()
-                                ? document_for_volume(path)
-                                : session_document(read_text(file, LARGEST_SESSION_FILE), file.string());
-    apply_settings(document, settings);
     UnmeasuredSession opened;
+    std::error_code ignored;
+    JsonDocument document = session_file.empty() ? document_for_volume(path)
+                            : fs::exists(fs::symlink_status(file, ignored))
+                                ? session_document(read_text(file, LARGEST_SESSION_FILE), file.string())
+                                : document_for_project(file, opened.losses);
+    apply_settings(document, settings);
     Session& session = opened.session;
     session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
     opened.source = open_source(session);
     // A project with a valid record already has its statistics.
-    std::error_code ignored;
     const fs::path record = session.volume_path / PROJECT_RECORD;
     if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))
         session.volume_hash = read_project_record(record).content_hash;
@@ -96,7 +108,7 @@ UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vecto
 OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
 {
     auto [document, unmeasured] = open_unmeasured(path, settings);
-    OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}};
+    OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}, unmeasured.losses};
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();

@@ -88,6 +88,7 @@ struct OpenedSession {
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
+    std::vector<std::string> losses;    ///< what is not there although it was saved
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
 /// Skips everything that needs a pass over the voxels: the transfer function is the file's, and only projects have a
@@ -95,10 +96,14 @@ OpenedSession open_session(const std::filesystem::path& path, const std::vector<
 struct UnmeasuredSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
+    std::vector<std::string> losses;  ///< as in OpenedSession
 };
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});
 
+/// The session file that `path` stands for: itself, or a project's, which may be missing; empty for a volume. Fails if
+/// there is nothing at `path`.
+std::filesystem::path session_file_of(const std::filesystem::path& path);
 /// "scan.journal" for "scan.json".
 std::filesystem::path journal_beside(const std::filesystem::path& session_file);
 

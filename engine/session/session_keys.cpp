@@ -235,7 +235,9 @@ void annotation_fields(Fields& f, Session& session)
            {.meaning =
                 "the file of density offsets, which need not exist yet: bare numbers (`.offset`), `.nrrd` or `.tif`",
             .allowed = "path",
-            .standard = "none"});
+            .standard = "beside the mask, with its name and `.offset`"});
+    if (session.density_path.empty() && !session.mask_path.empty())
+        session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
 }
 
 }  // namespace

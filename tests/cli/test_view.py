@@ -33,7 +33,9 @@ class Display:
                               env={**os.environ, "DISPLAY": self.name}).stdout
 
 
-class View(CliTest):
+class Window(CliTest):
+    """Starts the window, drives it and closes it."""
+
     @classmethod
     def setUpClass(cls):
         cls.display = Display()
@@ -90,6 +92,8 @@ class View(CliTest):
         """Centre of the graphics window: left of the side panel, between menu and status bar."""
         return (WINDOW[0] - 330) // 2, WINDOW[1] // 2
 
+
+class View(Window):
     def test_a_scan_is_looked_at_painted_saved_and_photographed(self):
         session = self.write_ball()
         self.start(session)

@@ -10,13 +10,14 @@
 namespace shvr::test {
 
 /// Messages from opening go to `said`.
-inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said)
+inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said, const Work::Opening& opening = {})
 {
     auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
     // Small limits, so that states and reads from the journal are exercised.
     work->set_limits({.history_bytes = 20000, .bytes_between_states = 20000, .steps_between_states = 100});
     said.clear();
-    for (const std::string& message : work->open(files)) said += message + "\n";
+    for (const Notice& notice : work->open(files, opening)) said += notice.text + "\n";
+    for (const Dispute& dispute : work->disputes()) said += dispute.text + "\n";
     return work;
 }
 

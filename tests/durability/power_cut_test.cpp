@@ -75,7 +75,7 @@ std::string fault_of(const fs::path& folder, const Disk& disk, const Record& rec
         if (steps < acknowledged) return sentence("acknowledged ", acknowledged, " steps, found ", steps);
         if (steps >= record.states.size()) return sentence("found ", steps, " steps that nobody made");
         if (hash_of(work->document()) != record.states[steps]) return sentence("step ", steps, " is of another state");
-        if (contains(said, "were changed")) return said;
+        if ((contains(said, "was changed") || contains(said, "is missing"))) return said;
         // The files without the journal, each as one save left it.
         files.journal.clear();
         const auto saved = open_work(files, said);

@@ -119,7 +119,7 @@ TEST_CASE("a full disk stops nobody: work goes on in memory, it is said, and the
         refuse_calls(folder.path, {});
         work->flush();
         CHECK(work->journal().failure.empty());
-        CHECK(hash_of(open_work(files_in(folder.path), said)->document()) == hash);
+        CHECK(hash_of(open_work(files_in(folder.path), said, {.only_look = true})->document()) == hash);
         for (int i = 0; i < 5; ++i) random_step(*work, random);
         work.reset();
     }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "engine/annotation/work/hold.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
 #include "engine/session/lasting_settings.h"
@@ -34,7 +35,19 @@ CLI::Validator whole_mib()
 void add_output_options(CLI::App& command, Common& common)
 {
     command.add_flag("--json", common.json, "One JSON object on standard output, nothing else there");
-    command.add_flag("--quiet", common.quiet, "No progress and no warnings on standard error");
+    command.add_flag("--quiet", common.quiet, "No progress on standard error, and no warnings but of what is lost");
+}
+
+void add_belief_option(CLI::App& command, Common& common)
+{
+    command
+        .add_option_function<std::string>(
+            "--believe",
+            [&common](const std::string& value) { common.belief = value == "files" ? Belief::files : Belief::journal; },
+            "Where another program has changed saved annotation: the files, as one step that undo takes back, or the "
+            "journal")
+        ->type_name("files|journal")
+        ->check(CLI::IsMember({"files", "journal"}));
 }
 
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise)
@@ -143,6 +156,27 @@ void warn(const std::vector<std::string>& warnings, const Common& common)
     for (const std::string& warning : warnings) say(common, "warning: " + warning);
 }
 
+void warn(const std::vector<Notice>& notices, const Common& common)
+{
+    for (const Notice& notice : notices)
+        if (notice.is_loss)
+            warn_of_losses({notice.text});
+        else
+            say(common, "warning: " + notice.text);
+}
+
+void warn_of_losses(const std::vector<std::string>& losses)
+{
+    for (const std::string& loss : losses) std::cerr << "warning: " << loss << '\n';
+}
+
+void warn_of_holder(const std::filesystem::path& journal, const Common& common)
+{
+    if (const std::optional<Holder> holder = holder_of(journal))
+        say(common, sentence("warning: ", journal.string(), ": is open for writing in ", in_words(*holder),
+                             "; what is there so far is taken"));
+}
+
 void print(const Json& result)
 {
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
@@ -202,12 +236,14 @@ glm::dvec3 parse_spacing(const std::string& text)
     return spacing;
 }
 
-Opened open(const std::string& path, const Common& common, Work::Start start)
+Opened open(const std::string& path, const Common& common, Work::Opening opening)
 {
     OpenedSession session = open_session(path, common.settings);
     Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings), nullptr, nullptr};
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
+    warn_of_losses(session.losses);
+    if (opening.only_look) warn_of_holder(opened.session.journal_path, common);
 
     const char* validation = std::getenv("SHVR_VALIDATION");
     opened.renderer = std::make_unique<Renderer>(
@@ -217,7 +253,9 @@ Opened open(const std::string& path, const Common& common, Work::Start start)
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
                           shows_occlusion(opened.session.light));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
-    warn(opened.annotator->open(work_files(opened.session, opened.source->info(), common.settings), start), common);
+    opening.belief = common.belief;
+    warn(opened.annotator->open(work_files(opened.session, opened.source->info(), common.settings), opening), common);
+    opened.annotator->work().expect_choice();
     set_lasting_settings(opened.session, without_overridden(opened.annotator->work().settings(), common.settings));
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);

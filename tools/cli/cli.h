@@ -27,6 +27,7 @@ struct Common {
     int threads = 0;
     bool quiet = false;
     bool json = false;
+    Belief belief = Belief::ask;
 };
 
 /// --set, --raw, --spacing, --unit
@@ -38,12 +39,20 @@ void add_spacing_options(CLI::App& command, const std::function<void(const glm::
 void add_device_options(CLI::App& command, Common& common);
 /// --ome-zarr: the version of what is written; nothing if it is not given.
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
+/// --believe, for commands that open annotation.
+void add_belief_option(CLI::App& command, Common& common);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
 
 /// A line on standard error, unless --quiet.
 void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
+/// The same of opening work; losses are told even with --quiet.
+void warn(const std::vector<Notice>& notices, const Common& common);
+/// Told even with --quiet.
+void warn_of_losses(const std::vector<std::string>& losses);
+/// Warns if another process writes the journal: what it has not written yet is not seen.
+void warn_of_holder(const std::filesystem::path& journal, const Common& common);
 /// One object on standard output.
 void print(const Json& result);
 /// Call before any work: a name with none of `extensions` is wrong usage; a folder that is missing or not writable is
@@ -54,7 +63,8 @@ glm::dvec3 parse_spacing(const std::string& text);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 
-/// An open session, with its volume on the device and its mask and trace, if any, loaded.
+/// An open session, with its volume on the device and its mask and trace, if any, loaded. It is only looked at unless
+/// `opening` brings the journal's hold or the session has no journal.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -62,7 +72,7 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
 };
-Opened open(const std::string& path, const Common& common, Work::Start start = Work::Start::as_left);
+Opened open(const std::string& path, const Common& common, Work::Opening opening = {.only_look = true});
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);

@@ -3,9 +3,11 @@
 #include <concepts>
 
 #include "engine/annotation/trace/trace_command.h"
+#include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/script.h"
 #include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -15,6 +17,7 @@ struct AnnotateCommandOptions {
     Common common;
     std::string project, script;
     bool fresh = false;
+    bool verbose = false;
 };
 
 class Replay {
@@ -27,6 +30,12 @@ public:
     std::string at;  ///< "file:line"
 
 private:
+    /// A line for a command, where that is asked for.
+    template <class... Words>
+    void tell(const Words&... words) const
+    {
+        if (options.verbose) say(options.common, sentence(at, ": ", words...));
+    }
     const TraceGraph& trace() const { return opened.annotator->document().trace; }
 
     /// Returns the result of `act`; its errors name the line.
@@ -40,6 +49,14 @@ private:
         }
     }
 
+    /// All of them or none.
+    void expect_steps(const char* what, int count, size_t there) const
+    {
+        if (size_t(count) > there)
+            fail(at, ": key count is ", count, "; expected at most ", there, ", the steps there are to ", what,
+                 "; none was taken");
+    }
+
 public:
     void operator()(const PaintOp& op)
     {
@@ -47,11 +64,10 @@ public:
         const int64_t voxels = opened.annotator->paint(chosen);
         voxels_changed += voxels;
         if (!chosen.density)
-            say(options.common, sentence(at, ": ", voxels, " voxels painted in group ", int(op.group)));
+            tell(voxels, " voxels painted in group ", int(op.group));
         else
-            say(options.common,
-                sentence(at, ": ", voxels, " changes of offsets", chosen.paints_group ? " and groups" : "",
-                         ", by at most ", *chosen.density->offset));
+            tell(voxels, " changes of offsets", chosen.paints_group ? " and groups" : "", ", by at most ",
+                 *chosen.density->offset);
     }
     template <class Op>
     requires std::constructible_from<TraceOp, Op>
@@ -69,25 +85,27 @@ public:
             opened.annotator->edit_trace(std::move(effect.label), std::move(effect.changes));
         if constexpr (std::same_as<Op, NodeOp>) {
             const uint32_t number = trace().selection().node().value();
-            say(options.common, sentence(at, ": node ", number, " in group ", int(trace().node(number).group)));
+            tell("node ", number, " in group ", int(trace().node(number).group));
         }
     }
     void operator()(const UndoOp& op)
     {
-        for (int i = 0; i < op.count; ++i)
-            if (!opened.annotator->undo()) fail(at, ": undo ", i + 1, " of ", op.count, ": nothing is left to undo");
+        expect_steps("undo", op.count, opened.annotator->history().undoable());
+        for (int i = 0; i < op.count; ++i) opened.annotator->undo();
     }
     void operator()(const RedoOp& op)
     {
-        for (int i = 0; i < op.count; ++i)
-            if (!opened.annotator->redo()) fail(at, ": redo ", i + 1, " of ", op.count, ": nothing is left to redo");
+        expect_steps("redo", op.count, opened.annotator->history().redoable());
+        for (int i = 0; i < op.count; ++i) opened.annotator->redo();
     }
     void operator()(const SaveOp&)
     {
         const auto save = [&] {
             return opened.annotator->work().save(label_looks(opened.session.groups, opened.annotator->document().mask));
         };
-        for (const std::filesystem::path& path : in_words(save))
+        const Work::Saved saved = in_words(save);
+        warn(saved.notices, options.common);
+        for (const std::filesystem::path& path : saved.files)
             say(options.common, sentence(at, ": saved ", path.string()));
     }
     void operator()(const ExpectOp& op)
@@ -108,25 +126,50 @@ public:
     }
 };
 
-void run_annotate(const AnnotateCommandOptions& options)
+/// Before anything is painted.
+void check_radii(const std::vector<ScriptLine>& script, const std::string& name, const VolumeInfo& volume)
 {
-    const std::vector<ScriptLine> script = read_script(options.script);
-    Opened opened = open(options.project, options.common, options.fresh ? Work::Start::fresh : Work::Start::as_left);
-    const VolumeInfo& volume = opened.source->info();
-    for (const ScriptLine& line : script)  // before anything is painted
+    for (const ScriptLine& line : script)
         if (const auto* paint = std::get_if<PaintOp>(&line.op)) try {
                 check_radius(paint->radius_voxels, volume.spacing, volume.size);
             } catch (const Error& error) {
-                fail(options.script, ":", line.number, ": ", error.what());
+                fail(name, ":", line.number, ": ", error.what());
             }
+}
+
+/// Null where the project is a volume without a journal, or no lock can be kept there.
+std::shared_ptr<Hold> hold_of(const std::string& project)
+{
+    const std::filesystem::path session = session_file_of(project);
+    return session.empty() ? nullptr : Hold::take(journal_beside(session), "shvr annotate");
+}
+
+void run_annotate(const AnnotateCommandOptions& options)
+{
+    const std::shared_ptr<Hold> hold = hold_of(options.project);  // refused before any work
+    const std::string name = name_of_script(options.script);
+    const std::vector<ScriptLine> script = read_script(options.script);
+    Opened opened = open(
+        options.project, options.common,
+        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"});
+    check_radii(script, name, opened.source->info());
     Replay replay{opened, options};
-    for (const ScriptLine& line : script) {
-        replay.at = sentence(options.script, ":", line.number);
-        std::visit(replay, line.op);
+    const StopRequest stop;
+    for (size_t done = 0; done < script.size(); ++done) {
+        replay.at = sentence(name, ":", script[done].number);
+        if (stop.is_made()) {
+            opened.annotator->work().flush();
+            fail(replay.at, ": stopped before this line; the ", done, " commands before it are kept");
+        }
+        std::visit(replay, script[done].op);
     }
     opened.annotator->work().flush();
     check_validation(opened);
-    if (options.common.json)
+    if (!options.common.json)
+        say(options.common, sentence(name, ": ", script.size(), script.size() == 1 ? " command, " : " commands, ",
+                                     replay.voxels_changed, " voxels changed, ", opened.annotator->work().unsaved(),
+                                     " steps not saved"));
+    else
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},
                {"nodes", opened.annotator->document().trace.nodes().size()},
@@ -141,9 +184,12 @@ void add_annotate(CLI::App& program)
     auto options = std::make_shared<AnnotateCommandOptions>();
     CLI::App* command = program.add_subcommand("annotate", "Runs annotation commands from a script");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
-    command->add_option("--script", options->script, "Commands, one JSON object a line")->required();
+    command->add_option("--script", options->script, "Commands, one JSON object a line; - is standard input")
+        ->required();
     command->add_flag("--fresh", options->fresh,
                       "Start without the existing annotation; its journal is kept as JOURNAL.old");
+    command->add_flag("--verbose", options->verbose, "A line for each command that paints or adds a node");
+    add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -93,10 +93,14 @@ void run_export(const ExportCommandOptions& options)
     check_output("--metrics", options.metrics, {".csv"});
     const OpenedSession opened = open_session(options.project, options.common.settings);
     warn(opened.source->info().warnings, options.common);
+    warn_of_losses(opened.losses);
+    warn_of_holder(opened.session.journal_path, options.common);
     const VolumeInfo& volume = opened.source->info();
     const TraceSpace space = space_of(volume);
     Work work(volume.size, volume.type);
-    warn(work.open(work_files(opened.session, volume)), options.common);
+    warn(work.open(work_files(opened.session, volume), {.belief = options.common.belief, .only_look = true}),
+         options.common);
+    work.expect_choice();
     const Mask& mask = work.document().mask;
     const TraceGraph& trace = work.document().trace;
     if (!options.trace.empty() || !options.mesh.empty()) expect_trace(opened.session, trace);
@@ -156,6 +160,7 @@ void add_export(CLI::App& program)
                      "Of trace and mesh: physical, where other programs show the volume; or volume, voxel * spacing")
         ->check(CLI::IsMember({"physical", "volume"}));
     command->add_option("--metrics", options->metrics, "Counts, lengths, angles, radii, topology (.csv)");
+    add_belief_option(*command, options->common);
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -11,8 +10,10 @@
 #include <iomanip>
 #include <iostream>
 
+#include "engine/annotation/work/hold.h"
 #include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -91,22 +92,6 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
 
 // ---- While it runs --------------------------------------------------------------------------------------------------
 
-std::atomic<bool> stop_requested = false;
-
-extern "C" void request_stop(int signal_number)
-{
-    stop_requested = true;
-    std::signal(signal_number, SIG_DFL);  // a second one ends the program at once
-}
-
-void handle_signals()
-{
-    static_assert(std::atomic<bool>::is_always_lock_free);
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
-}
-
 std::string time_text(double seconds)
 {
     const auto whole = int64_t(std::ceil(seconds));
@@ -171,12 +156,16 @@ void run_import(const ImportCommandOptions& options)
                          .overwrites = options.overwrite,
                          .threads = options.common.threads,
                          .version = options.version};
+    // Replacing a project takes its annotation away, too: nobody may be writing it.
+    const std::filesystem::path session = std::filesystem::path(options.project) / "shvr" / "session.json";
+    const std::shared_ptr<Hold> hold = options.overwrite ? Hold::take(journal_beside(session), "shvr import") : nullptr;
     const auto begin = std::chrono::steady_clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(options);
     ProgressLine line(options.common, bytes_of(source->info().type));
     wanted.progress = [&](const ImportProgress& progress) { line.show(progress); };
-    wanted.cancel = &stop_requested;
-    handle_signals();
+    const StopRequest stop;
+    wanted.cancel = &stop.flag();
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
     const ImportReport report = import_volume(*source, options.volume, options.project, wanted);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     line.clear();

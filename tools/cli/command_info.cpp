@@ -26,9 +26,8 @@ Described describe(const InfoCommandOptions& options)
 {
     const std::filesystem::path path = options.input;
     std::error_code ignored;
-    const bool is_project = std::filesystem::exists(path / "shvr" / "session.json", ignored);
     const bool is_there = std::filesystem::exists(path, ignored) || leads_into_archive(path);
-    const bool is_bare = is_there && !is_project && path.extension() != ".json";
+    const bool is_bare = is_there && session_file_of(path).empty();
     OpenedSession opened;
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare) {
@@ -36,15 +35,10 @@ Described describe(const InfoCommandOptions& options)
         opened.source = settings.empty() ? open_volume(path) : open_unmeasured_session(path, settings).source;
         opened.statistics = measure(*opened.source);
         opened.warnings = warnings_of(opened.statistics);
-    } else if (is_bare) {
-        UnmeasuredSession bare = open_unmeasured_session(path, options.common.settings);
-        opened.session = std::move(bare.session);
-        opened.source = std::move(bare.source);
-        opened.statistics = measure(*opened.source);
-        opened.warnings = warnings_of(opened.statistics);
     } else {
         opened = open_session(path, options.common.settings);
     }
+    warn_of_losses(opened.losses);
     Described described{.info = opened.source->info(),
                         .statistics = opened.statistics,
                         .warnings = std::move(opened.warnings),

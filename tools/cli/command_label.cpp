@@ -10,6 +10,7 @@
 #include "engine/formats/export/volume_export.h"
 #include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -84,9 +85,11 @@ void write_labels(const LabelCommandOptions& options, const VolumeSource& labels
     const std::string form = form_of(options.output);
     if (form == ".mask") return write_mask(options.output, labels);
     if (form != ".zarr") return export_volume(options.output, labels);
+    const StopRequest stop;
     const ImportOptions wanted{.threads = options.common.threads,
                                .version = options.version,
-                               .progress = [&](const ImportProgress& done) { progress(done.fraction); }};
+                               .progress = [&](const ImportProgress& done) { progress(done.fraction); },
+                               .cancel = &stop.flag()};
     static_cast<void>(export_label_image(labels, options.output, {}, wanted));
 }
 
@@ -107,9 +110,11 @@ void run_label(const LabelCommandOptions& options)
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
     const VolumeInfo info = opened.source->info();
     warn(info.warnings, options.common);
-    std::vector<std::string> messages;
-    const DensityField offsets = offsets_of(work_files(opened.session, info), messages);
-    warn(messages, options.common);
+    warn_of_losses(opened.losses);
+    warn_of_holder(opened.session.journal_path, options.common);
+    std::vector<Notice> notices;
+    const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
+    warn(notices, options.common);
     const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
     const auto begin = Clock::now();
     ComponentOptions wanted{
@@ -182,6 +187,7 @@ void add_label(CLI::App& program)
     add_version_option(*command, options->version, "unless given, as the image or the labels there are, or 0.4");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
+    add_belief_option(*command, options->common);
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

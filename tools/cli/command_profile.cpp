@@ -156,6 +156,7 @@ void add_profile(CLI::App& program)
     command->add_option("--csv", options->csv, "Table to write (.csv): one row per frame and pass");
     command->add_option("--graph", options->graph, "Frame graph to write (.dot, .svg, .json)");
     command->add_flag("--serialize", options->serialize, "A full barrier between passes: times that do not overlap");
+    add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     add_diff(*command, options);

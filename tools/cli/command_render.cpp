@@ -109,6 +109,7 @@ void add_render(CLI::App& program)
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
     command->add_flag("--allow-incomplete", options->allows_incomplete,
                       "Write a picture that lacks something, with a warning, instead of failing");
+    add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 #include "ui/app.h"
 
 namespace shvr::cli {
@@ -82,6 +83,8 @@ void run_view(const ViewCommandOptions& options)
                           .validation = validation && *validation == '1',
                           .allow_force = options.allow_force};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
+    const StopRequest stop;
+    wanted.stop = &stop.flag();
     ui::App app(wanted);
     app.run();
     const ui::AppReport report = app.report();

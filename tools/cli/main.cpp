@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 
 namespace {
 
@@ -93,12 +94,24 @@ int report(const char* message, Exit status)
 
 int main(int argc, char** argv)
 {
+    shvr::cli::end_in_words();
     try {
         return run(argc, argv);
     } catch (const shvr::UsageError& error) {
         return report(error.what(), Exit::usage);
     } catch (const shvr::GateError& error) {
         return report(error.what(), Exit::gate);
+    } catch (const shvr::Disputed& error) {
+        return report(shvr::sentence(error.what(),
+                                     "; both are kept; expected --believe files, to take what is in the file "
+                                     "as a step that undo takes back, or --believe journal, with which the "
+                                     "next save keeps the file under another name")
+                          .c_str(),
+                      Exit::world);
+    } catch (const shvr::JournalTaken& error) {
+        return report(
+            shvr::sentence(error.what(), "; shvr view looks at it meanwhile and shvr export copies it").c_str(),
+            Exit::world);
     } catch (const std::bad_alloc&) {
         return report("host memory is exhausted", Exit::world);
     } catch (const std::exception& error) {

@@ -154,6 +154,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     menu_bar(model, actions);
     side_panel({size.x - panel, bar}, {panel, std::max(size.y - 2.0f * bar, 1.0f)}, model, actions);
     status_bar(model, window);
+    notices(model, {0.0f, bar}, size.x - panel, actions);
     if (model.shows_help) help_window(model, actions);
 
     const glm::vec2 begin(0.0f, bar);

@@ -31,5 +31,7 @@ void passes_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window);
+/// That this window only looks, at the upper edge of the graphics window; and the question which files to believe.
+void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 
 }  // namespace shvr::ui

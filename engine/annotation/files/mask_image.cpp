@@ -1,5 +1,8 @@
 #include "engine/annotation/files/mask_image.h"
 
+#include <charconv>
+#include <cstdio>
+
 #include <nlohmann/json.hpp>
 
 #include "engine/base/atomic_file.h"
@@ -13,6 +16,21 @@ namespace {
 
 constexpr int64_t LARGEST_RECORD = int64_t{1} << 16;
 constexpr int VERSION = 1;
+
+std::string hex_of(uint64_t number)
+{
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(number));
+    return digits;
+}
+
+std::optional<uint64_t> number_of_hex(const std::string& digits)
+{
+    uint64_t number = 0;
+    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+    const bool is_whole = digits.size() == 16 && result.ec == std::errc() && result.ptr == digits.data() + 16;
+    return is_whole ? std::optional(number) : std::nullopt;
+}
 
 bool is_folder(const std::filesystem::path& path)
 {
@@ -29,12 +47,33 @@ std::filesystem::path mask_image_path(const std::filesystem::path& mask)
     return path;
 }
 
-void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
+void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
+                     const std::optional<MaskJournal>& journal)
 {
     if (content_hash.empty() || is_folder(mask)) return;
-    const nlohmann::ordered_json record = {{"shvr_mask", VERSION}, {"image", content_hash}};
-    const std::string text = record.dump(2) + "\n";
+    nlohmann::ordered_json record = {{"shvr_mask", VERSION}, {"image", content_hash}};
+    if (journal)
+        record["journal"] = {
+            {"name", journal->name}, {"record", journal->record}, {"checksum", hex_of(journal->checksum)}};
+    // A name need not be UTF-8.
+    const std::string text = record.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     write_file_atomically(mask_image_path(mask), std::as_bytes(std::span(text)));
+}
+
+std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask)
+{
+    const std::filesystem::path path = mask_image_path(mask);
+    std::error_code ignored;
+    if (mask.empty() || !std::filesystem::exists(path, ignored)) return std::nullopt;
+    try {
+        const JsonDocument document = read_zarr_json(path, LARGEST_RECORD);
+        const JsonNode journal = document.root()["journal"];
+        if (!journal.exists()) return std::nullopt;
+        return MaskJournal{journal["name"].text(), uint64_t(journal["record"].whole(1, int64_t{1} << 53)),
+                           journal["checksum"].parsed(number_of_hex, "16 hexadecimal digits")};
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)

@@ -64,26 +64,37 @@ TraceGraph in_physical_space(const TraceGraph& trace, const TraceSpace& space)
     return placed;
 }
 
-}  // namespace
-
-std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
-                                    Loops loops, Positions positions)
+std::string text_of(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space, Loops loops,
+                    Positions positions, std::vector<std::string>& notes)
 {
     const std::string form = extension_of(path);
     if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
-    std::vector<std::string> notes;
-    std::string text;
     const bool is_physical = positions == Positions::physical;
     const TraceGraph placed = is_physical ? in_physical_space(trace, space) : TraceGraph();
     const TraceWriting writing{is_physical ? placed : trace, space, positions, is_physical ? &trace : nullptr};
     try {
-        text = form == ".graphml" ? write_trace_graphml(writing)
+        return form == ".graphml" ? write_trace_graphml(writing)
                : form == ".txt"   ? write_trace_text(writing)
                : form == ".swc"   ? write_trace_swc(writing, loops, notes)
                                   : write_trace_rsml(writing, loops, notes);
     } catch (const Error& error) {
         fail(path.string(), ": ", error.what());
     }
+}
+
+}  // namespace
+
+std::string trace_text(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space)
+{
+    std::vector<std::string> none;
+    return text_of(path, trace, space, Loops::refuse, Positions::volume, none);
+}
+
+std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
+                                    Loops loops, Positions positions)
+{
+    std::vector<std::string> notes;
+    const std::string text = text_of(path, trace, space, loops, positions, notes);
     write_file_atomically(path, std::as_bytes(std::span(text)));
     return notes;
 }

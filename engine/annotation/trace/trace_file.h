@@ -34,6 +34,9 @@ enum class Loops { refuse, break_open };
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
                                     Loops loops = Loops::refuse, Positions positions = Positions::volume);
 
+/// What `save_trace` would write; fails where it would.
+std::string trace_text(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
+
 struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< where the file states all of this

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <utility>
@@ -85,6 +86,19 @@ Journal::Journal(const fs::path& path, JournalScan before)
     thread_ = std::thread([this] { write(); });
 }
 
+void Journal::copy(uint64_t at, uint64_t end, AtomicWriter& to) const
+{
+    std::vector<std::byte> piece(size_t{1} << 20);
+    while (at < end) {
+        const auto wanted = size_t(std::min<uint64_t>(piece.size(), end - at));
+        const ssize_t count = ::pread(file_.number(), piece.data(), wanted, off_t(at));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) fail(path_.string(), ": cannot be read: ", reason_of(count < 0 ? errno : EIO));
+        to.append(std::span(piece).first(size_t(count)));
+        at += uint64_t(count);
+    }
+}
+
 void Journal::begin(const fs::path& rest)
 {
     const auto check = [&](int error) {
@@ -94,14 +108,7 @@ void Journal::begin(const fs::path& rest)
     check(::fstat(file_.number(), &status) == 0 ? 0 : errno);
     if (const auto bytes = uint64_t(status.st_size); bytes > end_) {
         AtomicWriter writer(rest);
-        std::vector<std::byte> piece(size_t{1} << 20);
-        for (uint64_t at = end_; at < bytes;) {
-            const ssize_t count = ::pread(file_.number(), piece.data(), piece.size(), off_t(at));
-            if (count < 0 && errno == EINTR) continue;
-            if (count <= 0) fail(path_.string(), ": cannot be read: ", reason_of(count < 0 ? errno : EIO));
-            writer.append(std::span(piece).first(size_t(count)));
-            at += uint64_t(count);
-        }
+        copy(end_, bytes, writer);
         writer.commit();
         check(::ftruncate(file_.number(), off_t(end_)) == 0 ? 0 : errno);
     }
@@ -155,6 +162,32 @@ RecordNumber Journal::durable() const
 {
     const std::scoped_lock lock(mutex_);
     return records_.size();
+}
+
+std::pair<RecordNumber, uint64_t> Journal::last_durable() const
+{
+    const std::scoped_lock lock(mutex_);
+    if (records_.empty()) return {0, 0};
+    return {records_.size(), records_.back().checksum};
+}
+
+bool Journal::is_in_place() const
+{
+    struct stat held {
+    }, named{};
+    if (::fstat(file_.number(), &held) != 0) return true;  // unknown
+    if (::stat(path_.c_str(), &named) != 0) return errno != ENOENT;
+    return held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+void Journal::copy_to(const fs::path& path) const
+{
+    std::unique_lock lock(mutex_);
+    const uint64_t end = end_;
+    lock.unlock();
+    AtomicWriter writer(path);
+    copy(0, end, writer);
+    writer.commit();
 }
 
 std::string Journal::failure() const

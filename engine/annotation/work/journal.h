@@ -6,7 +6,8 @@
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
 // While the disk refuses, nothing is lost and no caller waits: records stay in memory, `failure` says why, and writing
-// is retried every second. Only one process writes a journal: it holds a lock on the file, which ends with the process.
+// is retried every second. Only one process writes a journal: it holds it (hold.h) and, where that is not possible or
+// an older program does not know of it, a lock on the file itself; both end with the process.
 //
 // One thread appends; any thread may query.
 
@@ -15,17 +16,14 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
+#include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/journal_file.h"
-#include "engine/base/error.h"
 
 namespace shvr {
 
-/// Another process writes the journal, or has written it since it was read.
-class JournalTaken : public Error {
-public:
-    using Error::Error;
-};
+class AtomicWriter;
 
 class Journal {
 public:
@@ -44,6 +42,13 @@ public:
     void flush();
     /// All records up to this one are on disk.
     RecordNumber durable() const;
+    /// Number and checksum of that record; 0, 0 for none.
+    std::pair<RecordNumber, uint64_t> last_durable() const;
+    /// False where the file was removed, or another one put in its place, since it was opened: what is written to it
+    /// will be gone.
+    bool is_in_place() const;
+    /// Writes all that is on disk to another file, atomically.
+    void copy_to(const std::filesystem::path& path) const;
     /// Why nothing can be written at present; empty if it can.
     std::string failure() const;
     /// Size of the file, including the queue (uncompressed).
@@ -64,6 +69,8 @@ private:
     /// Returns why it failed; empty if it did not.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
+    /// The file's bytes from `at` to `end`.
+    void copy(uint64_t at, uint64_t end, AtomicWriter& to) const;
 
     std::filesystem::path path_;
     FileDescriptor file_;

@@ -205,6 +205,13 @@ std::vector<std::byte> content_of(const JournalRecord& record, const FileDescrip
     return content;
 }
 
+uint64_t digest_of(std::span<const std::byte> bytes)
+{
+    Checksum checksum(0);
+    checksum.add(bytes);
+    return checksum.value();
+}
+
 std::optional<uint64_t> file_digest(const fs::path& path)
 {
     Checksum checksum(0);

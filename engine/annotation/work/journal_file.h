@@ -31,6 +31,9 @@ enum class RecordKind : uint32_t {
     redo,
     saving,  ///< from here on each saved file may be the old or the new one
     saved,   ///< SavedFiles
+    /// SavedFiles: a choice was made about files that others had changed; from here on they are known as they are.
+    /// Older programs skip it, and ask (or take the files) again.
+    known = 128,
 };
 constexpr uint32_t FIRST_ADDITION = 128;
 
@@ -75,5 +78,7 @@ std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> 
 
 /// XXH3-64 of a file's bytes, or of all files of a folder with their names; nothing if there is none.
 std::optional<uint64_t> file_digest(const std::filesystem::path& path);
+/// The same of a file that would hold these bytes.
+uint64_t digest_of(std::span<const std::byte> bytes);
 
 }  // namespace shvr

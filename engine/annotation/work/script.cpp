@@ -1,6 +1,10 @@
 #include "engine/annotation/work/script.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -255,17 +259,43 @@ ScriptOp read_op(const JsonNode& line)
     return OPS[line["op"].choice(names)].read(line);
 }
 
+/// Standard input ("-") or a pipe, to its end.
+std::string read_stream(const std::filesystem::path& path, const std::string& name)
+{
+    const FileDescriptor pipe(path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!pipe) fail(name, ": cannot be opened: ", reason_of(errno));
+    std::string text;
+    std::vector<char> piece(size_t{1} << 16);
+    for (;;) {
+        const ssize_t count = ::read(pipe.number(), piece.data(), piece.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(name, ": cannot be read: ", reason_of(errno));
+        if (count == 0) return text;
+        text.append(piece.data(), size_t(count));
+        if (text.size() > size_t(LARGEST_SCRIPT))
+            fail(name, ": holds more than ", LARGEST_SCRIPT, " bytes; expected at most that");
+    }
+}
+
 }  // namespace
+
+std::string name_of_script(const std::filesystem::path& path)
+{
+    return path == "-" ? "standard input" : path.string();
+}
 
 std::vector<ScriptLine> read_script(const std::filesystem::path& path)
 {
-    std::istringstream text(read_text(path, LARGEST_SCRIPT));
+    const std::string name = name_of_script(path);
+    std::error_code ignored;
+    const bool is_pipe = path == "-" || std::filesystem::is_fifo(path, ignored);
+    std::istringstream text(is_pipe ? read_stream(path, name) : read_text(path, LARGEST_SCRIPT));
     std::vector<ScriptLine> script;
     std::string line;
     for (int number = 1; std::getline(text, line); ++number) {
         const size_t start = line.find_first_not_of(" \t\r");
         if (start == std::string::npos || line.compare(start, 2, "//") == 0) continue;
-        const JsonDocument document(line, sentence(path.string(), ":", number),
+        const JsonDocument document(line, sentence(name, ":", number),
                                     {.depth = 8, .expected = "an object on the line"});
         script.push_back({number, read_op(document.root())});
     }

@@ -35,7 +35,9 @@ struct ScriptLine {
 };
 
 /// Reads and checks the whole script before anything runs. Errors name file, line, key, value and what was expected;
-/// unknown keys and operations are refused.
+/// unknown keys and operations are refused. "-" is standard input; that and pipes are read to their end.
 std::vector<ScriptLine> read_script(const std::filesystem::path& path);
+/// "standard input" for "-".
+std::string name_of_script(const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -2,35 +2,51 @@
 // The user's work: the document, its history, the journal that keeps both, and the files it is saved to.
 //
 // The journal is the truth between sessions. Opening replays it from its last complete state, so the history continues
-// where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs; they are
-// loaded only where there is no journal, or where another program has changed them since, and then the journal is set
-// aside, not removed. The journal begins with the first command: only looking leaves no file.
+// where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs. They are
+// loaded where there is no journal; one that is missing comes back from the journal; one that others changed is a
+// question for the user. Nothing is ever overwritten that the journal does not hold (README.md has the table). The
+// journal begins with the first command: only looking leaves no file.
 //
 // One thread, the main one. Only writing the journal happens elsewhere (journal.h).
 
 #include <filesystem>
 #include <functional>
 #include <future>
-#include <map>
 #include <memory>
 #include <optional>
 
-#include "engine/annotation/trace/trace_file.h"
+#include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/journal.h"
-#include "engine/annotation/work/journal_record.h"
+#include "engine/annotation/work/saved_files.h"
 #include "engine/projects/import_volume.h"
 
 namespace shvr {
 
-struct WorkFiles {
-    std::filesystem::path journal{};                   ///< empty: work is kept in memory only
-    std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
-    std::string volume_hash{};                         ///< Session::volume_hash
-    VolumeInfo volume{};                               ///< the annotated volume
-    SettingValues settings{};                          ///< of the session, as it was read from its file
-    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails
-    /// where it cannot read them.
-    std::function<SettingValues(const SettingValues&)> normalized{};
+/// A sentence for the user.
+struct Notice {
+    std::string text;
+    bool is_loss = false;  ///< something is not as it was left, so it is told even to those who want no messages
+};
+
+/// Which is right where another program has changed a saved file.
+enum class Belief {
+    ask,      ///< the user, by `Work::disputes`; until `choose` the journal is shown, and nothing can be changed
+    journal,  ///< the next save keeps the file under another name
+    files,    ///< what changed comes into the work as a command, which undo takes back
+};
+
+/// A saved file that another program has changed since the journal last knew it.
+struct Dispute {
+    Part part = Part::mask;
+    std::filesystem::path file;
+    std::string text;                 ///< file, what was found, what was expected
+    std::vector<Change> differences;  ///< from what the journal holds to what the file holds
+};
+
+/// Saved files were changed by others, and nobody has said yet what is to be believed.
+class Disputed : public Error {
+public:
+    using Error::Error;
 };
 
 class Work {
@@ -44,9 +60,35 @@ public:
         as_left,  ///< with the contents of the journal or of the saved files
         fresh,    ///< empty; an existing journal is set aside at the first command
     };
-    /// For a Work without commands. Returns messages for the user: unsaved work, a damaged end of the journal, files
-    /// that other programs have changed. Fails, loading nothing, if a file is of another volume or malformed.
-    std::vector<std::string> open(const WorkFiles& files, Start start = Start::as_left);
+    struct Opening {
+        Start start = Start::as_left;
+        Belief belief = Belief::ask;
+        bool only_look = false;        ///< takes no hold, and no command
+        std::shared_ptr<Hold> hold{};  ///< of this journal; null: it is taken now
+        std::string program = "shvr";  ///< as in Holder, where it is taken now
+    };
+    /// For a Work without commands. Returns what there is to say: unsaved work, files that are missing or unreadable, a
+    /// journal that is missing or damaged. Fails, loading nothing, if a file is of another volume or malformed and no
+    /// journal holds what it held, and with JournalTaken where another process writes the journal.
+    std::vector<Notice> open(const WorkFiles& files, const Opening& opening);
+    std::vector<Notice> open(const WorkFiles& files) { return open(files, Opening{}); }
+
+    /// What is to be chosen; empty: nothing.
+    const std::vector<Dispute>& disputes() const { return disputes_; }
+    /// Ends all disputes: by the files in one command, or with the journal as it is. Returns what was done, and the
+    /// command, valid until the history changes.
+    struct Choice {
+        std::vector<Notice> notices;
+        const Command* command = nullptr;
+    };
+    Choice choose(Belief belief);
+    /// Fails with Disputed if there is something to be chosen.
+    void expect_choice() const;
+
+    /// True where commands and saves are refused.
+    bool only_looks() const { return only_looks_; }
+    /// Null where there is none.
+    std::shared_ptr<Hold> hold() const { return hold_; }
 
     const Document& document() const { return document_; }
     /// The session's lasting settings: the journal's or, where the session's file was changed since it was saved, the
@@ -66,17 +108,26 @@ public:
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
     /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
-    /// and offsets are written only if they have changed. Fails if one cannot be written (a retry may succeed), or if
-    /// there is something to save and no file named for it. Returns the files it wrote. `save_session` writes the
-    /// session's file, which then holds `settings()`.
-    std::vector<std::filesystem::path> save(std::vector<LabelImage::Color> looks = {},
-                                            const std::function<void()>& save_session = {});
+    /// and offsets are written only if they have changed or are missing. A file that holds what the journal does not is
+    /// kept under another name first. Fails if one cannot be written (a retry may succeed), or if there is something to
+    /// save and no file named for it. `save_session` writes the session's file, which then holds `settings()`.
+    struct Saved {
+        std::vector<std::filesystem::path> files;
+        std::vector<Notice> notices;
+    };
+    Saved save(std::vector<LabelImage::Color> looks = {}, const std::function<void()>& save_session = {});
+    /// Writes the document into other files, which must not exist yet, and changes nothing else.
+    void save_copy(const WorkFiles& to, std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
+    /// All commands are on disk, in the journal: closing without a save loses none.
+    bool is_kept() const;
+    /// Ends what is under way beside the work, so that another Work can open the same files before this one is gone.
+    void settle();
     /// No command since has changed the trace.
-    bool trace_is_saved() const { return !touched_.trace; }
+    bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
     /// Waits until the journal is on disk; fails with the reason if that is not possible.
     void flush();
 
@@ -98,25 +149,50 @@ public:
 
 private:
     Document empty_document() const;
+    void refuse_if_only_looking() const;
+
+    // Opening
+    std::vector<Notice> open_once();
+    void read_journal();
+    void open_fresh();
+    std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
     /// Returns why it stopped early, and then drops the remaining records from the scan; empty if it took all.
     std::string replay();
-    void replay_records();
+    struct Replayed {
+        Document document;
+        History history;
+    };
+    Replayed replayed(RecordNumber last, RecordNumber& at) const;
     std::vector<std::byte> content_of(RecordNumber number) const;
+    void fetch_from_journal(History& history) const;
     void begin_history();
-    void load_files();
-    SavedFiles digests() const;
-    bool files_are_as_saved() const;
-    std::optional<SavedFiles> last_saved() const;
-    std::string compare_settings();
+    void look_at_files(std::vector<Notice>& notices);
+    void look_at_file(Part part, std::vector<Notice>& notices);
+    void look_at_mask_image(std::vector<Notice>& notices) const;
+    std::vector<Document> documents_at_saves() const;
+    bool is_as_written(Part part, const Document& found) const;
+    std::string what_happened_to(Part part) const;
+    bool lacks_record_of_mask() const;
+    void compare_settings(std::vector<Notice>& notices);
     void record_settings_from_outside();
+
+    // Working
     void begin_journal();
+    void keep_journal_in_place();
     void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
     void touch(std::span<const Change> changes);
     const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
     void note_step();
     void keep_state();
+
+    // Saving
+    void expect_names() const;
+    bool is_to_write(Part part) const;
+    bool is_foreign(Part part) const;
+    void write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks) const;
+    void note_file(Part part);
 
     Size3 size_;
     VoxelType type_;
@@ -126,20 +202,29 @@ private:
     JournalScan scan_;                       ///< as it was read; the journal continues from it
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
-    bool is_fresh_ = false;                  ///< ... because the caller asked for a fresh start
-    std::map<std::filesystem::path, std::filesystem::file_time_type>
-        loaded_;                                 ///< files, and when they were written as they were loaded
+    bool only_looks_ = false;
+    std::shared_ptr<Hold> hold_;
+    std::vector<Dispute> disputes_;
     std::vector<Change> settings_from_outside_;  ///< differences of the session's file, to be recorded
+    SavedFiles known_;                           ///< the files as the journal last knew them
+    /// A file as this process last saw it.
+    struct Seen {
+        std::optional<uint64_t> digest{};
+        std::optional<FileStamp> stamp{};
+        bool is_foreign = false;  ///< the journal does not hold what it holds
+    };
+    std::array<Seen, 3> seen_;
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;
-    struct Touched {
-        bool trace = false, density = false;
-    } touched_;  ///< since the last save
+    std::array<bool, 3> touched_{};  ///< since the last save
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
     std::future<std::vector<std::byte>> state_;  ///< being made of a copy of the document
     RecordNumber state_about_ = 0;
     Limits limits_;
 };
+
+/// That the journal is missing although the mask was saved with it; nothing where that is not so, or not known.
+std::optional<Notice> note_missing_journal(const WorkFiles& files);
 
 }  // namespace shvr

@@ -21,7 +21,7 @@ std::shared_ptr<const VolumeSource> with_offsets(std::shared_ptr<const VolumeSou
     return raised;
 }
 
-DensityField offsets_of(const WorkFiles& files, std::vector<std::string>& messages)
+DensityField offsets_of(const WorkFiles& files, Belief belief, std::vector<Notice>& notices)
 {
     WorkFiles looked_at = files;
     std::error_code ignored;
@@ -30,8 +30,12 @@ DensityField offsets_of(const WorkFiles& files, std::vector<std::string>& messag
         looked_at.mask.clear();
         looked_at.trace.clear();
     }
+    if (std::optional<Notice> notice = note_missing_journal(files)) notices.push_back(std::move(*notice));
     Work work(files.volume.size, files.volume.type);
-    for (std::string& message : work.open(looked_at)) messages.push_back(std::move(message));
+    for (Notice& notice : work.open(looked_at, {.belief = belief, .only_look = true}))
+        notices.push_back(std::move(notice));
+    for (const Dispute& dispute : work.disputes())
+        if (dispute.part == Part::offsets) throw Disputed(dispute.text);
     return work.document().density;
 }
 

@@ -14,8 +14,9 @@ std::vector<OffsetSource::Brick> offset_bricks(const DensityField& field);
 /// change afterwards.
 std::shared_ptr<const VolumeSource> with_offsets(std::shared_ptr<const VolumeSource> base, const DensityField& field);
 
-/// Only the offsets that `Work::open` would load: without a journal, mask and trace are not read. Fails as Work::open
-/// does, and appends its messages to `messages`. One thread.
-DensityField offsets_of(const WorkFiles& files, std::vector<std::string>& messages);
+/// Only the offsets that `Work::open` would load, looked at: without a journal, mask and trace are not read. Fails as
+/// Work::open does, and with Disputed where another program has changed their file and `belief` does not say which is
+/// right; appends what there is to say to `notices`. One thread.
+DensityField offsets_of(const WorkFiles& files, Belief belief, std::vector<Notice>& notices);
 
 }  // namespace shvr

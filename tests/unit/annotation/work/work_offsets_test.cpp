@@ -162,15 +162,15 @@ TEST_CASE("offsets come from the journal, or from their file, and then no other 
                           .trace = folder.path / "a.graphml",
                           .density = folder.path / "a.offset",
                           .volume = volume};
-    std::vector<std::string> messages;
-    CHECK(offsets_of(files, messages).voxels() == 0);
-    CHECK(offsets_of({.volume = volume}, messages).voxels() == 0);
+    std::vector<Notice> messages;
+    CHECK(offsets_of(files, Belief::ask, messages).voxels() == 0);
+    CHECK(offsets_of({.volume = volume}, Belief::ask, messages).voxels() == 0);
     Painted painted(size);
     painted.put({35, 3, 3}, 7);
     save_offsets(files.density, painted.field);
     folder.write("a.mask", "of another volume");
     folder.write("a.graphml", "no trace");
-    CHECK(offsets_of(files, messages).at({35, 3, 3}) == 7.0);
+    CHECK(offsets_of(files, Belief::ask, messages).at({35, 3, 3}) == 7.0);
     std::filesystem::remove(files.mask);
     std::filesystem::remove(files.trace);
     CHECK(messages.empty());
@@ -182,11 +182,20 @@ TEST_CASE("offsets come from the journal, or from their file, and then no other 
         work.flush();
     }
     const std::string before = bytes_of_file(files.journal);
-    const DensityField found = offsets_of(files, messages);
+    const DensityField found = offsets_of(files, Belief::ask, messages);
     CHECK(found.voxels() == 3);
     CHECK(found.at({1, 0, 0}) == 9.0);
     CHECK(messages.size() == 1);  // a step that is not saved
     CHECK(bytes_of_file(files.journal) == before);
+    // A file that nobody can have meant: what the journal holds is taken.
     folder.write("a.offset", "short");
-    CHECK(contains(error_of([&] { offsets_of(files, messages); }), "a.offset: holds 5 bytes"));
+    CHECK(offsets_of(files, Belief::ask, messages).voxels() == 3);
+    CHECK(contains(messages.back().text, "a.offset: holds 5 bytes"));
+    CHECK(messages.back().is_loss);
+    // One that somebody may have meant.
+    painted.put({35, 3, 4}, 2);
+    save_offsets(files.density, painted.field);
+    CHECK_THROWS_AS(offsets_of(files, Belief::ask, messages), Disputed);
+    CHECK(offsets_of(files, Belief::files, messages).voxels() == 2);
+    CHECK(offsets_of(files, Belief::journal, messages).voxels() == 3);
 }

@@ -2,6 +2,8 @@
 
 #include "engine/annotation/work/work.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <random>
 
@@ -22,14 +24,15 @@ class Desk : public TemporaryFolder {
 public:
     WorkFiles files() const { return files_in(path); }
     /// Reopens the work as it was left; messages from opening go to `said`.
-    std::unique_ptr<Work> open(Work::Start start = Work::Start::as_left) const
+    std::unique_ptr<Work> open(const Work::Opening& opening = {}) const
     {
         auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);
         said.clear();
-        for (const std::string& message : work->open(files(), start)) said += message + "\n";
+        for (const Notice& notice : work->open(files(), opening)) said += notice.text + "\n";
+        for (const Dispute& dispute : work->disputes()) said += dispute.text + "\n";
         return work;
     }
-    uint64_t hash() const { return hash_of(open()->document()); }
+    uint64_t hash() const { return hash_of(open({.only_look = true})->document()); }
     mutable std::string said;
 };
 
@@ -145,7 +148,7 @@ TEST_CASE("what was not saved is there, and it is said; what was saved needs no 
     CHECK(desk.hash() == hash);
 }
 
-TEST_CASE("files that others changed are taken, and the journal is kept beside them")
+TEST_CASE("files that others changed are a question, and whatever the answer is, both are kept")
 {
     const Desk desk;
     {
@@ -157,23 +160,120 @@ TEST_CASE("files that others changed are taken, and the journal is kept beside t
     Mask other(ANNOTATED_SIZE);
     other.apply({.brick = 0, .runs = {{10, 19, 0, 7}}}, Direction::forwards);
     save_mask(desk.files().mask, other);
-    const std::string journal = bytes_of_file(desk.files().journal);
+    const std::string journal = bytes_of_file(desk.files().journal), mask = bytes_of_file(desk.files().mask);
     {
         const auto work = desk.open();
-        CHECK(contains(desk.said,
-                       "the saved files were changed since it was written; they are taken, and what the journal "
-                       "holds, with 1 steps that were not saved, will be set aside"));
-        CHECK(work->document().mask.voxels_by_group()[7] == 10);
-        CHECK(work->history().undoable() == 0);
+        CHECK(contains(desk.said, "a.mask: was changed by another program; expected the mask as the journal"));
+        REQUIRE(work->disputes().size() == 1);
+        CHECK(work->document().mask.voxels_by_group()[1] == 2);
+        CHECK_THROWS_AS(work->perform(dab(3)), Disputed);
+        CHECK_THROWS_AS(work->undo(), Disputed);
+        CHECK_THROWS_AS(work->save(), Disputed);
         CHECK(bytes_of_file(desk.files().journal) == journal);  // looking changes nothing
-        work->perform(dab(3));
     }
-    CHECK(bytes_of_file(desk.path / "a.journal.old") == journal);
+    SUBCASE("the files: a step that undo takes back, and that is not asked about again")
+    {
+        auto work = desk.open({.belief = Belief::files});
+        CHECK(contains(desk.said, "the file is taken, as a step that undo takes back"));
+        CHECK(work->document().mask.voxels_by_group()[7] == 10);
+        CHECK(work->document().mask.voxels_by_group()[1] == 0);
+        work.reset();
+        work = desk.open();
+        CHECK(work->disputes().empty());
+        CHECK(work->document().mask.voxels_by_group()[7] == 10);
+        REQUIRE(work->undo());
+        CHECK(work->document().mask.voxels_by_group()[1] == 2);
+        CHECK(work->save().notices.empty());
+        CHECK_FALSE(fs::exists(desk.path / "a.mask.old"));  // the journal holds it
+    }
+    SUBCASE("the journal: the next save keeps the file")
+    {
+        const auto work = desk.open({.belief = Belief::journal});
+        CHECK(contains(desk.said, "the next save keeps the file as " + (desk.path / "a.mask.old").string()));
+        const Work::Saved saved = work->save();
+        REQUIRE(saved.notices.size() == 1);
+        CHECK(saved.notices[0].is_loss);
+        CHECK(bytes_of_file(desk.path / "a.mask.old") == mask);
+        CHECK(work->document().mask.voxels_by_group()[1] == 2);
+    }
+    SUBCASE("only looking chooses for itself")
+    {
+        CHECK(desk.open({.belief = Belief::files, .only_look = true})->document().mask.voxels_by_group()[7] == 10);
+        CHECK(bytes_of_file(desk.files().journal) == journal);
+        CHECK(desk.open()->disputes().size() == 1);
+    }
+}
+
+TEST_CASE("a missing file comes back from the journal, with its history, and it is said")
+{
+    const Desk desk;
+    uint64_t hash = 0;
+    {
+        const auto work = desk.open();
+        std::mt19937 random(5);
+        while (work->document().trace.nodes().empty() || work->document().density.voxels() == 0 ||
+               work->document().mask.painted_bricks().empty())
+            if (Command command = random_command(work->document(), random); !command.changes.empty())
+                work->perform(std::move(command));
+        work->save();
+        hash = hash_of(work->document());
+    }
+    const WorkFiles files = desk.files();
+    for (const fs::path& file : {files.mask, files.trace, files.density}) {
+        CAPTURE(file.string());
+        const std::string before = bytes_of_file(file);
+        fs::remove(file);
+        const auto work = desk.open();
+        CHECK(contains(desk.said, file.string() + ": is missing; expected the "));
+        CHECK(hash_of(work->document()) == hash);
+        CHECK(work->history().undoable() > 0);
+        work->save();
+        CHECK(bytes_of_file(file) == before);
+    }
+    CHECK(desk.hash() == hash);
+    CHECK(desk.said.empty());
+}
+
+TEST_CASE("what others write while the work is open is kept by the next save")
+{
+    const Desk desk;
     const auto work = desk.open();
-    CHECK(work->document().mask.voxels_by_group()[7] == 10);
+    work->perform(dab(1));
+    CHECK(work->save().notices.empty());
+    desk.write("a.mask", "of somebody else");
+    work->perform(dab(2));
+    const Work::Saved saved = work->save();
+    REQUIRE(saved.notices.size() == 1);
+    CHECK(contains(saved.notices[0].text, "a.mask: was written by another program"));
+    CHECK(bytes_of_file(desk.path / "a.mask.old") == "of somebody else");
+    CHECK(work->save().notices.empty());
+    // The trace has not been changed, so it is not written, and what came there is a question next time.
+    desk.write("a.graphml", "of somebody else");
+    work->perform(dab(3));
+    CHECK(work->save().notices.empty());
+    CHECK(bytes_of_file(desk.files().trace) == "of somebody else");
+}
+
+TEST_CASE("a journal that is removed while it is written is put back, with all that it held")
+{
+    const Desk desk;
+    auto work = desk.open();
+    work->perform(dab(1));
+    work->flush();
+    fs::remove(desk.files().journal);
+    work->perform(dab(3));
+    work->flush();
+    CHECK(desk.open({.only_look = true})->document().mask.voxels_by_group()[1] == 2);
+    desk.write("other", "no journal");
+    fs::rename(desk.path / "other", desk.files().journal);
+    work->save();
+    CHECK(bytes_of_file(desk.path / "a.journal.old") == "no journal");
+    work->undo();
+    work.reset();
+    work = desk.open();
     CHECK(work->document().mask.voxels_by_group()[1] == 1);
-    REQUIRE(work->undo());
-    CHECK(work->undo() == nullptr);
+    CHECK(work->history().undoable() == 1);
+    CHECK(work->history().redoable() == 1);
 }
 
 TEST_CASE("a save that came to no end is of either state, and the journal knows which is last")
@@ -186,15 +286,17 @@ TEST_CASE("a save that came to no end is of either state, and the journal knows 
         work->save();
         work->perform(dab(2));
         hash = hash_of(work->document());
-        // The disk refuses the second file.
-        fs::create_directories(desk.files().density);
+        // The second file cannot be written.
+        const WorkFiles files = desk.files();
+        work->name_files(files.mask, files.trace, desk.path / "none" / "a.offset");
         work->perform({"offset", {DensityBrickChange{.brick = 0, .runs = {{5, 5, 0, 9}}}}});
-        CHECK(contains(error_of([&] { work->save(); }), "a.offset: cannot be written: Is a directory"));
+        CHECK(contains(error_of([&] { work->save(); }), "a.offset: cannot be written: No such file or directory"));
         CHECK(work->unsaved() == 2);
         work->undo();
     }
     CHECK(desk.hash() == hash);
     CHECK(contains(desk.said, "holds 3 steps that were not saved"));
+    CHECK(desk.open()->disputes().empty());  // the mask is that of the save that came to no end
 }
 
 TEST_CASE("starting afresh leaves the journal there was under another name")
@@ -203,7 +305,7 @@ TEST_CASE("starting afresh leaves the journal there was under another name")
     desk.open()->perform(dab(1));
     const std::string journal = bytes_of_file(desk.files().journal);
     {
-        const auto work = desk.open(Work::Start::fresh);
+        const auto work = desk.open({.start = Work::Start::fresh});
         CHECK(work->document().mask.painted_bricks().empty());
         CHECK(bytes_of_file(desk.files().journal) == journal);
         work->perform(dab(5, 2));
@@ -232,20 +334,55 @@ TEST_CASE("a journal of another volume is refused by what differs")
     CHECK(refusal(ANNOTATED_SIZE, ANNOTATED_TYPE, "").empty());
 }
 
-TEST_CASE("a second hand is refused, before it does anything")
+TEST_CASE("a second hand is told at opening who writes, and may look")
 {
     const Desk desk;
+    auto first = desk.open({.program = "the first"});
+    const std::string refusal = error_of([&] { desk.open(); });
+    CHECK(contains(refusal, sentence("a.journal: is open for writing in the first, process ", ::getpid(), " on ")));
+    CHECK_THROWS_AS(desk.open(), JournalTaken);
+    first->perform(dab(1));
+    first->flush();
+    const auto looking = desk.open({.only_look = true});
+    CHECK(looking->only_looks());
+    CHECK(looking->document().mask.voxels_by_group()[1] == 1);
+    CHECK_THROWS_AS(looking->perform(dab(2)), JournalTaken);
+    CHECK_THROWS_AS(looking->undo(), JournalTaken);
+    CHECK_THROWS_AS(looking->save(), JournalTaken);
+    REQUIRE(holder_of(desk.files().journal).has_value());
+    CHECK(holder_of(desk.files().journal)->program == "the first");
+    // The same hold serves whoever replaces the first.
+    first->settle();
+    auto second = desk.open({.hold = first->hold()});
+    first.reset();
+    second->perform(dab(3));
+    CHECK_THROWS_AS(desk.open(), JournalTaken);
+    second.reset();
+    CHECK_FALSE(holder_of(desk.files().journal).has_value());
+    CHECK_FALSE(fs::exists(lock_path(desk.files().journal)));
+    // What a dead process left is no hold.
+    desk.write("a.journal.lock", "program: shvr view\nprocess: 999999999\n");
+    CHECK_FALSE(holder_of(desk.files().journal).has_value());
+    CHECK(desk.open()->document().mask.voxels_by_group()[1] == 2);
+}
+
+TEST_CASE("without locks, who comes second is refused before it does anything")
+{
+    const Desk desk;
+    fs::create_directory(lock_path(desk.files().journal));  // so that no lock can be kept
     const auto first = desk.open(), second = desk.open();
     first->perform(dab(1));
     CHECK_THROWS_AS(second->perform(dab(2)), JournalTaken);
     CHECK(second->document().mask.painted_bricks().empty());
     CHECK(second->history().undoable() == 0);
+    CHECK(second->is_kept());  // so it can be closed
     first->perform(dab(3));
     first->flush();
     const auto third = desk.open();
     CHECK(third->document().mask.voxels_by_group()[1] == 2);
     CHECK_THROWS_AS(third->undo(), JournalTaken);
     CHECK(third->document().mask.voxels_by_group()[1] == 2);
+    CHECK(third->is_kept());
 }
 
 TEST_CASE("a journal whose checksums hold and whose records do not fit is taken as far as it fits")

@@ -1,0 +1,182 @@
+#include "engine/annotation/work/saved_files.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/files/mask_import.h"
+#include "engine/annotation/files/offset_import.h"
+#include "engine/annotation/work/journal_file.h"
+#include "engine/base/atomic_writer.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Value>
+std::vector<Change> bricks_between(const SparseBricks<Value>& from, const SparseBricks<Value>& to)
+{
+    const std::vector<int64_t> before = from.painted_bricks(), after = to.painted_bricks();
+    std::set<int64_t> indices(before.begin(), before.end());
+    indices.insert(after.begin(), after.end());
+    std::vector<Change> changes;
+    for (const int64_t index : indices) {
+        const auto &old = from.brick(index), &now = to.brick(index);
+        if (old == now) continue;  // shared
+        BrickChange<Value> change{index, {}};
+        for (size_t i = 0; i < VOXELS_PER_BRICK; ++i)
+            append_run(change.runs, i, i, old ? (*old)[i] : Value{0}, now ? (*now)[i] : Value{0});
+        if (!change.runs.empty()) changes.emplace_back(std::move(change));
+    }
+    return changes;
+}
+
+/// What `from` has and `to` has otherwise or not; `made`: what `to` has beyond that or otherwise.
+template <class Record, class Number, class Value>
+void differences(const std::map<Number, Value>& from, const std::map<Number, Value>& to, std::vector<Record>& gone,
+                 std::vector<Record>& made)
+{
+    for (const auto& [number, value] : from)
+        if (const auto found = to.find(number); found == to.end()) gone.push_back({number, value, {}});
+    for (const auto& [number, value] : to) {
+        const auto found = from.find(number);
+        if (found == from.end())
+            made.push_back({number, {}, value});
+        else if (!(found->second == value))
+            made.push_back({number, found->second, value});
+    }
+}
+
+std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
+{
+    std::vector<TraceNodeChange> lost_nodes, nodes;
+    std::vector<TraceInternodeChange> lost_links, links;
+    std::vector<TraceSizeChange> lost_sizes, sizes;
+    differences(from.nodes(), to.nodes(), lost_nodes, nodes);
+    differences(from.internodes(), to.internodes(), lost_links, links);
+    differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
+    // One that joins other nodes than before is taken away first, and all of these before any is added: two nodes are
+    // joined once at most.
+    std::vector<TraceInternodeChange> joins;
+    for (TraceInternodeChange& link : links) {
+        if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
+            lost_links.push_back({link.internode, link.before, {}});
+            link.before.reset();
+        }
+        joins.push_back(link);
+    }
+    std::vector<Change> changes;
+    const auto add = [&](const auto& records) {
+        for (const auto& record : records) changes.emplace_back(TraceChange(record));
+    };
+    add(lost_links);
+    add(lost_nodes);
+    add(nodes);
+    add(joins);
+    add(lost_sizes);
+    add(sizes);
+    if (changes.empty()) return changes;
+    // In both directions nothing is selected that does not exist.
+    changes.insert(changes.begin(), TraceChange(TraceSelectionChange{from.selection(), {}}));
+    return changes;
+}
+
+}  // namespace
+
+const char* name_of(Part part)
+{
+    switch (part) {
+        case Part::mask: return "mask";
+        case Part::trace: return "trace";
+        case Part::offsets: return "density offsets";
+    }
+    return "";
+}
+
+const fs::path& file_of(const WorkFiles& files, Part part)
+{
+    return part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density;
+}
+
+std::optional<uint64_t>& digest_of(SavedFiles& digests, Part part)
+{
+    return part == Part::mask ? digests.mask : part == Part::trace ? digests.trace : digests.density;
+}
+
+bool is_there(const fs::path& path)
+{
+    std::error_code ignored;
+    return !path.empty() && fs::exists(path, ignored);
+}
+
+void load(Part part, const WorkFiles& files, Document& into)
+{
+    const TraceSpace space = space_of(files.volume);
+    switch (part) {
+        case Part::mask: {
+            // A mask of another size is also of another image, and the size makes the better message.
+            const std::vector<MaskBrickChange> changes = import_mask(files.mask, space);
+            check_mask_image(files.mask, files.volume_hash);
+            for (const MaskBrickChange& change : changes) into.mask.apply(change, Direction::forwards);
+            return;
+        }
+        case Part::trace: into.trace = load_trace(files.trace, space).trace; return;
+        case Part::offsets: into.density = import_offsets(files.density, space, into.density.type()); return;
+    }
+}
+
+std::vector<Change> changes_between(Part part, const Document& from, const Document& to)
+{
+    switch (part) {
+        case Part::mask: return bricks_between(from.mask, to.mask);
+        case Part::trace: return traces_between(from.trace, to.trace);
+        case Part::offsets: return bricks_between(from.density, to.density);
+    }
+    return {};
+}
+
+std::optional<uint64_t> trace_digest(const WorkFiles& files, const TraceGraph& trace)
+{
+    try {
+        const std::string text = trace_text(files.trace, trace, space_of(files.volume));
+        return digest_of(std::as_bytes(std::span(text)));
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<FileStamp> stamp_of(const fs::path& path)
+{
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    const auto in_ns = [](const timespec& time) { return int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec; };
+    return FileStamp{in_ns(status.st_mtim), in_ns(status.st_ctim), uint64_t(status.st_size), status.st_ino};
+}
+
+fs::path old_of(const fs::path& path)
+{
+    fs::path plain = path.has_filename() ? path : path.parent_path();
+    for (int number = 1;; ++number) {
+        fs::path old = plain;
+        old += number == 1 ? ".old" : sentence(".old", number);
+        std::error_code ignored;
+        if (!fs::exists(fs::symlink_status(old, ignored))) return old;
+    }
+}
+
+fs::path set_aside(const fs::path& path)
+{
+    const fs::path old = old_of(path);
+    if (std::rename(path.c_str(), old.c_str()) != 0)
+        fail(old.string(), ": cannot be written, to keep ", path.filename().string(), " there: ", reason_of(errno));
+    sync_folder(old);
+    return old;
+}
+
+}  // namespace shvr

@@ -1,0 +1,69 @@
+#pragma once
+// The files an annotation is saved in, one for each part: what they hold, and how that differs from a document.
+//
+// Any thread may call these.
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/annotation/work/change.h"
+#include "engine/annotation/work/journal_record.h"
+
+namespace shvr {
+
+struct WorkFiles {
+    std::filesystem::path journal{};                   ///< empty: work is kept in memory only
+    std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
+    std::string volume_hash{};                         ///< Session::volume_hash
+    VolumeInfo volume{};                               ///< the annotated volume
+    SettingValues settings{};                          ///< of the session, as it was read from its file
+    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails
+    /// where it cannot read them.
+    std::function<SettingValues(const SettingValues&)> normalized{};
+};
+
+enum class Part { mask, trace, offsets };
+inline constexpr std::array<Part, 3> PARTS{Part::mask, Part::trace, Part::offsets};
+
+/// "mask", "trace", "density offsets"
+const char* name_of(Part part);
+const std::filesystem::path& file_of(const WorkFiles& files, Part part);
+std::optional<uint64_t>& digest_of(SavedFiles& digests, Part part);
+inline const std::optional<uint64_t>& digest_of(const SavedFiles& digests, Part part)
+{
+    return digest_of(const_cast<SavedFiles&>(digests), part);
+}
+
+bool is_there(const std::filesystem::path& path);
+
+/// Reads the file of a part into a document whose part is empty. Fails where the file is malformed, or of another
+/// volume or image.
+void load(Part part, const WorkFiles& files, Document& into);
+
+/// The changes that turn a part of one document into that of the other, both of one volume; none where they are equal.
+/// What is selected does not count.
+std::vector<Change> changes_between(Part part, const Document& from, const Document& to);
+
+/// The digest of the file that a trace would be saved to; nothing where it cannot be saved in that form.
+std::optional<uint64_t> trace_digest(const WorkFiles& files, const TraceGraph& trace);
+
+/// When a file was written, as far as the system tells: a file with the same stamp is not read again.
+struct FileStamp {
+    int64_t written_ns = 0, changed_ns = 0;
+    uint64_t bytes = 0, inode = 0;
+    bool operator==(const FileStamp&) const = default;
+};
+/// Nothing for folders and for what is not there.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
+
+/// "paint.mask.old", or "paint.mask.old2" and so on where that is there already.
+std::filesystem::path old_of(const std::filesystem::path& path);
+/// Renames a file or folder to `old_of` it, and returns that; fails if it cannot.
+std::filesystem::path set_aside(const std::filesystem::path& path);
+
+}  // namespace shvr

@@ -1,0 +1,436 @@
+// Opening work: the journal, the saved files beside it, and which of them is believed where they differ.
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/work/work.h"
+#include "engine/base/atomic_writer.h"
+#include "engine/base/text.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_step(RecordKind kind)
+{
+    return kind == RecordKind::command || kind == RecordKind::undo || kind == RecordKind::redo;
+}
+
+size_t steps_since_save(const JournalScan& scan)
+{
+    size_t steps = 0;
+    for (const JournalRecord& record : scan.records) {
+        if (record.kind == RecordKind::saved) steps = 0;
+        if (is_step(record.kind)) ++steps;
+    }
+    return steps;
+}
+
+bool tells_files(RecordKind kind)
+{
+    return kind == RecordKind::saved || kind == RecordKind::known;
+}
+
+bool holds_state(const JournalScan& scan)
+{
+    return std::ranges::any_of(scan.records, [](const auto& record) { return record.kind == RecordKind::state; });
+}
+
+fs::path plain(const fs::path& path)
+{
+    return fs::absolute(path).lexically_normal();
+}
+
+/// Whether MASK.json says that the mask was saved with this journal, or one in its place.
+bool names_journal(const WorkFiles& files)
+{
+    const std::optional<MaskJournal> named = journal_of_mask(files.mask);
+    return named && named->name == files.journal.filename().string();
+}
+
+}  // namespace
+
+std::optional<Notice> note_missing_journal(const WorkFiles& files)
+{
+    if (files.journal.empty() || is_there(files.journal) || !names_journal(files)) return std::nullopt;
+    return Notice{sentence(files.journal.string(), ": is missing; expected the history and what was not saved, since ",
+                           mask_image_path(files.mask).string(),
+                           " names it; the saved files are taken; put it back before anything is painted, or go on "
+                           "without"),
+                  true};
+}
+
+std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
+{
+    constexpr int TRIES = 20;
+    constexpr std::chrono::milliseconds TURN(50);
+    SHVR_CHECK(!journal_ && history_.undoable() == 0, "work has begun");
+    files_ = files;
+    only_looks_ = opening.only_look;
+    const bool is_given = opening.hold && plain(opening.hold->journal()) == plain(files.journal);
+    if (!only_looks_) hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
+    if (opening.start == Start::fresh) {
+        open_fresh();
+        return {};
+    }
+    std::vector<Notice> notices = open_once();
+    // Another process may be in the midst of a save.
+    for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
+        std::this_thread::sleep_for(TURN);
+        notices = open_once();
+    }
+    for (Notice& notice : choose(opening.belief).notices) notices.push_back(std::move(notice));
+    return notices;
+}
+
+std::vector<Notice> Work::open_once()
+{
+    document_ = empty_document();
+    begin_history();
+    disputes_.clear();
+    settings_from_outside_.clear();
+    touched_ = {};
+    unsaved_ = 0;
+    is_to_set_aside_ = false;
+    read_journal();
+    if (!scan_.records.empty()) check_subject();
+    const std::string damage = holds_state(scan_) ? replay() : std::string();
+    if (!holds_state(scan_)) return open_from_files(damage);
+
+    std::vector<Notice> notices;
+    const std::string name = files_.journal.string();
+    if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is taken"), true});
+    // What another process is just writing is no damage.
+    if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
+        notices.push_back(
+            {sentence(name, ": its last ", scan_.file_bytes - scan_.end, " bytes were not written to the end; the ",
+                      scan_.records.size(), " records before are taken"),
+             true});
+    unsaved_ = steps_since_save(scan_);
+    touched_.fill(unsaved_ > 0);
+    if (unsaved_ > 0)
+        notices.push_back({sentence(name, ": holds ", unsaved_, unsaved_ == 1 ? " step that was" : " steps that were",
+                                    " not saved; none of them is lost")});
+    look_at_files(notices);
+    compare_settings(notices);
+    return notices;
+}
+
+void Work::read_journal()
+{
+    scanned_.reset();
+    scan_ = files_.journal.empty() ? JournalScan{} : scan_journal(files_.journal);
+    if (scan_.inode == 0) return;
+    scanned_.emplace(::open(files_.journal.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!*scanned_) fail(files_.journal.string(), ": cannot be opened: ", reason_of(errno));
+}
+
+/// What is there belongs to earlier work, and is kept where that work's journal does not hold it.
+void Work::open_fresh()
+{
+    read_journal();
+    is_to_set_aside_ = scan_.file_bytes > 0;
+    touched_.fill(true);
+    document_.settings = Settings(files_.settings);
+    known_.settings = files_.settings;
+    SavedFiles saved;
+    for (RecordNumber number = scan_.records.size(); number > 0; --number)
+        if (tells_files(scan_.records[number - 1].kind)) {
+            saved = saved_files_of(content_of(number));
+            break;
+        }
+    for (const Part part : PARTS) {
+        note_file(part);
+        Seen& seen = seen_[size_t(part)];
+        seen.is_foreign = is_there(file_of(files_, part)) && seen.digest != digest_of(saved, part);
+        if (!seen.is_foreign) digest_of(known_, part) = seen.digest;
+    }
+}
+
+/// For work without a journal, or with one that holds no state. `damage`: why it holds none, if that is known.
+std::vector<Notice> Work::open_from_files(const std::string& damage)
+{
+    std::vector<Notice> notices;
+    const std::string name = files_.journal.string();
+    const bool was_there = scan_.inode != 0;
+    document_.settings = Settings(files_.settings);
+    known_.settings = files_.settings;
+    is_to_set_aside_ = !scan_.records.empty() || scan_.end < scan_.file_bytes;
+    if (!was_there) {
+        if (std::optional<Notice> notice = note_missing_journal(files_)) notices.push_back(std::move(*notice));
+    } else if (is_to_set_aside_ || scan_.file_bytes == 0 || names_journal(files_))
+        notices.push_back(
+            {sentence(name, ": holds ", scan_.file_bytes, " bytes and no whole state of the work",
+                      damage.empty() ? "" : " (" + damage + ")",
+                      "; expected the history and what was not saved; the saved files are taken",
+                      is_to_set_aside_ ? ", and the first command keeps this file as " + old_of(files_.journal).string()
+                                       : std::string()),
+             true});
+    for (const Part part : PARTS) {
+        note_file(part);
+        if (is_there(file_of(files_, part))) load(part, files_, document_);
+        digest_of(known_, part) = seen_[size_t(part)].digest;
+    }
+    return notices;
+}
+
+void Work::check_subject() const
+{
+    const std::string name = files_.journal.string();
+    JournalSubject found;
+    try {
+        found = subject_of(content_of(1));
+    } catch (const Error& error) {
+        fail(name, ": does not say which volume it is of: ", error.what());
+    }
+    const auto volume_in_words = [](const Size3& size, VoxelType type) {
+        return sentence(size.x, "x", size.y, "x", size.z, " voxels of ", name_of(type));
+    };
+    if (found.size != size_ || found.type != type_)
+        fail(name, ": is of a volume of ", volume_in_words(found.size, found.type), "; expected ",
+             volume_in_words(size_, type_));
+    if (!found.image.empty() && !files_.volume_hash.empty() && found.image != files_.volume_hash)
+        fail(name, ": is of an image with the hash ", found.image, "; expected ", files_.volume_hash);
+}
+
+// ---- Replaying ------------------------------------------------------------------------------------------------------
+
+std::string Work::replay()
+{
+    std::string damage;
+    for (;;) {
+        RecordNumber at = 0;
+        try {
+            Replayed whole = replayed(scan_.records.size(), at);
+            document_ = std::move(whole.document);
+            history_ = std::move(whole.history);
+            return damage;
+        } catch (const Error& error) {
+            scan_.cut(at - 1);
+            damage = sentence("record ", at, " cannot be taken: ", error.what());
+            if (!holds_state(scan_)) return damage;
+        }
+    }
+}
+
+/// The work after record `last`. Where it fails, `at` is the record that cannot be taken.
+Work::Replayed Work::replayed(RecordNumber last, RecordNumber& at) const
+{
+    Replayed work{empty_document(), {}};
+    fetch_from_journal(work.history);
+    at = last;
+    while (at > 0 && scan_.records[at - 1].kind != RecordKind::state) --at;
+    const RecordNumber state = at;
+    const auto replay_one = [&](RecordNumber known) {
+        const JournalRecord& record = scan_.records[at - 1];
+        const bool is_noted = at <= known;
+        const auto apply = [&] {
+            if (!is_noted) apply_if_it_fits(work.document, changes_of(content_of(at)), Direction::forwards);
+        };
+        switch (record.kind) {
+            case RecordKind::command:
+                apply();
+                work.history.note(record.label, at);
+                break;
+            case RecordKind::extension:
+                apply();
+                work.history.note_extension(at);
+                break;
+            case RecordKind::undo:
+                if (is_noted)
+                    work.history.note_undo();
+                else if (!work.history.undo(work.document))
+                    fail("more is undone than was done");
+                break;
+            case RecordKind::redo:
+                if (is_noted)
+                    work.history.note_redo();
+                else if (!work.history.redo(work.document))
+                    fail("more is done again than was undone");
+                break;
+            default: break;  // states, saves, and kinds unknown to this version
+        }
+    };
+    RecordNumber known = 0;
+    if (state > 0) {
+        known = scan_.records[state - 1].about;
+        if (known >= state) fail("a state is of record ", known, " behind it");
+        work.document = document_of(content_of(state), empty_document());
+    }
+    for (at = 1; at <= last; ++at) replay_one(known);
+    return work;
+}
+
+// ---- The saved files beside the journal -----------------------------------------------------------------------------
+
+void Work::look_at_files(std::vector<Notice>& notices)
+{
+    known_ = {};
+    for (RecordNumber number = scan_.records.size(); number > 0; --number)
+        if (tells_files(scan_.records[number - 1].kind)) {
+            try {
+                known_ = saved_files_of(content_of(number));
+            } catch (const Error&) {  // then every file is compared with the work itself
+            }
+            break;
+        }
+    for (const Part part : PARTS)
+        if (!file_of(files_, part).empty()) look_at_file(part, notices);
+}
+
+void Work::look_at_file(Part part, std::vector<Notice>& notices)
+{
+    const fs::path& file = file_of(files_, part);
+    const std::string journal_holds =
+        sentence("the journal ", files_.journal.string(), " holds the ", name_of(part), " and is taken");
+    Seen& seen = seen_[size_t(part)];
+    bool& is_touched = touched_[size_t(part)];
+    const auto keep_unreadable = [&](const Error& error) {
+        seen.is_foreign = is_touched = true;
+        notices.push_back(
+            {sentence(error.what(), "; ", journal_holds, "; the next save keeps this file as ", old_of(file).string()),
+             true});
+    };
+    try {
+        note_file(part);
+    } catch (const Error& error) {
+        return keep_unreadable(error);
+    }
+    if (seen.digest == digest_of(known_, part)) {
+        if (part == Part::mask && seen.digest) look_at_mask_image(notices);
+        return;
+    }
+    if (!seen.digest) {
+        is_touched = true;
+        notices.push_back({sentence(file.string(), ": is missing; expected the ", name_of(part), " as it was saved; ",
+                                    journal_holds, "; saving writes the file again"),
+                           true});
+        return;
+    }
+    Document found = empty_document();
+    try {
+        load(part, files_, found);
+    } catch (const Error& error) {
+        return keep_unreadable(error);
+    }
+    if (is_as_written(part, found)) return;
+    seen.is_foreign = is_touched = true;
+    disputes_.push_back({part, file,
+                         sentence(file.string(), ": ", what_happened_to(part), "; expected the ", name_of(part),
+                                  " as the journal ", files_.journal.string(), " knows it saved"),
+                         changes_between(part, document_, found)});
+}
+
+void Work::look_at_mask_image(std::vector<Notice>& notices) const
+{
+    try {
+        check_mask_image(files_.mask, files_.volume_hash);
+    } catch (const Error& error) {
+        notices.push_back({sentence(error.what(), "; the journal ", files_.journal.string(),
+                                    " is of this volume and is taken; saving writes this file anew"),
+                           true});
+    }
+}
+
+/// The states that a save may have written: the last one that was finished, and all that were begun since.
+std::vector<Document> Work::documents_at_saves() const
+{
+    constexpr size_t MAX_SAVES = 8;
+    std::vector<Document> documents{document_};
+    for (RecordNumber number = scan_.records.size(); number > 0 && documents.size() < MAX_SAVES; --number) {
+        const RecordKind kind = scan_.records[number - 1].kind;
+        if (kind != RecordKind::saving && kind != RecordKind::saved) continue;
+        RecordNumber at = 0;
+        documents.push_back(replayed(number, at).document);
+        if (kind == RecordKind::saved) break;
+    }
+    return documents;
+}
+
+/// Whether a file with other bytes than expected is of a save that came to no end, or holds the same all the same.
+bool Work::is_as_written(Part part, const Document& found) const
+{
+    const auto is_equal = [&](const Document& document) {
+        if (changes_between(part, document, found).empty()) return true;
+        return part == Part::trace && trace_digest(files_, document.trace) == seen_[size_t(part)].digest;
+    };
+    return std::ranges::any_of(documents_at_saves(), is_equal);
+}
+
+std::string Work::what_happened_to(Part part) const
+{
+    if (part == Part::mask && lacks_record_of_mask())
+        return sentence("was saved by a later state of the journal, or with another one, as ",
+                        mask_image_path(files_.mask).string(), " says");
+    size_t saves = 0;
+    for (RecordNumber number = scan_.records.size(); number > 0; --number) {
+        if (scan_.records[number - 1].kind != RecordKind::saved) continue;
+        try {
+            const SavedFiles files = saved_files_of(content_of(number));
+            if (digest_of(files, part) == seen_[size_t(part)].digest)
+                return sentence("is as it was saved earlier, ", saves, saves == 1 ? " save" : " saves",
+                                " before the last");
+        } catch (const Error&) {  // says nothing
+        }
+        ++saves;
+    }
+    return digest_of(known_, part) ? "was changed by another program" : "was put there by another program";
+}
+
+/// Whether MASK.json names a record that this journal does not have.
+bool Work::lacks_record_of_mask() const
+{
+    const std::optional<MaskJournal> named = journal_of_mask(files_.mask);
+    return named && (named->record > scan_.records.size() ||
+                     scan_.records[size_t(named->record) - 1].checksum != named->checksum);
+}
+
+// ---- Choosing -------------------------------------------------------------------------------------------------------
+
+void Work::expect_choice() const
+{
+    std::string texts;
+    for (const Dispute& dispute : disputes_) texts += (texts.empty() ? "" : "; ") + dispute.text;
+    if (!texts.empty()) throw Disputed(texts);
+}
+
+Work::Choice Work::choose(Belief belief)
+{
+    Choice choice;
+    if (belief == Belief::ask || disputes_.empty()) return choice;
+    const std::vector<Dispute> disputes = std::exchange(disputes_, {});
+    if (belief == Belief::journal) {
+        for (const Dispute& dispute : disputes)
+            choice.notices.push_back(
+                {sentence(dispute.text, "; the journal is taken, and the next save keeps the file as ",
+                          old_of(dispute.file).string())});
+        return choice;
+    }
+    Command command{"files that were changed", {}};
+    for (const Dispute& dispute : disputes) {
+        command.changes.insert(command.changes.end(), dispute.differences.begin(), dispute.differences.end());
+        choice.notices.push_back({sentence(dispute.text, "; the file is taken, as a step that undo takes back")});
+    }
+    if (only_looks_) {
+        choice.command = history_.perform(document_, std::move(command));
+        return choice;
+    }
+    choice.command = perform(std::move(command));
+    for (const Dispute& dispute : disputes) {
+        Seen& seen = seen_[size_t(dispute.part)];
+        digest_of(known_, dispute.part) = seen.digest;
+        seen.is_foreign = false;
+    }
+    record(RecordKind::known, {}, bytes_of(known_));
+    return choice;
+}
+
+}  // namespace shvr

@@ -1,0 +1,164 @@
+"""Scripts from pipes, what a run prints, undoing too much, Ctrl-C, and the example of the help."""
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import ENVIRONMENT, SHVR, CliTest, Volume
+from test_annotate import paint
+
+PATIENCE_S = 60
+
+
+class Script(CliTest):
+    def setUp(self):
+        super().setUp()
+        name = Volume((8, 8, 8), [100] * 512).write(self.folder).name
+        self.session = self.write_session(volume={"path": name})
+
+    def annotate(self, operations, *arguments, status=0):
+        script = self.write_script("script.jsonl", operations)
+        return self.check("annotate", self.session, "--script", script, *arguments, status=status)
+
+    def dab(self, group):
+        return paint("fill", "box", group, 50, 0.4, [[group + 0.5, 1.5, 1.5]])
+
+    def pipe(self, text, script="-", **options):
+        return subprocess.run([SHVR, "annotate", self.session, "--script", script], input=text, capture_output=True,
+                              text=True, timeout=PATIENCE_S, env=ENVIRONMENT, **options)
+
+    def test_a_script_comes_from_standard_input_or_a_pipe(self):
+        text = json.dumps(self.dab(1)) + "\n" + json.dumps({"op": "expect", "voxels_in_group": {"1": 1}}) + "\n"
+        result = self.pipe(text)
+        self.assertEqual((result.returncode, result.stdout), (0, ""), result.stderr)
+        self.assertIn("standard input: 2 commands, 1 voxels changed, 1 steps not saved", result.stderr)
+        wrong = self.pipe(text + '{"op":"pant"}\n')  # checked as a whole
+        self.assertEqual(wrong.returncode, 1)
+        self.assertIn("shvr: standard input:3: key op", wrong.stderr)
+        fifo = self.folder / "fifo"
+        os.mkfifo(fifo)
+        writer = subprocess.Popen(["sh", "-c", f"cat > {fifo}"], stdin=subprocess.PIPE, text=True)
+        writer.stdin.write(json.dumps(self.dab(2)) + "\n")
+        writer.stdin.close()
+        self.check("annotate", self.session, "--script", fifo)
+        writer.wait()
+        self.annotate([{"op": "expect", "voxels_in_group": {"1": 1, "2": 1, "3": 0}}])
+        self.assertEqual(self.pipe("").returncode, 0)
+
+    def test_a_line_a_command_only_where_it_is_asked_for(self):
+        operations = [self.dab(1), {"op": "node", "at": [1, 1, 1]}, {"op": "save"}]
+        said = self.annotate(operations).stderr.splitlines()
+        self.assertEqual([line.split(": ", 1)[1] for line in said],
+                         [f"saved {self.folder / 'paint.mask'}", f"saved {self.folder / 'paint.graphml'}",
+                          "3 commands, 1 voxels changed, 0 steps not saved"])
+        self.assertEqual(self.annotate([self.dab(2)], "--quiet").stderr, "")
+        said = self.annotate(operations, "--verbose").stderr
+        self.assertIn("script.jsonl:1: 0 voxels painted in group 1", said)
+        self.assertIn("script.jsonl:2: node 1 in group 1", said)
+
+    def test_undo_of_more_than_there_is_undoes_nothing(self):
+        for what, back in (("undo", "redo"), ("redo", "undo")):
+            self.annotate([self.dab(1), self.dab(2)] + ([{"op": "undo", "count": 2}] if what == "redo" else []), "--fresh")
+            said = self.annotate([{"op": what, "count": 3}], status=1).stderr
+            self.assertIn(f"script.jsonl:1: key count is 3; expected at most 2, the steps there are to {what}", said)
+            painted = 0 if what == "redo" else 1
+            self.annotate([{"op": "expect", "voxels_in_group": {"1": painted, "2": painted}}, {"op": what, "count": 2},
+                           {"op": "expect", "voxels_in_group": {"1": 1 - painted}}, {"op": back, "count": 2}])
+
+    def test_a_density_stroke_on_a_fresh_project_is_saved(self):
+        project = self.folder / "project"
+        self.check("import", Volume.noise((9, 8, 7), seed=1).write(self.folder, "other"), project)
+        stroke = {"op": "density", "brush": "fill", "threshold": 0, "radius": 1.5, "path": [[4, 4, 3]], "offset": 5}
+        script = self.write_script("script.jsonl", [stroke, {"op": "save"}])
+        self.check("annotate", project, "--script", script)
+        self.assertEqual((project / "shvr" / "paint.offset").stat().st_size, 2 * 9 * 8 * 7)
+        (project / "shvr" / "session.journal").unlink()
+        (project / "shvr" / "paint.mask.json").unlink()
+        raised = self.check_json("label", project, "--threshold", "0")["voxels_with_offset"]
+        self.assertGreater(raised, 0)
+
+    def test_the_example_of_the_help_runs_with_and_without_its_undo(self):
+        example = self.check("annotate", "--help").stdout.split("Example:\n")[1].splitlines()
+        self.assertIn("shvr annotate scan/ --script strokes.jsonl", example[0])
+        lines = [line for line in example if line.strip().startswith("{")]
+        self.assertGreater(len(lines), 3)
+        volume = Volume((64, 64, 32), [1300] * (64 * 64 * 32), voxel_type="uint16").write(self.folder, "other")
+        for number, chosen in enumerate([lines, [line for line in lines if "undo" not in line]]):
+            project = self.folder / f"project{number}"
+            self.check("import", volume, project)
+            script = self.folder / "strokes.jsonl"
+            script.write_text("\n".join(chosen) + "\n")
+            self.check("annotate", project, "--script", script)
+            self.assertEqual((project / "shvr" / "paint.offset").exists(), number == 1)
+
+
+class Stopped(CliTest):
+    """Ctrl-C and SIGTERM end every command in a sentence, and leave no half of a file."""
+
+    def start(self, *arguments, **options):
+        program = subprocess.Popen([SHVR, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True, env=ENVIRONMENT, **options)
+        self.addCleanup(program.communicate)
+        self.addCleanup(program.kill)
+        return program
+
+    def check_stopped(self, program, number, says):
+        program.send_signal(number)
+        output, errors = program.communicate(timeout=PATIENCE_S)
+        self.assertEqual(output, "")
+        lines = [line for line in errors.splitlines() if not line.startswith("warning: ")]
+        self.assertEqual(len([line for line in lines if line.startswith("shvr: ")]), 1, errors)
+        self.assertIn(says, errors)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.endswith((".tmp", ".lock"))], [])
+        return program.returncode
+
+    def wait_for(self, condition, program):
+        end = time.monotonic() + PATIENCE_S
+        while not condition():
+            self.assertIsNone(program.poll())
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.005)
+
+    def test_commands_that_write_at_the_end(self):
+        session = self.write_session(volume={"procedural": "tubes", "size": [512, 512, 512]})
+        commands = [["info", session], ["label", session, "--threshold", "1", "-o", self.folder / "a.nrrd"],
+                    ["render", session, "-o", self.folder / "a.png", "--size", "4000x4000"],
+                    ["export", session, "--mask", self.folder / "a.mask"],
+                    ["profile", session, "--frames", "100000"]]
+        for command in commands:
+            for number, name in ((signal.SIGINT, "Ctrl-C"), (signal.SIGTERM, "SIGTERM")):
+                with self.subTest(command=command[0], signal=name):
+                    program = self.start(*command)
+                    time.sleep(0.5)
+                    self.assertIsNone(program.poll())
+                    status = self.check_stopped(program, number, f"shvr: stopped by {name}; no file is left half")
+                    self.assertEqual(status, -number)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["session.json"])
+
+    def test_annotate_ends_between_two_commands_and_says_where(self):
+        session = self.write_session(volume={"procedural": "constant", "size": [48] * 3})
+        operations = []
+        for i in range(2000):  # far more than it can finish
+            operations += [paint("fill", "box", i % 250 + 1, 1, 48, [[24] * 3]), {"op": "save"}]
+        script = self.write_script("script.jsonl", operations)
+        program = self.start("annotate", session, "--script", script, "--quiet")
+        self.wait_for((self.folder / "paint.mask").exists, program)
+        status = self.check_stopped(program, signal.SIGINT, "stopped before this line; the ")
+        self.assertEqual(status, 1)
+        said = self.check("annotate", session, "--script", self.write_script("s.jsonl", [])).stderr
+        self.assertNotIn("not written to the end", said)
+        self.assertEqual(len(set((self.folder / "paint.mask").read_bytes())), 1)
+
+    def test_a_script_that_is_waited_for(self):
+        session = self.write_session()
+        program = self.start("annotate", session, "--script", "-", stdin=subprocess.PIPE)
+        self.wait_for((self.folder / "session.journal.lock").exists, program)
+        program.send_signal(signal.SIGINT)
+        errors = program.communicate(timeout=PATIENCE_S)[1]
+        self.assertIn("shvr: stopped by Ctrl-C", errors)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,60 @@
+#include "tools/cli/stop.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+
+#include "engine/base/atomic_writer.h"
+
+namespace shvr::cli {
+
+namespace {
+
+std::atomic<bool> command_listens = false, is_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Calls only what a signal handler may call.
+extern "C" void stop(int signal_number)
+{
+    if (command_listens && !is_requested.exchange(true)) return;
+    remove_temporary_files();
+    const char* const text = signal_number == SIGINT ? "shvr: stopped by Ctrl-C; no file is left half written\n"
+                                                     : "shvr: stopped by SIGTERM; no file is left half written\n";
+    static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
+    // Whoever started the program sees that a signal ended it, so a shell's loop ends, too.
+    std::signal(signal_number, SIG_DFL);
+    ::raise(signal_number);
+}
+
+}  // namespace
+
+void end_in_words()
+{
+    for (const int number : {SIGINT, SIGTERM}) {
+        struct sigaction now {};
+        // A signal that whoever started the program ignores stays ignored, as for jobs in the background.
+        if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;
+        struct sigaction action {};
+        action.sa_handler = stop;
+        sigemptyset(&action.sa_mask);
+        ::sigaction(number, &action, nullptr);
+    }
+}
+
+StopRequest::StopRequest()
+{
+    command_listens = true;
+}
+
+StopRequest::~StopRequest()
+{
+    command_listens = false;
+}
+
+const std::atomic<bool>& StopRequest::flag()
+{
+    return is_requested;
+}
+
+}  // namespace shvr::cli

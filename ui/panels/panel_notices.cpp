@@ -1,0 +1,64 @@
+// What a person must know before working: that another process writes the project, and that saved files were changed.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/panels.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr const char* QUESTION = "Saved annotation was changed by another program";
+
+/// In the upper left corner of the graphics window, as wide as it needs to be.
+void read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    ImGui::SetNextWindowPos({begin.x, begin.y});
+    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.42f, 0.30f, 0.08f, 0.96f));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::Begin("Read only", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("Read only: open for writing in %s. Nothing that is changed here is saved.", model.holder.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::Button("Work on a copy")) actions.push_back(WorkOnCopy{});
+    ImGui::SameLine();
+    if (ImGui::Button("Try again")) actions.push_back(Open{model.session_path});
+    ImGui::End();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+void question_of_belief(const Model& model, Actions& actions)
+{
+    if (model.disputes.empty()) return;
+    if (!ImGui::IsPopupOpen(QUESTION)) ImGui::OpenPopup(QUESTION);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
+    if (!ImGui::BeginPopupModal(QUESTION, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    ImGui::PushTextWrapPos(0.0f);
+    for (const Dispute& dispute : model.disputes) ImGui::TextUnformatted(dispute.text.c_str());
+    ImGui::TextUnformatted("Both are kept, whichever is taken.");
+    ImGui::PopTextWrapPos();
+    const bool takes_files = ImGui::Button("Take the files, as a step that undo takes back");
+    const bool takes_journal = ImGui::Button("Keep the work; the next save keeps the files under other names");
+    if (takes_files || takes_journal) {
+        actions.push_back(ChooseBelief{takes_files});
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+}  // namespace
+
+void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    if (!model.holder.empty()) read_only_banner(model, begin, width, actions);
+    question_of_belief(model, actions);
+}
+
+}  // namespace shvr::ui
