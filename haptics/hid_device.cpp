@@ -137,8 +137,9 @@ std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& pro
         if (!profile.input || device == devices.end()) continue;
         Opened opened = open_port(device->path);
         if (!opened.port) {
-            fail(described(*device), ": cannot be opened: ", opened.reason, "; expected leave to read and write it, ",
-                 "which the rule tools/udev/70-shvr-haptics.rules gives");
+            fail(described(*device), ": cannot be opened: ", opened.reason,
+                 "; expected permission to read and write it, ",
+                 "which the rule tools/udev/70-shvr-haptics.rules grants");
         }
         const auto reopen = [profile]() -> std::unique_ptr<HidPort> {
             const std::optional<HidListing> found = find_device(profile);
@@ -149,7 +150,8 @@ std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& pro
     // Profiles that only recognise a device come last: another profile may know its layout.
     for (const HidProfile& profile : profiles) {
         if (const auto device = device_of(profile); device != devices.end())
-            fail(described(*device), ": is recognised as ", profile.name, ", whose reports are not described; ",
+            fail(described(*device), ": is recognised as ", profile.name,
+                 ", but its profile does not describe its reports; ",
                  profile.note.empty() ? "expected a profile with an input report" : profile.note);
     }
     return nullptr;

@@ -109,10 +109,10 @@ HidReport read_report(const JsonNode& node, unsigned kind)
     std::array<bool, 8 * MAX_REPORT_BYTES> taken{};
     for (const JsonNode& each : node["fields"].elements(1)) {
         const HidField field = read_field(each, kind, report.length);
-        if (report.find(field.quantity)) each["name"].refuse("each name once");
+        if (report.find(field.quantity)) each["name"].refuse("a name that no other field has");
         for (uint32_t bit = field.bit; bit < field.bit + field.bits; ++bit) {
             if (std::exchange(taken[bit], true))
-                each.refuse(sentence("bits that no other field has; bit ", bit, " is taken"));
+                each.refuse(sentence("bits that no other field uses; bit ", bit, " is taken"));
         }
         report.fields.push_back(field);
     }
@@ -172,7 +172,7 @@ DeviceCaps read_limits(const JsonNode& node)
     limits.usable_lower_m = node["usable_lower_m"].vector({-10.0, 10.0});
     limits.usable_upper_m = node["usable_upper_m"].vector({-10.0, 10.0});
     if (!glm::all(glm::lessThan(limits.usable_lower_m, limits.usable_upper_m)))
-        node["usable_upper_m"].refuse("more than usable_lower_m along every axis");
+        node["usable_upper_m"].refuse("values greater than usable_lower_m along every axis");
     limits.peak_force_n = node["peak_force_n"].number({0.0, 40.0});
     limits.continuous_force_n = node["continuous_force_n"].number({0.0, limits.peak_force_n});
     limits.stiffness_limit = node["stiffness_limit"].number({0.0, 5000.0});
@@ -205,7 +205,7 @@ HidProfile read_profile(const JsonNode& node)
         need(node["output"], *profile.output, {enable, force_x, force_y, force_z});
     }
     if (node["feature"].exists()) profile.feature = read_report(node["feature"], FEATURE);
-    if (profile.verified && !profile.input) node["verified"].refuse("false where there is no key input");
+    if (profile.verified && !profile.input) node["verified"].refuse("false, because the profile has no key input");
     return profile;
 }
 

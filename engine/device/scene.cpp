@@ -39,8 +39,8 @@ constexpr size_t MAX_CHANGED = 4096;
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
 {
     if (sampling == Sampling::hardware && !traits.linear_r16)
-        fail("render.sampling is hardware; device ", traits.name,
-             " cannot filter R16_UNORM, expected automatic or exact");
+        fail("render.sampling is hardware, but device ", traits.name,
+             " cannot filter R16_UNORM; expected automatic or exact");
     // A CPU filters slower than it loads and computes; a GPU's sampler is nearly free.
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
@@ -333,7 +333,7 @@ bool Scene::has_occlusion(const Look& look)
     } catch (const Error& error) {
         occlusion_.clear();
         occlusion_has_no_room_ = true;
-        messages_.push_back(std::string("ambient occlusion is left out; ") + error.what());
+        messages_.push_back(std::string("ambient occlusion is not drawn: ") + error.what());
     }
     return !occlusion_has_no_room_;
 }

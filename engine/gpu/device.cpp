@@ -118,12 +118,13 @@ void Device::create_instance(const DeviceOptions& options)
     std::vector<const char*> extensions;
     for (const std::string& name : options.instance_extensions) {
         if (!instance_extension_is_present(name.c_str(), nullptr))
-            fail("Vulkan has no ", name, ", which the window needs; expected a driver that can present");
+            fail("Vulkan instance extension ", name, " is missing; expected a driver that can show a window");
         extensions.push_back(name.c_str());
     }
     if (validation) {
         if (!layer_is_installed(VALIDATION_LAYER))
-            fail("Vulkan layer ", VALIDATION_LAYER, " is not installed; expected the package vulkan-validationlayers");
+            fail("Vulkan layer ", VALIDATION_LAYER,
+                 " is not installed; expected it from the package vulkan-validationlayers");
         layers.push_back(VALIDATION_LAYER);
     }
     const bool debug_utils =
@@ -190,7 +191,10 @@ void Device::choose_physical(const std::string& wanted)
         if (candidate.properties.apiVersion < VK_API_VERSION_1_3 || !compute_family(candidate.physical)) continue;
         if (!best || rank(candidate.properties.deviceType) < rank(best->properties.deviceType)) best = &candidate;
     }
-    if (!best) fail("no Vulkan 1.3 device ", wanted.empty() ? "" : "matches '" + wanted + "' ", "among: ", names);
+    if (!best)
+        fail(wanted.empty() ? "no device supports Vulkan 1.3 and compute"
+                            : "--device is '" + wanted + "', which no device with Vulkan 1.3 and compute matches",
+             "; found ", names);
     physical_ = best->physical;
     queue_family_ = *compute_family(physical_);
 
@@ -229,9 +233,12 @@ void Device::create_device(bool presents)
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
     // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
-    if (!has12.scalarBlockLayout) fail("device ", traits_.name, " lacks scalarBlockLayout; expected a desktop driver");
+    if (!has12.scalarBlockLayout)
+        fail("device ", traits_.name,
+             ": the Vulkan feature scalarBlockLayout is missing; expected a driver that has it");
     if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
-        fail("device ", traits_.name, " cannot load R16_UNORM storage images; expected a desktop driver");
+        fail("device ", traits_.name,
+             ": R16_UNORM storage images cannot be read; expected a driver that can read them");
 
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .synchronization2 = VK_TRUE,

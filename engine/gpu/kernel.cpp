@@ -172,7 +172,7 @@ const Kernels::Code& Kernels::code(const std::string& name)
         const std::span<const uint32_t> spirv(kernel.words, kernel.word_count);
         return codes_.emplace(name, Code{spirv, reflect(name, spirv)}).first->second;
     }
-    fail("no kernel is called '", name, "'; known: ", names_of(embedded_kernels()));
+    fail("there is no kernel '", name, "'; expected one of ", names_of(embedded_kernels()));
 }
 
 const Kernel& Kernels::get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants)

@@ -129,10 +129,11 @@ void check_camera(const Camera& camera)
 {
     if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up))
         fail("camera: eye ", shown(camera.eye), ", target ", shown(camera.target), " or up ", shown(camera.up),
-             " is not finite; expected three finite numbers each");
+             " is not finite; expected three finite numbers for each");
     if (camera.projection == Camera::Projection::perspective &&
         !(camera.fov_y_degrees > 0.0 && camera.fov_y_degrees < 180.0))
-        fail("camera: the vertical angle is ", camera.fov_y_degrees, " degrees; expected above 0 and below 180");
+        fail("camera: the vertical field of view is ", camera.fov_y_degrees,
+             " degrees; expected more than 0 and less than 180");
     if (camera.projection == Camera::Projection::orthographic && !(camera.height > 0.0 && std::isfinite(camera.height)))
         fail("camera: the height is ", camera.height, "; expected a number above 0");
     if (!(camera.near_distance >= 0.0 && std::isfinite(camera.near_distance)) ||
@@ -142,10 +143,10 @@ void check_camera(const Camera& camera)
     if (!std::isfinite(camera.shift_right))
         fail("camera: shift_right is ", camera.shift_right, "; expected a finite number of view heights");
     if (camera.eye == camera.target)
-        fail("camera: eye and target are both ", shown(camera.eye), "; expected two points");
+        fail("camera: eye and target are both ", shown(camera.eye), "; expected two different points");
     if (!frame_of(camera))
         fail("camera: up is ", shown(camera.up), " and the view goes from ", shown(camera.eye), " to ",
-             shown(camera.target), "; expected an up that is neither 0 nor parallel to the view");
+             shown(camera.target), "; expected an up that is neither zero nor parallel to the view direction");
 }
 
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume)
@@ -198,7 +199,8 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
                            share(clip_far)};
     if (!is_finite(planes.near_corner) || !is_finite(planes.far_corner) || !is_finite(planes.far_dx) ||
         !is_finite(planes.far_dy))
-        fail("camera: eye ", shown(camera.eye), " is too far from the volume; expected finite rays");
+        fail("camera: eye ", shown(camera.eye),
+             " is so far away that rays have no finite coordinates; expected it closer to the volume");
     return planes;
 }
 

@@ -60,7 +60,7 @@ void check(const SurfaceLook& surface, uint64_t key, double reference_length)
                  NEAREST * reference_length, " ... ", FARTHEST * reference_length, " along each axis");
     for (const double radius : {surface.radius_from, surface.radius_to})
         if (!(radius > 0.0 && radius / reference_length <= LARGEST_RADIUS))
-            fail(name_of(key), ": a radius is ", radius, "; expected above 0 and at most ",
+            fail(name_of(key), ": a radius is ", radius, "; expected more than 0 and at most ",
                  LARGEST_RADIUS * reference_length);
     if (!is_finite(surface.color)) fail(name_of(key), ": its colour is not finite; expected three finite numbers");
 }

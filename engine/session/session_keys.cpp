@@ -59,7 +59,7 @@ const About PROCEDURAL{.meaning = "instead of `path`: a function", .standard = "
 const About PATH{.meaning = "the file", .allowed = "path", .standard = "required for files", .is_required = true};
 const About RAW{
     .meaning =
-        "for bare voxels: `\"256x256x108:int16:little:0\"`, size, type, byte order and bytes to leave out; the last "
+        "for bare voxels: `\"256x256x108:int16:little:0\"`, size, type, byte order and bytes to skip; the last "
         "two "
         "may be "
         "left out. `volume.path` may then be the first of numbered files with a slice each, or their folder",
@@ -257,7 +257,7 @@ void fields(Fields& f, Groups& groups)
                .allowed = "object",
                .standard = "one of ten colours in turn"});
     if (const std::optional<uint8_t> group = group_in_cycle(groups))
-        f.check(sentence("groups.", int{*group}, ".parent"), false, "a group that is not the group itself or below it");
+        f.check(sentence("groups.", int{*group}, ".parent"), false, "a group other than itself and those below it");
 }
 
 void fields(Fields& f, ProbeSettings& probe)
@@ -298,7 +298,7 @@ void fields(Fields& f, ProbeSettings& probe)
         f.mention("density", density);
     }
     f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: offsets alone"});
-    f.check("paints_group", brush.paints_group || brush.density, "true, where there is no probe.density");
+    f.check("paints_group", brush.paints_group || brush.density, "true where probe.density is not given");
 }
 
 void fields(Fields& f, SurfaceLook& surface)

@@ -47,7 +47,7 @@ void fields(Fields& f, Light& light)
              {.meaning = "towards the light, along the camera's right, up and back; 0, 0, 0 means 0.3, 0.5, 1",
               .allowed = "any length from 1e-6"});
     f.check("direction", light.direction == glm::dvec3(0.0) || glm::length(light.direction) >= 1e-6,
-            "a direction at least 1e-06 long, or 0, 0, 0 for the usual one");
+            "a direction of length 1e-06 or more, or 0, 0, 0 for the default");
     f.number("gradient_fade", light.gradient_fade, SHARE,
              {"gradients well below this are no surface", "share of the intensity range per voxel"});
     f.section("occlusion", light.occlusion);
@@ -89,7 +89,7 @@ void fields(Fields& f, RenderSettings& render)
         {"look at both ends of a step and at all densities between them, for transfer functions with narrow peaks or "
          "steep edges; steps of at most 1"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
-            sentence("false, as render.step_voxels is ", render.step_voxels, ", above 1"));
+            sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
 }
 
 void fields(Fields& f, StereoSettings& stereo)

@@ -184,8 +184,8 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
         const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";
     } catch (const OrderedJson::type_error&) {
-        fail("session of ", session.volume_path.string(), ": a name or path is not UTF-8, which JSON cannot hold; ",
-             "expected UTF-8");
+        fail("session of ", session.volume_path.string(),
+             ": a name or path is not valid UTF-8, so JSON cannot hold it; ", "expected UTF-8");
     }
 }
 

@@ -50,7 +50,10 @@ class Usage(CliTest):
                 self.check_refused(*arguments, status=2, says=[says])
 
     def test_the_version_is_told(self):
-        self.assertRegex(self.check("--version").stdout, r"^shvr \d+\.\d+\.\d+\n$")
+        told = self.check("--version").stdout
+        self.assertRegex(told, r"^shvr \d+\.\d+\.\d+\n$")
+        for command in COMMANDS:
+            self.assertEqual(self.check(command[0], "--version").stdout, told)
 
     def test_budgets_are_numbers(self):
         session = self.write_session()

@@ -185,7 +185,7 @@ class Diff(CliTest):
             self.check_refused("profile", "diff", deep, good, says=["deep.json: JSON nests deeper than 16 levels;"])
         # As deep as it may be, it is refused for what it lacks.
         deep.write_text('{"counters":' + "[" * 16 + "]" * 16 + "}")
-        self.check_refused("profile", "diff", good, deep, says=["deep.json: has no list 'passes'"])
+        self.check_refused("profile", "diff", good, deep, says=["deep.json: the list 'passes' is missing"])
 
 
 if __name__ == "__main__":

@@ -470,7 +470,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     const Picture without = renderer.render(session, camera);
     CHECK_FALSE(without.complete);
     REQUIRE(without.warnings.size() == 1);
-    CHECK(without.warnings[0].find("ambient occlusion is left out; device memory") == 0);
+    CHECK(without.warnings[0].find("ambient occlusion is not drawn: device memory") == 0);
     CHECK(without.image.rgba == plain.image.rgba);
     CHECK(renderer.render(session, camera).warnings.empty());
     // Told in advance, the volume leaves room: it is paged.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "engine/base/atomic_writer.h"
+#include "engine/base/text.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/source_procedural.h"
 #include "tools/cli/cli.h"
@@ -33,8 +34,8 @@ Size3 parse_volume_size(const std::string& text)
     if (numbers == 1 && text.find_first_not_of("0123456789") == std::string::npos) size = glm::ivec3(size.x);
     if ((numbers != 1 && numbers != 3) || glm::any(glm::lessThan(size, glm::ivec3(1))) ||
         glm::any(glm::greaterThan(size, glm::ivec3(int{LARGEST_SIDE}))))
-        throw UsageError(
-            sentence("--size is '", text, "'; expected N or WIDTHxHEIGHTxDEPTH, each 1 ... ", LARGEST_SIDE));
+        throw UsageError(sentence("--size is ", in_quotes(text), "; expected N or WIDTHxHEIGHTxDEPTH, each from 1 to ",
+                                  LARGEST_SIDE));
     return size;
 }
 
@@ -71,14 +72,15 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& source)
 void run_phantom(const PhantomCommandOptions& options)
 {
     const std::optional<VoxelType> type = voxel_type_of(options.type);
-    if (!type) throw UsageError(sentence("--type is '", options.type, "'; expected a voxel type"));
+    if (!type)
+        throw UsageError(sentence("--type is ", in_quotes(options.type), "; expected a voxel type, such as uint8"));
     const std::unique_ptr<VolumeSource> source = open_procedural(
         {.kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type});
 
     const std::filesystem::path folder = options.folder;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) fail(options.folder, ": cannot be made: ", error.message());
+    if (error) fail(options.folder, ": cannot be created: ", error.message());
     const std::filesystem::path header = folder / (options.kind + ".nhdr");
     const std::filesystem::path voxels = folder / (options.kind + ".raw");
     const std::string text = nrrd_header(source->info(), voxels.filename().string());

@@ -43,7 +43,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened)
                     .serialize = options.serialize,
                     .warnings = opened.warnings};
     if (traits.timestamp_bits == 0)
-        profile.warnings.push_back(sentence(traits.name, " has no timestamps: passes have no times"));
+        profile.warnings.push_back(sentence(traits.name, " has no timestamp queries; passes are not timed"));
 
     say(options.common, sentence(options.warmup, " frames to warm up, ", options.frames, " to measure"));
 
@@ -114,7 +114,7 @@ Json read_profile(const std::string& path)
         return true;
     };
     const Json summary = Json::parse(read_text(path, LARGEST_PROFILE), check_depth, false);
-    if (summary.is_discarded()) fail(path, ": is no JSON; expected what shvr profile --json prints");
+    if (summary.is_discarded()) fail(path, ": is not JSON; expected what shvr profile --json prints");
     return summary;
 }
 

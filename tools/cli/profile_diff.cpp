@@ -17,7 +17,7 @@ double number_at(const Json& object, const char* key, const std::string& file)
 {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_number())
-        fail(file, ": '", key, "' is no number; expected what shvr profile --json prints");
+        fail(file, ": '", key, "' is not a number; expected what shvr profile --json prints");
     return found->get<double>();
 }
 
@@ -51,10 +51,10 @@ const Json& passes_of(const Json& summary, const std::string& file)
 {
     const auto passes = summary.is_object() ? summary.find("passes") : summary.end();
     if (passes == summary.end() || !passes->is_array())
-        fail(file, ": has no list 'passes'; expected what shvr profile --json prints");
+        fail(file, ": the list 'passes' is missing; expected what shvr profile --json prints");
     for (const Json& pass : *passes)
         if (!pass.is_object() || !pass.contains("name") || !pass["name"].is_string())
-            fail(file, ": a pass has no 'name'; expected what shvr profile --json prints");
+            fail(file, ": the 'name' of a pass is missing; expected what shvr profile --json prints");
     return *passes;
 }
 

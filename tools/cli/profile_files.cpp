@@ -132,7 +132,7 @@ struct TemporaryFolder {
     TemporaryFolder()
     {
         std::string name = (std::filesystem::temp_directory_path() / "shvr-graph-XXXXXX").string();
-        if (!::mkdtemp(name.data())) fail(name, ": cannot be made: ", reason_of(errno));
+        if (!::mkdtemp(name.data())) fail(name, ": cannot be created: ", reason_of(errno));
         path = name;
     }
     TemporaryFolder(const TemporaryFolder&) = delete;

@@ -23,7 +23,9 @@ public:
     uint32_t add()
     {
         if (parents_.size() == std::numeric_limits<uint32_t>::max())
-            fail("the mask: has more than 4294967295 runs of voxels; expected fewer to count its parts");
+            fail(
+                "the mask: holds more than 4294967295 runs of voxels; expected at most that many to count its "
+                "components");
         parents_.push_back(uint32_t(parents_.size()));
         ++count_;
         return parents_.back();
@@ -198,7 +200,7 @@ Topology topology_of(const Mask& mask, std::optional<uint8_t> group)
     const Size3 size = upper - lower;
     if (size.x * size.y > MAX_VOXELS / size.z)
         fail("the mask: its painted bricks lie in a box of ", digits_of(size), " voxels; expected at most ", MAX_VOXELS,
-             " to count its parts, loops and cavities");
+             " to count its components, loops and cavities");
     return Counter(mask, group, lower, upper).count();
 }
 

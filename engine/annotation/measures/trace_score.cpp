@@ -88,8 +88,8 @@ double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dve
     const glm::dvec3 box = 2.0 * reach + 1.0;
     // Coordinates read from files are far within the range of int64_t once the box is small enough.
     if (!(box.x * box.y * box.z <= MAX_VOXELS) || !glm::all(glm::lessThan(glm::abs(centre), glm::dvec3(1e18))))
-        fail("a ball of radius ", digits_of(radius), " at ", digits_of(position),
-             " is too large to be counted; expected at most 2147483648 voxels around it");
+        fail("the ball of radius ", digits_of(radius), " at ", digits_of(position),
+             " has a bounding box of more than 2147483648 voxels; expected a smaller radius");
     const Size3 lower(glm::floor(centre - reach)), upper(glm::floor(centre + reach));
     const Size3 size = mask.size();
     int64_t painted = 0, all = 0;

@@ -265,7 +265,8 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     const int64_t samples = values.short_number(Tag(0x0028, 0x0002), 1);
     const std::string colors = values.text(Tag(0x0028, 0x0004));
     if (samples != 1 || (!colors.empty() && colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
-        refuse(file, "Photometric Interpretation", in_quotes(colors), "MONOCHROME1 or MONOCHROME2: one number a pixel");
+        refuse(file, "Photometric Interpretation", in_quotes(colors),
+               "MONOCHROME1 or MONOCHROME2, which have one sample per pixel");
     }
     file.is_inverted = colors == "MONOCHROME1";
     file.tilt_degrees = values.decimal(Tag(0x0018, 0x1120)).value_or(0.0);
@@ -328,10 +329,10 @@ std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, si
         }
     } catch (const std::exception& error) {
         fail(file.path.string(), ": slice ", frame + 1, " cannot be decoded (", in_quotes(error.what()),
-             "); expected pixels that GDCM knows");
+             "); expected pixel data that GDCM can decode");
     }
     fail(file.path.string(), ": slice ", frame + 1, " cannot be decoded; expected ", file.columns, "x", file.rows,
-         " pixels of ", name_of(file.type), " in a form that GDCM knows");
+         " pixels of ", name_of(file.type), " in a format that GDCM can decode");
 }
 
 }  // namespace shvr

@@ -58,7 +58,7 @@ public:
         const std::string& syntax = layout_.transfer_syntax;
         if (syntax == "1.2.840.10008.1.2.1.99") {
             fail(file_.path.string(), ": transfer syntax is ", syntax,
-                 ", which compresses the header, too; expected one that does not");
+                 ", which compresses the header as well; expected one that does not");
         }
         const Encoding encoding{syntax != "1.2.840.10008.1.2", syntax == "1.2.840.10008.1.2.2"};
         walk_elements(at, file_.bytes, encoding, 0, false);
@@ -106,7 +106,7 @@ private:
         const size_t count = file_.read_some(at, std::span(bytes).first(size_t(std::min<int64_t>(12, end - at))));
         const auto need = [&](size_t needed) {
             if (count < needed)
-                fail(file_.path.string(), ": ends in the middle of an element at byte ", at, "; expected more");
+                fail(file_.path.string(), ": ends within the element at byte ", at, "; expected all of it");
         };
         need(8);
         Element element;
@@ -121,7 +121,7 @@ private:
         const auto is_letter = [](char character) { return character >= 'A' && character <= 'Z'; };
         if (!is_letter(type[0]) || !is_letter(type[1])) {
             fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at,
-                 " states no type; expected two letters, as its transfer syntax says");
+                 " has no value representation; expected two letters, as its transfer syntax requires");
         }
         if (is_one_of(type, LONG_TYPES)) {
             need(12);
@@ -131,8 +131,8 @@ private:
         }
         // For unknown types, GDCM guesses other lengths than we do.
         if (!is_one_of(type, SHORT_TYPES)) {
-            fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at, " is of type ",
-                 in_quotes(type), "; expected a type that DICOM knows");
+            fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at,
+                 " has the value representation ", in_quotes(type), "; expected one that DICOM defines");
         }
         element.length = number(&bytes[6], 2, encoding.big_endian);
         element.value_at = at + 8;
@@ -155,10 +155,10 @@ private:
             if (depth == 0 && end - at < SHORTEST) return end;  // padding
             const Element element = read_element(at, end, encoding);
             if (element.tag == END_OF_ITEM && ends_by_delimiter) return element.value_at;
-            if (element.tag >> 16 == 0xfffe) refuse(element, "an element outside of sequences");
+            if (element.tag >> 16 == 0xfffe) refuse(element, "an element outside sequences");
             at = walk_value(element, end, encoding, depth);
         }
-        if (ends_by_delimiter) fail(file_.path.string(), ": ends in the middle of a sequence; expected its end");
+        if (ends_by_delimiter) fail(file_.path.string(), ": ends within a sequence; expected the end of the sequence");
         return at;
     }
 
@@ -192,11 +192,13 @@ private:
     int64_t walk_items(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter,
                        bool are_fragments)
     {
-        if (depth > DEEPEST) fail(file_.path.string(), ": nests sequences deeper than ", DEEPEST, "; expected fewer");
+        if (depth > DEEPEST)
+            fail(file_.path.string(), ": nests sequences more than ", DEEPEST,
+                 " levels deep; expected at most that many");
         while (at < end) {
             const Element item = read_element(at, end, encoding);
             if (item.tag == END_OF_SEQUENCE && ends_by_delimiter) return item.value_at;
-            if (item.tag != ITEM) refuse(item, "an item of the sequence that it is in");
+            if (item.tag != ITEM) refuse(item, "an item of the sequence that contains it");
             if (item.length == UNDEFINED) {
                 if (are_fragments) refuse(item, "a fragment with a length");
                 at = walk_elements(item.value_at, end, encoding, depth, true);
@@ -210,7 +212,7 @@ private:
             }
             at = item_end;
         }
-        if (ends_by_delimiter) fail(file_.path.string(), ": ends in the middle of a sequence; expected its end");
+        if (ends_by_delimiter) fail(file_.path.string(), ": ends within a sequence; expected the end of the sequence");
         return at;
     }
 

@@ -61,7 +61,7 @@ std::vector<Placed> slices_of_one_kind(const std::vector<DicomFile>& files, Volu
     const auto most = std::max_element(kinds.begin(), kinds.end(),
                                        [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
     if (const size_t others = count - most->second.size(); others > 0) {
-        info.warnings.push_back(sentence(others, " slices of another size, type or direction were left out"));
+        info.warnings.push_back(sentence(counted(others, "slice"), " of another size, type or direction ignored"));
     }
     return std::move(most->second);
 }
@@ -83,7 +83,7 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
         return a.along != b.along ? a.along < b.along : number(a) < number(b);
     });
     if (!are_placed && slices.size() > 1) {
-        info.warnings.emplace_back("slices do not say where they are; they were sorted by their numbers");
+        info.warnings.emplace_back("slices do not state their positions; they are sorted by instance number");
     }
     return are_placed;
 }
@@ -97,7 +97,7 @@ void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
         return !slice.file->instance_uid.empty() && !seen.emplace(slice.file->instance_uid, slice.slice.frame).second;
     });
     if (slices.size() < before) {
-        info.warnings.push_back(sentence(before - slices.size(), " slices that were there twice were left out"));
+        info.warnings.push_back(sentence(counted(before - slices.size(), "duplicate slice"), " ignored"));
     }
 }
 
@@ -112,8 +112,8 @@ void choose_time(const std::string& where, const OpenOptions& options, std::vect
     for (size_t i = 0; i < begins.size(); ++i) {
         if (begins[i] == i * times && slices.size() == begins.size() * times) continue;
         fail(where, ": holds ", slices.size(), " slices at ", begins.size(),
-             " places, not equally many at each, as at ", with_digits(slices[begins[i]].along),
-             " mm; expected one at each");
+             " positions, but more or fewer than usual at ", with_digits(slices[begins[i]].along),
+             " mm; expected equally many at each position");
     }
     const auto chosen = size_t(chosen_frame(where, options, int64_t(times)));
     std::vector<Placed> of_time;
@@ -145,15 +145,15 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
         if (++odd > MAX_WARNINGS) continue;
         const double missing = std::round(distances[i] / usual) - 1.0;
         const bool are_missing = missing >= 1.0 && std::abs(distances[i] / usual - missing - 1.0) < 0.1;
-        info.warnings.push_back(sentence("slices ", i + 1, " and ", i + 2, " (",
-                                         slices[i].file->path.filename().string(), ", ",
-                                         slices[i + 1].file->path.filename().string(), ") are ",
-                                         with_digits(distances[i]), " mm apart, most others ", with_digits(usual),
-                                         are_missing ? sentence(": ", missing, " are missing there") : std::string(),
-                                         "; they are drawn as if equally far apart"));
+        info.warnings.push_back(
+            sentence("slices ", i + 1, " and ", i + 2, " (", slices[i].file->path.filename().string(), ", ",
+                     slices[i + 1].file->path.filename().string(), ") are ", with_digits(distances[i]), " mm apart",
+                     are_missing ? sentence(" (", counted(size_t(missing), "slice"), " missing)") : std::string(),
+                     ", but most others are ", with_digits(usual), " mm apart; all are drawn at that distance"));
     }
     if (odd > MAX_WARNINGS) {
-        info.warnings.push_back(sentence(odd - MAX_WARNINGS, " more slices are not as far apart as most others"));
+        info.warnings.push_back(
+            sentence(counted(odd - MAX_WARNINGS, "further pair"), " of slices at an unusual distance"));
     }
     return usual;
 }
@@ -173,7 +173,7 @@ void describe_space(const std::vector<Placed>& slices, bool are_placed, VolumeIn
     const glm::dvec3 normal = glm::cross(frame.along_x, frame.along_y);
     if (!frame.spacing) return apply_spacing(info, {}, {}, "mm");
     if (file.spacing_is_at_detector) {
-        info.warnings.emplace_back("spacing within slices is that at the detector; the object's is smaller");
+        info.warnings.emplace_back("the spacing within slices is that at the detector; in the object it is smaller");
     }
     glm::dvec3 step = normal * frame.spacing->x;
     if (are_placed && slices.size() > 1) {
@@ -181,11 +181,12 @@ void describe_space(const std::vector<Placed>& slices, bool are_placed, VolumeIn
     } else if (file.distance) {
         step = normal * *file.distance;
         if (slices.size() > 1) {
-            info.warnings.push_back(sentence("slices are ", *file.distance, " mm apart or thick, as their file says"));
+            info.warnings.push_back(sentence("slices are taken to be ", *file.distance,
+                                             " mm apart, the spacing or thickness that the file states"));
         }
     } else {
         info.warnings.push_back(
-            sentence("no distance between slices stated; ", frame.spacing->x, " mm assumed, as along x"));
+            sentence("the distance between slices is not stated; ", frame.spacing->x, " mm is assumed, as along x"));
     }
     const glm::dmat3 steps(frame.along_x * frame.spacing->x, frame.along_y * frame.spacing->y, step);
     const glm::dvec3 origin = frame.position.value_or(glm::dvec3(0.0));
@@ -221,7 +222,7 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
     if (chosen.size() != 1) {
         const std::string found = options.channel.empty() ? sentence("holds ", series.size(), " series")
                                                           : sentence("channel is ", in_quotes(options.channel));
-        fail(where, ": ", found, "; expected channel to choose one by number or description: ", choices);
+        fail(where, ": ", found, "; expected a channel, the number or the description of one of: ", choices);
     }
     std::vector<DicomFile> members;
     for (const size_t member : *chosen[0]) members.push_back(std::move(files[member]));
@@ -239,6 +240,11 @@ DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile
     describe_space(slices, are_placed, volume.info);
     for (const Placed& slice : slices) volume.slices.push_back(slice.slice);
     return volume;
+}
+
+std::string counted(size_t number, const char* thing)
+{
+    return sentence(number, " ", thing, number == 1 ? "" : "s");
 }
 
 }  // namespace shvr

@@ -2,6 +2,7 @@
 // Decides which slices of which DICOM files form a volume, in which order, and where it lies. For source_dicom.cpp. Any
 // thread.
 
+#include <string>
 #include <vector>
 
 #include "engine/formats/dicom/dicom_file.h"
@@ -25,5 +26,8 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
 
 /// `files` are of one series; at least one.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
+
+/// For messages: "1 slice", "2 slices".
+std::string counted(size_t number, const char* thing);
 
 }  // namespace shvr

@@ -96,7 +96,8 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
         if (!at->path().filename().string().starts_with('.') && begins_as_dicom(at->path()))
             paths.push_back(at->path());
-        if (paths.size() > MAX_FILES) fail(folder.string(), ": holds more than ", MAX_FILES, " files; expected fewer");
+        if (paths.size() > MAX_FILES)
+            fail(folder.string(), ": holds more than ", MAX_FILES, " files; expected at most that many");
     }
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
     std::sort(paths.begin(), paths.end());
@@ -144,7 +145,7 @@ std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions
     std::vector<std::string> left_out;
     if (!is_folder) {
         std::optional<DicomFile> file = read_dicom_file(path);
-        if (!file) fail(where, ": is a DICOM file without Pixel Data; expected slices");
+        if (!file) fail(where, ": is a DICOM file without Pixel Data; expected an image");
         // A single slice stands for its whole series.
         if (file->frames.size() == 1) {
             const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -158,7 +159,7 @@ std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions
         if (paths.empty()) return nullptr;
         files = read_all(paths, left_out);
         if (files.empty()) {
-            fail(where, ": holds ", paths.size(), " DICOM files, none with slices; expected some",
+            fail(where, ": holds ", paths.size(), " DICOM files, but none with an image; expected at least one",
                  left_out.empty() ? std::string() : " (" + left_out[0] + ")");
         }
     }
@@ -171,13 +172,14 @@ std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions
     info.type = type_of(files, volume.slices);
     static_cast<void>(voxel_count(info));
     if (!left_out.empty()) {
-        info.warnings.push_back(sentence(left_out.size(), " files were left out, the first because ", left_out[0]));
+        info.warnings.push_back(
+            sentence(counted(left_out.size(), "file"), " ignored, the first because ", left_out[0]));
     }
     const DicomFile& first = files[volume.slices[0].file];
-    if (first.is_inverted)
-        info.warnings.emplace_back("small numbers are bright (MONOCHROME1); intensities were reversed");
+    if (first.is_inverted) info.warnings.emplace_back("low values are bright (MONOCHROME1); intensities are inverted");
     if (!is_folder && files.size() > 1) {
-        info.warnings.push_back(sentence("one file of a series was opened; all ", files.size(), " of it were read"));
+        info.warnings.push_back(
+            sentence("one file of a series was opened; all ", files.size(), " files of the series are read"));
     }
     return std::make_unique<DicomSource>(std::move(info), std::move(files), std::move(volume.slices));
 }

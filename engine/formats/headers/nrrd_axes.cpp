@@ -116,7 +116,7 @@ glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
         if (!direction) fields.refuse(DIRECTIONS, DIRECTIONS_EXPECTED);
         steps[axis] = *direction;
         if (!(glm::length(steps[axis]) > 0.0) || !std::isfinite(glm::length(steps[axis]))) {
-            fields.refuse(DIRECTIONS, "vectors of finite length above 0");
+            fields.refuse(DIRECTIONS, "vectors of finite length greater than 0");
         }
     }
     return steps;
@@ -148,12 +148,12 @@ Space space_of(const HeaderFields& fields, VolumeInfo& info)
     if (space == "left-posterior-superior" || space == "lps") return {"LPS"};
     if (space == "left-anterior-superior" || space == "las") return {"RAS", true};
     if (space == "3d-left-handed") {
-        info.warnings.emplace_back("space is left-handed; positions in it are stated with x reversed");
+        info.warnings.emplace_back("space is left-handed; positions are given with x reversed");
         return {"", true};
     }
     if (space != "3d-right-handed" && space != "scanner-xyz") {
         info.warnings.push_back(
-            sentence("space is ", in_quotes(*value), ", which is not known; taken as right-handed"));
+            sentence("space is ", in_quotes(*value), ", which is unknown; a right-handed space is assumed"));
     }
     return {};
 }

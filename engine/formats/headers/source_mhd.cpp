@@ -75,7 +75,7 @@ void read_orientation(const HeaderFields& fields, VolumeInfo& info)
         for (int axis = 0; axis < 3; ++axis) {
             const double length = glm::length(steps[axis]);
             if (!(length > 0.0) || !std::isfinite(length))
-                fields.refuse(matrix, "three vectors of finite length above 0");
+                fields.refuse(matrix, "three vectors of finite length greater than 0");
         }
     }
     glm::dvec3 origin(0.0);

@@ -100,7 +100,7 @@ void choose_volume(const std::string& file, const OpenOptions& options, const Sh
     voxels.channels = datatype.channels;
     int64_t component = 0;
     if (datatype.channels > 1 && shape.components > 1) {
-        fail(file, ": dim[5] is ", shape.components, "; expected 1 where voxels are colours");
+        fail(file, ": dim[5] is ", shape.components, "; expected 1 for colour voxels");
     }
     if (shape.components > 1) {
         component = chosen_channel(file, options, shape.components);
@@ -112,7 +112,7 @@ void choose_volume(const std::string& file, const OpenOptions& options, const Sh
     if (__builtin_mul_overflow(voxel_count(info), int64_t(bytes_of(info.type)) * datatype.channels, &bytes) ||
         __builtin_mul_overflow(bytes, shape.frames * shape.components, &all) ||
         __builtin_add_overflow(all, int64_t{1} << 62, &all)) {
-        fail(file, ": dim states more voxels than 2^62 bytes hold; expected fewer");
+        fail(file, ": dim states voxels of more than 2^62 bytes; expected fewer");
     }
     const int64_t before = component * shape.frames + frame;
     (voxels.is_deflated ? voxels.skip_bytes : voxels.offset_bytes) += before * bytes;
@@ -166,7 +166,7 @@ void warn_where_forms_disagree(const NiftiHeader& header, const glm::dvec3& spac
         const double stated = std::abs(header.pixdim[size_t(axis) + 1]);
         if (!(std::abs(stated - spacing[axis]) > 0.01 * spacing[axis])) continue;
         info.warnings.push_back(sentence("spacing along ", "xyz"[axis], " is ", spacing[axis], " by the sform and ",
-                                         stated, " by pixdim; the sform's was taken"));
+                                         stated, " by pixdim; that of the sform is used"));
     }
 }
 
@@ -180,7 +180,7 @@ void describe_space(const NiftiHeader& header, VolumeInfo& info)
         spacing = place(info, qform->steps, qform->origin, "RAS");
     } else {
         if (header.sform_code > 0 || header.qform_code > 0) {
-            info.warnings.emplace_back("sform and qform span no volume; orientation was left out");
+            info.warnings.emplace_back("sform and qform are singular; the orientation is ignored");
         }
         spacing = spacing_of_pixdim(header, info);
     }
@@ -213,10 +213,13 @@ std::unique_ptr<VolumeSource> open_nifti(const fs::path& path, const OpenOptions
     if (!header) {
         const std::string lower = lower_case(path.filename().string());
         if (lower.ends_with(".nii") || lower.ends_with(".nii.gz")) {
-            fail(file, ": begins with no NIfTI header; expected 348 bytes with n+1 or 540 with n+2 in them");
+            fail(file,
+                 ": does not begin with a NIfTI header; expected one of 348 bytes with the magic n+1, or of 540 bytes "
+                 "with n+2");
         }
         if (!with_ending(path, ".hdr", ".img").empty() && is_analyze_header(head)) {
-            fail(file, ": is Analyze 7.5, which does not say which way its axes run; expected NIfTI");
+            fail(file,
+                 ": is in the format Analyze 7.5, which does not state the directions of its axes; expected NIfTI");
         }
         return nullptr;
     }

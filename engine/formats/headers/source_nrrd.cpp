@@ -77,7 +77,7 @@ bool is_deflated(const HeaderFields& fields)
     if (encoding == "raw") return false;
     const bool is_known = encoding == "bzip2" || encoding == "bz2" || encoding == "ascii" || encoding == "text" ||
                           encoding == "txt" || encoding == "hex";
-    fail(fields.path().string(), ": encoding ", in_quotes(encoding), is_known ? " is not supported" : " is not known",
+    fail(fields.path().string(), ": encoding ", in_quotes(encoding), is_known ? " is not supported" : " is unknown",
          "; expected raw or gzip");
 }
 
@@ -111,7 +111,7 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     const char* const data_file = fields.has("datafile") ? "datafile" : "data file";
     const std::string* stated = fields.find(data_file);
     if (stated == nullptr && !header.is_attached) {
-        fail(fields.path().string(), ": has neither a data file nor an empty line with voxels behind it; ",
+        fail(fields.path().string(), ": has neither a data file nor an empty line followed by voxels; ",
              "expected one of them");
     }
     if (stated != nullptr && (is_list(*stated) || is_pattern(*stated))) {

@@ -71,7 +71,7 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
     if (int64_t(names.size()) != layout.size.z) {
         fail(folder.string(), ": is a folder with ", names.size(), " files of ", bytes, " bytes; expected ",
-             layout.size.z, ", one for each slice");
+             layout.size.z, " files, one for each slice");
     }
     std::sort(names.begin(), names.end(), comes_before);
     std::vector<fs::path> slices;
@@ -96,8 +96,8 @@ std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t 
         if (digits.size() < end - begin) digits.insert(0, end - begin - digits.size(), '0');
         slices.push_back(first.parent_path() / (name.substr(0, begin) + digits + name.substr(end)));
         if (const InputFile slice = open_input_file(slices.back()); slice.bytes != bytes) {
-            fail(slice.path.string(), ": holds ", slice.bytes, " bytes; expected ", bytes, ", one slice, as ", name,
-                 " does");
+            fail(slice.path.string(), ": holds ", slice.bytes, " bytes; expected ", bytes,
+                 ", the size of one slice, as in ", name);
         }
     }
     return slices;

@@ -128,7 +128,7 @@ void read_orientation(const HeaderFields& fields, VolumeInfo& info)
     for (int axis = 0; axis < 3; ++axis) {
         const double length = glm::length(steps[axis]);
         if (!(length > 0.0) || !std::isfinite(length)) {
-            fields.refuse("Orientation", "three vectors of finite length above 0");
+            fields.refuse("Orientation", "three vectors of finite length greater than 0");
         }
     }
     static_cast<void>(place(info, steps, glm::dvec3(0.0), ""));
@@ -168,11 +168,12 @@ std::optional<SideCar> read_dat_side_car(const fs::path& path, fs::path raw)
         raw = fields->data_file("ObjectFileName");
         const fs::path renamed = fs::path(path).replace_extension(".raw");
         if (!is_file(raw) && is_file(renamed)) {
-            found.info.warnings.push_back(
-                sentence(raw.filename().string(), " is not there; ", renamed.filename().string(), " was read instead"));
+            found.info.warnings.push_back(sentence(raw.filename().string(), " does not exist; ",
+                                                   renamed.filename().string(), " was read instead"));
             raw = renamed;
         } else if (!is_file(raw)) {
-            fields->refuse("ObjectFileName", "a file beside it, or " + renamed.filename().string());
+            fields->refuse("ObjectFileName",
+                           "the name of a file in the same folder, or " + renamed.filename().string());
         }
     }
     found.voxels.file = raw;

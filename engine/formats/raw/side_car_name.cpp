@@ -53,7 +53,7 @@ VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
         if (!error && bytes % count == 0 && size_t(bytes / count) == bytes_of(type)) return type;
     }
     fail(path.string(), ": holds ", bytes, " bytes, which is not 1, 2, 4 or 8 for each of the ", count,
-         " voxels in its name; expected --raw WxHxD:TYPE to say what they are");
+         " voxels that its name states; expected --raw WxHxD:TYPE");
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ std::optional<SideCar> read_file_name(const fs::path& raw)
     found.voxels.big_endian = big_endian;
     found.info.warnings.push_back(sentence("size ", found.info.size.x, "x", found.info.size.y, "x", found.info.size.z,
                                            " and type ", name_of(found.info.type),
-                                           " were guessed from the file's name"));
+                                           " were inferred from the file name"));
     apply_spacing(found.info, {}, {}, "voxel");
     return found;
 }

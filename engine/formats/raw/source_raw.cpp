@@ -125,7 +125,7 @@ std::unique_ptr<VoxelBytes> open_one(VolumeInfo& info, const RawVoxels& voxels)
     const int64_t begin = place_in_file(file, voxels.offset_bytes, needed, voxels.bytes_after, size_text(info, voxels));
     if (const int64_t more = file.bytes - begin - needed - voxels.bytes_after; more > 0 && !at_end) {
         info.warnings.push_back(sentence(voxels.file.filename().string(), " holds ", more,
-                                         " bytes more than the voxels need; they were left out"));
+                                         " bytes more than the voxels need; they are ignored"));
     }
     return bytes_of_file(std::move(file), begin);
 }

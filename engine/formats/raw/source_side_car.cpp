@@ -108,7 +108,7 @@ Source open_raw_with_side_car(const fs::path& path, const OpenOptions& /*options
     }
     if (extension == ".raw") {
         fail(path.string(),
-             ": holds bare voxels and nothing beside it says their size and type; expected --raw WxHxD:TYPE, ",
+             ": holds bare voxels, and no file beside it states their size and type; expected --raw WxHxD:TYPE, ",
              "as in --raw 512x512x300:uint16:little:0");
     }
     return nullptr;

@@ -100,7 +100,7 @@ TEST_CASE("what is wrong in a profile is said in one sentence")
           "x.json: key limits.peak_force_n is 400; expected a number from 0 to 40");
     CHECK(error_with("/limits/usable_lower_m", {1, 2}).ends_with("is [1,2]; expected three numbers, [x, y, z]"));
     CHECK(error_with("/limits/usable_upper_m", {0.1, 0.1, -0.1})
-              .ends_with("expected more than usable_lower_m along every axis"));
+              .ends_with("expected values greater than usable_lower_m along every axis"));
     CHECK(error_without("", "limits")
               .starts_with("x.json: key limits is missing; expected an object with keys out of: "));
 }
@@ -113,8 +113,9 @@ TEST_CASE("fields must fit into their report, apart from one another")
     CHECK(error_with("/input/fields/12/bits", 33) ==
           "x.json: key input.fields.12.bits is 33; expected a whole number from 1 to 32");
     CHECK(error_with("/input/length", 31).ends_with("expected at most bit 247, the last of 31 bytes"));
-    CHECK(error_with("/input/fields/1/bit", 7).ends_with("expected bits that no other field has; bit 7 is taken"));
-    CHECK(error_with("/input/fields/1/name", "buttons").ends_with("is \"buttons\"; expected each name once"));
+    CHECK(error_with("/input/fields/1/bit", 7).ends_with("expected bits that no other field uses; bit 7 is taken"));
+    CHECK(error_with("/input/fields/1/name", "buttons")
+              .ends_with("is \"buttons\"; expected a name that no other field has"));
     CHECK(error_with("/input/fields/1/name", "force_x").find("is \"force_x\"; expected one of \"buttons\", ") !=
           std::string::npos);
     CHECK(error_with("/input/fields/4/scale", 0).ends_with("is 0; expected a number other than 0"));
@@ -132,7 +133,8 @@ TEST_CASE("a layout must hold what the servo needs")
     document = reference();
     document["output"]["fields"].erase(0);
     CHECK(error_of(document).ends_with("expected a field named enable"));
-    CHECK(error_without("", "input") == "x.json: key verified is true; expected false where there is no key input");
+    CHECK(error_without("", "input") ==
+          "x.json: key verified is true; expected false, because the profile has no key input");
 }
 
 TEST_CASE("axes are turned and flipped, never bent")

@@ -324,7 +324,7 @@ TEST_CASE("degenerate cameras are refused")
     Camera parallel = good;
     parallel.up = {0, 1, 0};
     CHECK_THROWS_WITH(check_camera(parallel),
-                      doctest::Contains("expected an up that is neither 0 nor parallel to the view"));
+                      doctest::Contains("expected an up that is neither zero nor parallel to the view direction"));
 }
 
 TEST_CASE("a side view turns to the viewer's right, tilts upwards and comes closer")

@@ -196,6 +196,6 @@ TEST_CASE("what would cost as much as a new forest is left to one, and what is r
     broken.look.radius_from = -1.0;
     const std::vector<uint64_t> gone{surface_key(SurfaceKind::node, 0), many[1].key};
     CHECK_THROWS_WITH_AS(watched.replace(gone, {broken}),
-                         doctest::Contains("node 12: a radius is -1; expected above 0"), Error);
+                         doctest::Contains("node 12: a radius is -1; expected more than 0"), Error);
     watched.check();
 }

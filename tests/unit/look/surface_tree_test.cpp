@@ -140,7 +140,7 @@ TEST_CASE("surfaces that cannot be drawn are refused with what is wrong about th
 {
     CHECK(refusal({.from = {0, 0, NAN}}).starts_with("surface 1: an end is at (0, 0, nan); expected -524288 ... "));
     CHECK(refusal({.to = {2e6, 0, 0}}).starts_with("surface 1: an end is at (2e+06, 0, 0); expected "));
-    CHECK(refusal({.radius_from = 0.0}) == "surface 1: a radius is 0; expected above 0 and at most 524288");
+    CHECK(refusal({.radius_from = 0.0}) == "surface 1: a radius is 0; expected more than 0 and at most 524288");
     CHECK(refusal({.radius_to = INFINITY}).starts_with("surface 1: a radius is inf; expected"));
     CHECK(refusal({.color = {0, NAN, 0}}).starts_with("surface 1: its colour is not finite"));
     CHECK(refusal({}).empty());

@@ -183,8 +183,8 @@ TEST_CASE("a folder of DICOM slices is the chirality phantom, in every uncompres
             CHECK(source->info().directions == glm::dmat3(1.0));
             CHECK(source->info().warnings.size() == (path == folder.path ? 0 : 1));
         }
-        CHECK(
-            warns_of(*open_volume(folder.path / "dicom_1"), "one file of a series was opened; all 3 of it were read"));
+        CHECK(warns_of(*open_volume(folder.path / "dicom_1"),
+                       "one file of a series was opened; all 3 files of the series are read"));
     }
 }
 
@@ -283,7 +283,7 @@ TEST_CASE("DICOM intensities are what stored numbers mean")
     const auto inverted = open_volume(folder_of(folder, slices));
     CHECK(inverted->info().type == VoxelType::int16);
     CHECK(voxels_of<int16_t>(*inverted)[0] == 2 * (4095 - 256 - 157) - 1024);
-    CHECK(warns_of(*inverted, "small numbers are bright (MONOCHROME1); intensities were reversed"));
+    CHECK(warns_of(*inverted, "low values are bright (MONOCHROME1); intensities are inverted"));
 }
 
 TEST_CASE("missing, doubled and odd DICOM slices are told")
@@ -297,17 +297,18 @@ TEST_CASE("missing, doubled and odd DICOM slices are told")
     CHECK(gap->info().size.z == 6);
     CHECK(gap->info().spacing.z == doctest::Approx(1.25));
     CHECK(warns_of(*gap, "slices 3 and 4 ("));
-    CHECK(warns_of(*gap,
-                   "are 3.75 mm apart, most others 1.25: 2 are missing there; they are drawn as if equally far apart"));
+    CHECK(warns_of(
+        *gap,
+        "are 3.75 mm apart (2 slices missing), but most others are 1.25 mm apart; all are drawn at that distance"));
 
     Dicom moved = slice_of(3);
     moved.text(POSITION, "DS", "10\\20\\33.9");
     const auto uneven = opened({slice_of(0), slice_of(1), slice_of(2), moved});
-    CHECK(warns_of(*uneven, "are 1.4 mm apart, most others 1.25; they are drawn as if equally far apart"));
+    CHECK(warns_of(*uneven, "are 1.4 mm apart, but most others are 1.25 mm apart; all are drawn at that distance"));
 
     const auto copied = opened({slice_of(0), slice_of(1), slice_of(2), slice_of(1)});
     CHECK(copied->info().size.z == 3);
-    CHECK(warns_of(*copied, "1 slices that were there twice were left out"));
+    CHECK(warns_of(*copied, "1 duplicate slice ignored"));
 
     std::vector<Dicom> times;
     for (const int64_t time : {1, 2}) {
@@ -325,13 +326,13 @@ TEST_CASE("missing, doubled and odd DICOM slices are told")
     times.pop_back();
     const TemporaryFolder ragged;
     folder_of(ragged, times);
-    CHECK(contains(refusal(ragged.path), "holds 5 slices at 3 places, not equally many at each"));
+    CHECK(contains(refusal(ragged.path), "holds 5 slices at 3 positions, but more or fewer than usual at "));
 
     Dicom scout = slice_of(9);
     scout.text(ORIENTATION, "DS", "0\\1\\0\\0\\0\\-1");
     const auto with_scout = opened({slice_of(0), slice_of(1), slice_of(2), scout});
     CHECK(is_chirality_phantom(*with_scout));
-    CHECK(warns_of(*with_scout, "1 slices of another size, type or direction were left out"));
+    CHECK(warns_of(*with_scout, "1 slice of another size, type or direction ignored"));
 
     std::vector<Dicom> tilted = phantom_slices();
     for (size_t z = 0; z < 3; ++z) {
@@ -348,8 +349,8 @@ TEST_CASE("missing, doubled and odd DICOM slices are told")
     const auto numbered = opened(placeless);
     CHECK(is_chirality_phantom(*numbered));
     CHECK(numbered->info().spacing == glm::dvec3(0.75, 0.25, 3));
-    CHECK(warns_of(*numbered, "slices do not say where they are; they were sorted by their numbers"));
-    CHECK(warns_of(*numbered, "slices are 3 mm apart or thick, as their file says"));
+    CHECK(warns_of(*numbered, "slices do not state their positions; they are sorted by instance number"));
+    CHECK(warns_of(*numbered, "slices are taken to be 3 mm apart, the spacing or thickness that the file states"));
     CHECK(warns_of(*numbered, "that at the detector"));
     CHECK(warns_of(*opened({image_of(0)}), "no spacing stated"));
 }
@@ -367,12 +368,12 @@ TEST_CASE("of several DICOM series, one is chosen by number or description")
     }
     folder_of(folder, slices);
     CHECK(contains(refusal(folder.path),
-                   "holds 2 series; expected channel to choose one by number or description: 1 \"Scout "
+                   "holds 2 series; expected a channel, the number or the description of one of: 1 \"Scout "
                    "lateral\" (2 slices), 2 \"Axial\" (3 slices)"));
     CHECK(is_chirality_phantom(*open_volume(folder.path, {.channel = "2"})));
     CHECK(is_chirality_phantom(*open_volume(folder.path, {.channel = "Axial"})));
     CHECK(open_volume(folder.path, {.channel = "1.2.10"})->info().size.z == 2);
-    CHECK(contains(refusal(folder.path, {.channel = "3"}), "channel is \"3\"; expected channel to choose one"));
+    CHECK(contains(refusal(folder.path, {.channel = "3"}), "channel is \"3\"; expected a channel, the number"));
 }
 
 TEST_CASE("a DICOM file of many frames is a volume, in the order of their places")
@@ -425,14 +426,14 @@ TEST_CASE("what makes no volume among DICOM files is left out with words, or ref
     folder.write("cut", cut);
     const auto source = open_volume(folder.path);
     CHECK(is_chirality_phantom(*source));
-    CHECK(warns_of(*source, "2 files were left out, the first because "));
+    CHECK(warns_of(*source, "2 files ignored, the first because "));
 
     const auto alone = [](const std::string& file) {
         const TemporaryFolder own;
         return refusal(own.write("a.dcm", file));
     };
     CHECK(contains(alone(colors.file()), "Photometric Interpretation is \"RGB\"; expected MONOCHROME1 or MONOCHROME2"));
-    CHECK(contains(alone(report.file()), "is a DICOM file without Pixel Data; expected slices"));
+    CHECK(contains(alone(report.file()), "is a DICOM file without Pixel Data; expected an image"));
     CHECK(contains(alone(slice_of(0).number(0x00280100, 12).file()), "Bits Allocated is 12; expected 8, 16 or 32"));
     CHECK(contains(alone(slice_of(0).number(0x00280101, 17).file()), "Bits Stored is 17; expected"));
     CHECK(contains(alone(slice_of(0).number(0x00280010, 0).file()), "Rows or Columns is missing or 0; expected"));
@@ -471,10 +472,11 @@ TEST_CASE("hostile lengths in a DICOM file are refused at once, before GDCM take
         nested += little(0x0018, 2) + little(1, 2) + std::string("SQ\0\0", 4) + little(0xffffffff, 4) +
                   little(0xfffe, 2) + little(0xe000, 2) + little(0xffffffff, 4);
     }
-    CHECK(contains(with(0x00180001, nested), "nests sequences deeper than 16"));
-    CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("\1\2\0\0", 4)), "states no type"));
+    CHECK(contains(with(0x00180001, nested), "nests sequences more than 16 levels deep"));
+    CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("\1\2\0\0", 4)),
+                   "has no value representation"));
     CHECK(contains(with(0x00180001, little(0x0018, 2) + little(1, 2) + std::string("UY\1\0", 4)),
-                   "is of type \"UY\"; expected a type that DICOM knows"));
+                   "has the value representation \"UY\"; expected one that DICOM defines"));
     CHECK(
         contains(refusal(folder.write("a.dcm", slice_of(0).number(0x00280010, 65535).number(0x00280011, 65535).file())),
                  "Pixel Data holds 40 bytes; expected 8589672450 for 1 slices of 65535x65535 pixels of int16"));

@@ -141,7 +141,7 @@ TEST_CASE("an NRRD that cannot be read says which field, what it found and what 
               sentence(at, ": encoding \"", encoding, "\" is not supported; expected raw or gzip"));
     }
     CHECK(folder.nrrd_refusal("encoding:", "encoding: zip") ==
-          at + ": encoding \"zip\" is not known; expected raw or gzip");
+          at + ": encoding \"zip\" is unknown; expected raw or gzip");
     CHECK(folder.nrrd_refusal("encoding:", "encoding: gzip") ==
           (folder.path / "a.voxels").string() +
               ": its compressed data at byte 0 begins as neither gzip nor zlib does; expected one of them");
@@ -420,7 +420,7 @@ TEST_CASE("bare voxels open by the header that names them")
     folder.write("a.nhdr", with_line(NHDR, "data file:", "data file: a.raw"));
     CHECK(open_volume(folder.path / "a.raw")->info().format == "nrrd");
     folder.write("a.nhdr", NHDR);
-    CHECK(contains(refusal(folder.path / "a.raw"), "nothing beside it"));
+    CHECK(contains(refusal(folder.path / "a.raw"), "no file beside it"));
     folder.write("a.mhd", with_line(MHD, "ElementDataFile", "ElementDataFile = a.raw"));
     CHECK(open_volume(folder.path / "a.raw")->info().format == "mhd");
 }

@@ -259,10 +259,10 @@ TEST_CASE("numbered files of one slice each are a volume, from the first one or 
     CHECK(contains(error_of([&] {
                        open_raw(folder.path / "a", {{5, 4, 4}, VoxelType::uint8, false, 2});
                    }),
-                   "is a folder with 3 files of 22 bytes; expected 4, one for each slice"));
+                   "is a folder with 3 files of 22 bytes; expected 4 files, one for each slice"));
     folder.write("a/quarter.11", "short");
     CHECK(contains(error_of([&] { open_raw(folder.path / "a/quarter.9", layout); }),
-                   "quarter.11: holds 5 bytes; expected 22, one slice, as quarter.9 does"));
+                   "quarter.11: holds 5 bytes; expected 22, the size of one slice, as in quarter.9"));
 }
 
 TEST_CASE("where nobody states the byte order, what neighbours suggest is said, as a guess")
@@ -302,7 +302,7 @@ TEST_CASE("what is no file is refused in words, without waiting")
     CHECK(contains(refusal(folder.path), ": is a folder without shvr/session.json and without a volume; expected"));
     CHECK(contains(refusal(folder.path), ", or slices of bare voxels with --raw WxHxD:TYPE"));
     CHECK(error_of([&] { open_raw(folder.path, layout); }) ==
-          folder.path.string() + ": is a folder with 0 files of 4 bytes; expected 2, one for each slice");
+          folder.path.string() + ": is a folder with 0 files of 4 bytes; expected 2 files, one for each slice");
     const fs::path missing = folder.path / "missing.raw";
     CHECK(refusal(missing) == missing.string() + ": cannot be opened: No such file or directory");
     CHECK(contains(refusal(folder.path / std::string(300, 'n')), "cannot be opened: File name too long"));
@@ -321,7 +321,7 @@ TEST_CASE("a raw file with nothing beside it says how to open it")
     const TemporaryFolder folder;
     const fs::path path = folder.write("a.raw", marked_bytes());
     CHECK(refusal(path) == path.string() +
-                               ": holds bare voxels and nothing beside it says their size and type; expected --raw "
+                               ": holds bare voxels, and no file beside it states their size and type; expected --raw "
                                "WxHxD:TYPE, as in --raw 512x512x300:uint16:little:0");
     const fs::path other = folder.write("a.xyz", marked_bytes());
     CHECK(refusal(other) ==
@@ -453,7 +453,7 @@ TEST_CASE("the scanners' side-cars are understood")
 
     fs::rename(folder.path / "root.raw", folder.path / "renamed.raw");
     CHECK(warns_of(*open_volume(folder.write("renamed.dat", xml)),
-                   "root.raw is not there; renamed.raw was read instead"));
+                   "root.raw does not exist; renamed.raw was read instead"));
 }
 
 TEST_CASE("a scanner's side-car that is broken is refused by field")
@@ -473,7 +473,9 @@ TEST_CASE("a scanner's side-car that is broken is refused by field")
     CHECK(contains(refused("<RAWFileData><Format>UCHAR</Format><Resolution X=\"5\" Y=\"4\"/></RAWFileData>"),
                    "Resolution is \"5 4 missing\"; expected"));
     const fs::path lost = folder.write("lost.dat", "ObjectFileName: gone.raw\nResolution: 5 4 3\nFormat: UCHAR\n");
-    CHECK(refusal(lost) == lost.string() + ": ObjectFileName is \"gone.raw\"; expected a file beside it, or lost.raw");
+    CHECK(refusal(lost) ==
+          lost.string() +
+              ": ObjectFileName is \"gone.raw\"; expected the name of a file in the same folder, or lost.raw");
     const std::string whole =
         "<RAWFileData><ObjectFileName>root.raw</ObjectFileName><Format>UCHAR</Format>"
         "<Resolution X=\"5\" Y=\"4\" Z=\"3\" T=\"1\"/><Spacing X=\"1\" Y=\"1\" Z=\"1\"/></RAWFileData>";
@@ -489,7 +491,7 @@ TEST_CASE("a size in the file's name is used, and said to be a guess")
     const Sample<int16_t> sample = sample_of<int16_t>(60, false);
     const auto words = open_volume(folder.write("stent_5x4x3_int16le.raw", sample.file));
     CHECK(voxels_of<int16_t>(*words) == sample.voxels);
-    CHECK(warns_of(*words, "size 5x4x3 and type int16 were guessed from the file's name"));
+    CHECK(warns_of(*words, "size 5x4x3 and type int16 were inferred from the file name"));
     CHECK_FALSE(warns_of(*words, "endian"));
 
     const auto bits = open_volume(folder.write("scan-5x4x3-16bit.raw", sample.file));
@@ -505,6 +507,6 @@ TEST_CASE("a size in the file's name is used, and said to be a guess")
     CHECK(contains(refusal(folder.write("e_5x4x3_8bit.raw", "x")), "holds 1 bytes; expected at least 60"));
     CHECK(contains(refusal(folder.write("f_0x4x3.raw", "x")), "size along x is 0; expected"));
     CHECK(contains(refusal(folder.write("f_99999999999x99999999999x99999999999.raw", "x")), "expected 1 to 1048576"));
-    CHECK(contains(refusal(folder.write("g_5x4.raw", "x")), "nothing beside it"));
-    CHECK(contains(refusal(folder.write("short_root.raw", "x")), "nothing beside it"));
+    CHECK(contains(refusal(folder.write("g_5x4.raw", "x")), "no file beside it"));
+    CHECK(contains(refusal(folder.write("short_root.raw", "x")), "no file beside it"));
 }
