@@ -168,6 +168,7 @@ void PictureJob::draw_completely(const PicturePart& part)
         return;
     }
     drawn_pixels_ += area_of(part);
+    rays_cut_short_ += rays_cut_short(passes);
     picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
     append(picture_.passes, std::move(passes));
 }
@@ -175,8 +176,9 @@ void PictureJob::draw_completely(const PicturePart& part)
 Picture PictureJob::take()
 {
     SHVR_CHECK(is_done());
-    picture_.complete = picture_.complete && !scene().occlusion_has_no_room();
+    picture_.complete = picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0;
     picture_.warnings = scene().take_messages();
+    if (rays_cut_short_ > 0) picture_.warnings.push_back(cut_short_sentence(rays_cut_short_, look_));
     return std::move(picture_);
 }
 

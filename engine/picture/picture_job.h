@@ -40,6 +40,7 @@ private:
     std::vector<PicturePart> parts_;  ///< parts of the pane still to be drawn, the next one last
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
+    uint64_t rays_cut_short_ = 0;
 };
 
 }  // namespace shvr

@@ -1,5 +1,7 @@
 // shvr render: a picture of a session, a project or a bare volume.
 
+#include <cmath>
+
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
@@ -20,6 +22,17 @@ struct RenderCommandOptions {
 std::string why_incomplete(const Picture& picture)
 {
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
+}
+
+/// Which voxels a complete picture shows: with `render.detail` above 0, paged volumes of several levels show coarser
+/// ones than resident volumes do.
+Json detail_of(const Renderer& renderer, const RenderSettings& render)
+{
+    const int level = renderer.volume().finest_level();
+    return {{"setting", render.detail},
+            {"finest_level", level},
+            {"voxels_per_side", int64_t{1} << level},
+            {"step_voxels", std::ldexp(render.step_voxels, level)}};
 }
 
 void run_render(RenderCommandOptions options)
@@ -60,6 +73,7 @@ void run_render(RenderCommandOptions options)
     print({{"output", options.output},
            {"size", {size.x, size.y}},
            {"complete", picture.complete},
+           {"detail", detail_of(*opened.renderer, opened.session.render)},
            {"device", opened.renderer->device().traits().name},
            {"passes", passes},
            {"counters", counters_of(picture.passes)},
@@ -88,7 +102,12 @@ void add_render(CLI::App& program)
                       "Write a picture that lacks something, with a warning, instead of failing");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
-    command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
+    command->footer(
+        "A volume of several levels, paged, is drawn from voxels about as large as a pixel, and what is thinner may "
+        "not\n"
+        "show; --set render.detail=0 draws all voxels, as a resident volume always is. Either picture is complete:\n"
+        "\"detail\" in --json tells which it is.\n\n"
+        "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
     command->callback([options] { run_render(*options); });
 }
 
