@@ -97,6 +97,7 @@ BakedTable bake_table(const TransferFunction& function, double step_voxels, cons
 std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function)
 {
     std::vector<OpaqueInterval> found;
+    if (function.draws_nothing()) return found;
     const auto is_touched = [&](double intensity) { return !found.empty() && found.back().upper == intensity; };
     const std::span<const ControlPoint> points = function.points();
     for (size_t i = 0; i < points.size(); ++i) {
