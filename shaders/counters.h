@@ -12,6 +12,9 @@ SHARED_CONST uint COUNTER_LEAPS = 3u;           // jumps over empty cells
 SHARED_CONST uint COUNTER_BRICKS_VISITED = 4u;  // bricks in which a ray took a sample, summed over rays
 SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without one, summed over rays
 SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
+/// Always counted: rays that stopped before their end, once for each dispatch that they stopped in. The picture lacks
+/// what is behind.
+SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
 
 SHARED_END
 #endif

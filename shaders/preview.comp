@@ -28,6 +28,7 @@ layout(binding = 4, rgba32f) uniform writeonly image3D seen;      // linear RGB,
 layout(binding = 5, rgba32f) uniform readonly image3D surfaces;
 #endif
 
+#include "library/counters.glsl"
 #include "library/rays.glsl"
 #include "library/shade.glsl"
 
@@ -102,6 +103,7 @@ void main()
         next = is_hit ? next : next + vec3(axis) * apart;
         goes_on = !is_hit && to < end && is_inside(preview, voxel);
     }
+    count(COUNTER_CUT_SHORT, uint(goes_on));   // where a device ends loops
 
 #ifdef SURFACED
     const vec4 behind = imageLoad(surfaces, ivec3(in_part, 0));

@@ -10,7 +10,9 @@
 //
 // Samples lie in the middle of steps of equal length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step has its own sample. Leaps go from lattice point to lattice point, so pictures with and without
-// skipping have the same bits. The number of steps is not limited.
+// skipping have the same bits. The number of steps is not limited: a long ray is drawn in blocks of steps, one dispatch
+// each, because some devices end a thread's loops after 65535 turns, without a word. Between blocks the target holds
+// what a ray has gathered. A ray that stops short of its end nevertheless is counted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -39,7 +41,7 @@ layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 // Draws one sample half-way along each ray, in grey, whatever the transfer function shows.
 layout(constant_id = 7) const uint SLICE = 0u;
-// Classifies a step by the densities at both of its ends.
+// 1: classifies a step by the densities at both of its ends. 2: and there are densities at which rays end.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
@@ -56,13 +58,14 @@ layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
 // Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after
 // another.
-// linear RGB (PREINTEGRATED: times opacity), opacity of a full step
+// linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
 layout(binding = 3, rgba32f) uniform readonly image3D table;
-layout(binding = 4, rgba32f) uniform writeonly image3D color;
+layout(binding = 4, rgba32f) uniform image3D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 6
-layout(binding = 7, rgba32f) uniform readonly image3D groups;   // linear RGB, opacity of a full step; by number
+// By number: linear RGB, opacity of a full step; in the second row, the optical depth of a full step.
+layout(binding = 7, rgba32f) uniform readonly image3D groups;
 #endif
 
 #ifdef OCCLUDED
@@ -108,6 +111,11 @@ Place place_at(const RaycastParams params, vec3 position)
 }
 #endif
 
+// Larger numbers are no longer whole steps apart in a float.
+const float MAX_STEPS = 4294967040.0;
+// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface.
+const uint INSIDE_BIT = 0x80000000u;
+
 struct Ray {
     vec3 origin;      // voxel space, at length 0
     vec3 direction;   // voxels per reference length
@@ -122,11 +130,6 @@ struct Work {
     uint last_entry;
 };
 
-vec4 table_entry(uint entry)
-{
-    return imageLoad(table, ivec3(entry % TABLE_WIDTH, entry / TABLE_WIDTH, 0));
-}
-
 // Grey, perceptually even: the inverse of the curve that pictures are encoded with (IEC 61966-2-1).
 vec4 slice_look(const RaycastParams params, float density)
 {
@@ -135,48 +138,22 @@ vec4 slice_look(const RaycastParams params, float density)
     return vec4(vec3(light), 1.0);
 }
 
-// Colour and opacity of a full step for a density; the table is linear between its entries and 0 outside.
-vec4 classify(const RaycastParams params, float density)
-{
-    const float last = float(params.table_entries - 1u);
-    const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
-    const uint entry = uint(min(at, last - 1.0));
-    vec4 look = mix(table_entry(entry), table_entry(entry + 1u), at - float(entry));
-    look.a = density >= params.table_lower && density <= params.table_upper ? look.a : 0.0;
-    return look;
-}
-
-// The same for a density that goes from `front` to `back`. Both are axes of the table; the part of the step that is
-// outside the function's range is empty.
-vec4 classify_step(const RaycastParams params, float front, float back)
-{
-    const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
-    const float last = float(params.table_entries - 1u);
-    const vec2 at = clamp((ends - params.table_lower) * params.table_scale, 0.0, last);
-    const ivec2 entry = ivec2(min(at, last - 1.0));
-    const vec2 share = at - vec2(entry);
-    const vec4 near = mix(imageLoad(table, ivec3(entry, 0)), imageLoad(table, ivec3(entry + ivec2(1, 0), 0)), share.x);
-    const vec4 far =
-        mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
-    const vec4 sum = mix(near, far, share.y);
-    const float whole = abs(back - front), inside = abs(ends.y - ends.x);
-    const bool is_inside = front >= params.table_lower && front <= params.table_upper;
-    const float part = whole > 0.0 ? inside / whole : float(is_inside);
-    const float opacity = part >= 1.0 ? sum.a : part > 0.0 ? opacity_of_part(sum.a, part) : 0.0;
-    return vec4(sum.rgb / max(sum.a, 1e-30), opacity);
-}
+#include "library/classify.glsl"
 
 #ifdef MASKED
 // A painted voxel has the look of its group, whatever its density; the mask is sampled at the nearest voxel.
-vec4 painted(const RaycastParams params, vec3 position, vec4 look)
+vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
 {
     const uvec3 voxel = uvec3(position);
     const uint slot = mask_slot_of(voxel / BRICK_SIZE);
     if (slot == 0u) return look;
     const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
-    const vec4 of_group = imageLoad(groups, ivec3(group, 0, 0));
-    if (SLICE == 0u) return of_group;
+    vec4 of_group = imageLoad(groups, ivec3(group, 0, 0));
+    if (SLICE == 0u) {
+        if (part < 1.0) of_group.a = opacity_of_depth(part * imageLoad(groups, ivec3(group, 1, 0)).x);
+        return of_group;
+    }
     return vec4(mix(look.rgb, of_group.rgb, of_group.a > 0.0 ? params.slice_paint : 0.0), 1.0);
 }
 #endif
@@ -189,9 +166,8 @@ float value_near(vec3 in_brick, ivec3 slot)
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// Colour (shaded) and opacity of a full step, sampled over a length of `stretch` with its middle at `position`, in the
-// brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float stretch, const Place place,
+// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
                  inout Work work)
 {
     // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
@@ -213,14 +189,16 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const float per_voxel = 1.0;
 #endif
-        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE), half_step = 0.5 * stretch * per_voxel * ray.direction;
+        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
+        const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
-        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot));
+        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
+                             part);
     } else {
-        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density));
+        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
     }
 #ifdef MASKED
-    if (place.is_painted) look = painted(params, position, look);
+    if (place.is_painted) look = painted(params, position, part, look);
 #endif
     if (COUNT_WORK != 0u) {
         ++work.samples;
@@ -290,7 +268,7 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
 #ifdef PAGED
     if (place.distance > 0u) return vec4(0.0);
 #endif
-    return sample_look(params, ray, position, 0.0, place, work);
+    return sample_look(params, ray, position, 1.0, place, work);
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -345,7 +323,15 @@ void main()
     end = min(end, max(surface.a, begin));
 #endif
 
+    const ivec3 texel = ivec3(params.target + in_part, 0);
     vec4 sum = vec4(0.0);
+    bool begins_inside = false;   // of the iso-surface
+    if (params.first_step > 0u) {
+        sum = imageLoad(color, texel);
+        begins_inside = (floatBitsToUint(sum.a) & INSIDE_BIT) != 0u;
+        sum.a = uintBitsToFloat(floatBitsToUint(sum.a) & ~INSIDE_BIT);
+        if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
+    }
     Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
     if (SLICE != 0u) {
         const float plane = 0.5 * length_to_far;
@@ -354,16 +340,20 @@ void main()
     }
 
     const float extent = max(end - begin, 0.0);
-    const uint steps = uint(extent / params.step);
+    const uint steps = uint(min(extent / params.step, MAX_STEPS));
+    const bool is_last = params.is_last_block != 0u;
+    const uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
+    const float block_begin = begin + float(first_step) * params.step;
+    const float block_end = is_last ? end : begin + float(end_step) * params.step;
 
 #ifdef SHELLED
-    Shell shell = begin_shell(params, ray, begin, end);
+    Shell shell = begin_shell(params, ray, block_begin, block_end, begins_inside);
 #endif
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // separate loop, and lanes meet again at the costly sample.
-    uint i = 0u;
-    while (i < steps && sum.a < params.opacity_limit) {
+    uint i = first_step;
+    while (i < end_step && sum.a < params.opacity_limit) {
         vec3 position;
         Place place;
         do {
@@ -374,29 +364,32 @@ void main()
                 i += steps_to_leave(params, ray, position, place);
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
-        } while (place.distance > 0u && i < steps);
+        } while (place.distance > 0u && i < end_step);
 #ifdef SHELLED
-        if (i < steps) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
+        if (i < end_step) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
 #endif
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < steps)
-            accumulate(sum, sample_look(params, ray, position, params.step, place, work));
-        ++i;
+        if (place.distance == 0u && i < end_step) {
+            accumulate(sum, sample_look(params, ray, position, 1.0, place, work));
+            ++i;
+        }
     }
+    // Nobody but the device ends the loop before its end; and the last block may end before the ray.
+    const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit;
+    count(COUNTER_CUT_SHORT, uint(is_cut_short));
 
-    // The rest of the ray is a shorter and therefore more transparent step.
-    const float rest = extent - float(steps) * params.step;
+    if (is_last) {
+        // The rest of the ray is a shorter and therefore more transparent step.
+        const float rest = extent - float(steps) * params.step;
 #ifdef SHELLED
-    add_shells(params, ray, end - 0.5 * rest, shell, sum);
+        add_shells(params, ray, end - 0.5 * rest, shell, sum);
 #endif
-    if (rest > 0.0 && sum.a < params.opacity_limit) {
-        const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
-        const Place place = place_at(params, position);
-        note(place, work);
-        if (place.distance == 0u) {
-            vec4 look = sample_look(params, ray, position, rest, place, work);
-            look.a = opacity_of_part(look.a, rest / params.step);
-            accumulate(sum, look);
+        if (rest > 0.0 && sum.a < params.opacity_limit) {
+            const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
+            const Place place = place_at(params, position);
+            note(place, work);
+            if (place.distance == 0u)
+                accumulate(sum, sample_look(params, ray, position, rest / params.step, place, work));
         }
     }
 
@@ -404,7 +397,25 @@ void main()
     add_shells(params, ray, NO_SHELL, shell, sum);
 #endif
 
+    if (COUNT_WORK != 0u && extent > 0.0) {
+        const uint crossed = bricks_between(position_at(params, ray, block_begin), position_at(params, ray, block_end));
+        count(COUNTER_RAYS, uint(params.first_step == 0u));
+        count(COUNTER_SAMPLES, work.samples);
+        count(COUNTER_SHADED, work.shaded);
+        count(COUNTER_LEAPS, work.leaps);
+        count(COUNTER_BRICKS_VISITED, work.bricks);
+        count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
+        count(COUNTER_TERMINATED, uint(is_last && sum.a >= params.opacity_limit));
+    }
+
     const bool is_stopped = sum.a >= params.opacity_limit;
+    if (!is_last && (PICK == 0u || !is_stopped)) {
+#ifdef SHELLED
+        if (shell.is_inside) sum.a = uintBitsToFloat(floatBitsToUint(sum.a) | INSIDE_BIT);
+#endif
+        imageStore(color, texel, sum);
+        return;
+    }
 #ifdef SURFACED
     if (!is_stopped && surface.a < NO_SURFACE) accumulate(sum, vec4(surface.rgb, 1.0));
 #endif
@@ -414,22 +425,9 @@ void main()
 #ifdef SURFACED
         if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may be outside the volume
 #endif
-        imageStore(color, ivec3(params.target + in_part, 0),
-                   sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
+        imageStore(color, texel, sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
         return;
     }
     const float through = (1.0 - sum.a) * params.background.a;
-    imageStore(color, ivec3(params.target + in_part, 0),
-               vec4(sum.rgb + through * params.background.rgb, sum.a + through));
-
-    if (COUNT_WORK != 0u && extent > 0.0) {
-        const uint crossed = bricks_between(position_at(params, ray, begin), position_at(params, ray, end));
-        count(COUNTER_RAYS, 1u);
-        count(COUNTER_SAMPLES, work.samples);
-        count(COUNTER_SHADED, work.shaded);
-        count(COUNTER_LEAPS, work.leaps);
-        count(COUNTER_BRICKS_VISITED, work.bricks);
-        count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
-        count(COUNTER_TERMINATED, uint(sum.a >= params.opacity_limit));
-    }
+    imageStore(color, texel, vec4(sum.rgb + through * params.background.rgb, sum.a + through));
 }

@@ -5,9 +5,20 @@
 
 SHARED_BEGIN
 
-/// The transfer function's table is an image of TABLE_WIDTH x TABLE_HEIGHT entries, row by row.
+/// The transfer function's table is an image in rows of TABLE_WIDTH texels: first its entries (preintegrated:
+/// TABLE_WIDTH x TABLE_WIDTH, front density along x), filled up to whole rows. From `table_depths` on, optical depths
+/// of a full step, OPAQUE_DEPTH where it is opaque: opacity alone would round to 1, and nothing could be said of a part
+/// of such a step. Four entries' depths a texel, one after another; preintegrated: a texel each, of the entry, its
+/// neighbours along x and y, and the one across.
 SHARED_CONST uint TABLE_WIDTH = 256u;
-SHARED_CONST uint TABLE_HEIGHT = 16u;
+SHARED_CONST float OPAQUE_DEPTH = 1e30f;
+
+/// From `opaque_map` on, where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels over the table's
+/// range, whose x is the first opaque interval that ends at or above the texel, and y the last one that begins at or
+/// below the next texel. Then the intervals: colour and density at their beginnings and ends, two texels each. The
+/// first and the last interval are out of reach.
+SHARED_CONST uint OPAQUE_ENTRIES = 65536u;
+SHARED_CONST float OUT_OF_REACH = 1e30f;
 
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
@@ -42,6 +53,12 @@ struct RaycastParams {
     float table_upper;    ///< codes; nothing is drawn above
     float table_scale;    ///< table coordinate = (code - table_lower) * table_scale
     uint table_entries;
+    uint table_depths;   ///< texel of the table
+    uint opaque_map;     ///< texel of the table; 0: none
+    float opaque_scale;  ///< texel of the map = (code - table_lower) * opaque_scale
+    uint first_step;     ///< the block: steps of every ray that this dispatch takes
+    uint end_step;
+    uint is_last_block;
     vec4 background;  ///< linear light, straight alpha
     vec3 light;       ///< unit vector towards the light, volume space
     float ambient;

@@ -3,6 +3,10 @@
 //   LISTED   there is a list of surfaces, besides the probe
 // variants: LISTED
 //
+// Nodes are visited in blocks, one dispatch each, because some devices end a thread's loops after 65535 turns, without
+// a word. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and whether
+// the ray begins inside.
+//
 // Surfaces are solid: a ray that starts inside one (the near plane cuts it, or the eye is in it) hits it at its start,
 // facing the eye. The volume's cutting planes do not cut surfaces.
 #version 460
@@ -19,12 +23,13 @@ layout(constant_id = 3) const uint PROBE = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
-layout(binding = 2, rgba32f) uniform writeonly image3D surfaces;
+layout(binding = 2, rgba32f) uniform image3D surfaces;
 #ifdef LISTED
 layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
 layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
 #endif
 
+#include "library/counters.glsl"
 #include "library/rays.glsl"
 #include "library/round_cone.glsl"
 #include "library/shade.glsl"
@@ -36,6 +41,12 @@ struct Hit {
     uint index;     // in the list; PROBE_INDEX
 };
 const uint PROBE_INDEX = 0xffffffffu;
+const uint INDEX_PART = 4096u;   // a float holds each part exactly
+
+vec4 packed_hit(const Hit hit)
+{
+    return vec4(hit.at, float(hit.index / INDEX_PART), float(hit.index % INDEX_PART), float(hit.is_inside));
+}
 
 // The surface whose range begins first wins; at equal lengths the lower number, so that the search order does not
 // matter.
@@ -67,8 +78,8 @@ void search(const SurfaceParams scene, const Line line, float begin, inout Hit h
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
     const vec3 inverse = 1.0 / safe;
     const vec3 origin = scene.origin + line.origin;
-    uint node = 0u;
-    while (node < scene.node_count) {
+    uint node = scene.first_node;
+    while (node < scene.end_node) {
         const SurfaceNode box = surface_nodes.nodes[node];
         const vec3 a = (box.lower - scene.slack - origin) * inverse;
         const vec3 b = (box.upper + scene.slack - origin) * inverse;
@@ -84,6 +95,14 @@ void search(const SurfaceParams scene, const Line line, float begin, inout Hit h
         }
         node = is_met ? node + 1u : box.skip;
     }
+    count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
+}
+
+// What earlier blocks have found.
+Hit unpacked_hit(const vec4 packed)
+{
+    const uint index = uint(packed.y) * INDEX_PART + uint(packed.z);
+    return Hit(packed.x, packed.w != 0.0, index == PROBE_INDEX ? PROBE_INDEX : surface_list.list[index].number, index);
 }
 #endif
 
@@ -105,11 +124,16 @@ void main()
     const float end = (scene.end - scene.middle) * length_to_far;
 
     Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // at the far plane itself nothing is nearer
-    if (PROBE != 0u)
+    if (PROBE != 0u && scene.first_node == 0u)
         consider(ball_range(scene.probe_center - line.origin, line.direction, scene.probe_radius), begin, PROBE_INDEX,
                  PROBE_INDEX, hit);
 #ifdef LISTED
+    if (scene.first_node > 0u) hit = unpacked_hit(imageLoad(surfaces, ivec3(in_part, 0)));
     search(scene, line, begin, hit);
+    if (scene.is_last_block == 0u) {
+        imageStore(surfaces, ivec3(in_part, 0), packed_hit(hit));
+        return;
+    }
 #endif
     if (!(hit.at < end)) {
         imageStore(surfaces, ivec3(in_part, 0), vec4(0.0, 0.0, 0.0, NO_SURFACE));

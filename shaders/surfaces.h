@@ -44,6 +44,9 @@ struct SurfaceParams {
     float end;     ///< end of the clip range
     float slack;   ///< margin of boxes on each side, larger than the rounding error
     uint node_count;
+    uint first_node;  ///< the block: nodes that this dispatch looks at
+    uint end_node;
+    uint is_last_block;
     vec3 probe_center;  ///< relative to the origin; the probe is one more ball
     float probe_radius;
     vec3 probe_color;  ///< linear light

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/look/preintegration.h"
@@ -9,6 +11,119 @@
 namespace shvr {
 
 namespace {
+
+constexpr double LAST_CODE = 65535.0;
+/// Largest opacity at the end of a slope of which few entries are enough.
+constexpr double MAX_SLOPED = 0.999;
+
+uint32_t whole_rows(uint32_t texels)
+{
+    return (texels + gpu::TABLE_WIDTH - 1) / gpu::TABLE_WIDTH * gpu::TABLE_WIDTH;
+}
+
+void fill_row(std::vector<glm::vec4>& texels)
+{
+    texels.resize(whole_rows(uint32_t(texels.size())), glm::vec4(0.0f));
+}
+
+/// Four entries a texel.
+void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths)
+{
+    for (size_t entry = 0; entry < depths.size(); ++entry) {
+        if (entry % 4 == 0) texels.emplace_back(0.0f);
+        texels.back()[int(entry % 4)] = depths[entry];
+    }
+}
+
+/// A texel an entry, with those of its neighbours.
+void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const float> depths)
+{
+    const uint32_t side = STEP_TABLE_SIDE;
+    for (uint32_t back = 0; back < side; ++back)
+        for (uint32_t front = 0; front < side; ++front) {
+            const size_t next_front = std::min(front + 1, side - 1), next_back = std::min(back + 1, side - 1);
+            texels.emplace_back(depths[size_t(back) * side + front], depths[size_t(back) * side + next_front],
+                                depths[next_back * side + front], depths[next_back * side + next_front]);
+        }
+}
+
+/// The fewest parts that divide each of `parts` equally, and leave as many entries as there are at least.
+uint32_t parts_of_at_least(uint32_t parts)
+{
+    return parts * ((MIN_TABLE_ENTRIES - 2) / parts + 1);
+}
+
+/// Whether lines between the entries of a fine table are the function, as far as control points are at entries.
+bool has_smooth_lines(const TransferFunction& function)
+{
+    const std::span<const ControlPoint> points = function.points();
+    for (size_t i = 0; i + 1 < points.size(); ++i) {
+        const ControlPoint &p = points[i], &q = points[i + 1];
+        if (p == q) continue;
+        if (p.intensity == q.intensity) return false;
+        // Where opacity rises up to 1, that of a step does so too steeply.
+        if (std::max(p.opacity, q.opacity) >= MAX_SLOPED && p.opacity != q.opacity) return false;
+    }
+    return true;
+}
+
+/// A number of entries, small enough for fast memory, with which every control point is at one.
+std::optional<uint32_t> entries_at_points(const TransferFunction& function, const IntensityWindow& window,
+                                          const TableRange& range)
+{
+    if (!has_smooth_lines(function) || !(range.lower < range.upper)) return std::nullopt;
+    int64_t between = 0;  // codes: the largest number that all distances between points are multiples of
+    bool are_whole = true;
+    bool are_inside = false;
+    for (const ControlPoint& point : function.points()) {
+        const double from_lower = window.code_of(point.intensity) - range.lower;
+        if (from_lower <= 0.0 || from_lower >= range.upper - range.lower) continue;
+        are_inside = true;
+        are_whole = are_whole && std::abs(from_lower - std::round(from_lower)) < 1e-6;
+        between = std::gcd(between, int64_t(std::round(from_lower)));
+    }
+    if (!are_inside) return MIN_TABLE_ENTRIES;
+    const double width = range.upper - range.lower;
+    if (!are_whole || width < 1.0 || std::abs(width - std::round(width)) > 1e-6) return std::nullopt;
+    const int64_t parts = int64_t(std::round(width)) / std::gcd(between, int64_t(std::round(width)));
+    const uint32_t entries = parts_of_at_least(uint32_t(parts)) + 1;
+    if (entries > 2 * MIN_TABLE_ENTRIES) return std::nullopt;
+    return entries;
+}
+
+float opaque_scale(const TableRange& range)
+{
+    return float((gpu::OPAQUE_ENTRIES - 1) / std::max(range.upper - range.lower, 1e-6));
+}
+
+/// The map and its intervals, or nothing where there are none.
+void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInterval>& intervals,
+                   const TableRange& range, const IntensityWindow& window)
+{
+    if (intervals.empty()) return;
+    struct Codes {
+        double lower, upper;
+    };
+    std::vector<Codes> codes{{-gpu::OUT_OF_REACH, -gpu::OUT_OF_REACH}};
+    for (const OpaqueInterval& interval : intervals)
+        codes.push_back({window.code_of(interval.lower), window.code_of(interval.upper)});
+    codes.push_back({gpu::OUT_OF_REACH, gpu::OUT_OF_REACH});
+    // A margin of half a texel on both sides: which texel a density falls in is decided in float.
+    const double width = (range.upper - range.lower) / (gpu::OPAQUE_ENTRIES - 1);
+    size_t first = 0, last = 0;
+    for (uint32_t k = 0; k < gpu::OPAQUE_ENTRIES; ++k) {
+        const double lower = range.lower + width * (k - 0.5), upper = range.lower + width * (k + 1.5);
+        while (codes[first].upper < lower) ++first;
+        while (last + 1 < codes.size() && codes[last + 1].lower <= upper) ++last;
+        texels.emplace_back(float(first), float(last), 0.0f, 0.0f);
+    }
+    for (size_t i = 0; i < codes.size(); ++i) {
+        const bool is_real = i > 0 && i + 1 < codes.size();
+        const OpaqueInterval interval = is_real ? intervals[i - 1] : OpaqueInterval{};
+        texels.emplace_back(interval.lower_color, codes[i].lower);
+        texels.emplace_back(interval.upper_color, codes[i].upper);
+    }
+}
 
 std::array<uint32_t, 8> visible_groups(const Groups& groups)
 {
@@ -22,42 +137,75 @@ std::array<uint32_t, 8> visible_groups(const Groups& groups)
 
 }  // namespace
 
-TableMap table_map(const TransferFunction& function, const IntensityWindow& window, uint32_t entries)
+TableRange table_range(const TransferFunction& function, const IntensityWindow& window, bool is_preintegrated)
 {
-    const double lower = window.code_of(function.lower()), upper = window.code_of(function.upper());
-    return {float(lower), float(upper), float((entries - 1) / std::max(upper - lower, 1e-6))};
+    const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
+    TableRange range{
+        .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
+    // Where nothing is cut off, the function's own numbers: codes are rounded.
+    range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
+    range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
+    const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);
+    range.samples.entries = is_preintegrated
+                                ? STEP_TABLE_SIDE
+                                : entries_at_points(function, window, range).value_or(parts_of_at_least(codes) + 1);
+    return range;
 }
 
-bool LookTable::is_of(const TransferFunction& function, double step, bool is_preintegrated) const
+bool LookTable::is_of(const TransferFunction& function, double step, bool is_preintegrated, const Samples& of) const
 {
-    return step_voxels == step && preintegrated == is_preintegrated && std::ranges::equal(points, function.points());
+    return step_voxels == step && preintegrated == is_preintegrated && samples == of &&
+           std::ranges::equal(points, function.points());
 }
 
-LookTable make_look_table(const TransferFunction& function, double step_voxels, bool is_preintegrated)
+LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
+                          bool is_preintegrated)
 {
     const std::span<const ControlPoint> points = function.points();
+    const TableRange range = table_range(function, window, is_preintegrated);
     LookTable table{.points = {points.begin(), points.end()},
                     .step_voxels = step_voxels,
                     .preintegrated = is_preintegrated,
+                    .samples = range.samples,
                     .texels = {},
                     .visible_intervals = {}};
-    if (table.preintegrated) {
-        table.texels = preintegrated_table(function, step_voxels, STEP_TABLE_SIDE);
-        table.visible_intervals = visible_intervals_of_steps(table.texels, STEP_TABLE_SIDE);
+    if (is_preintegrated) {
+        BakedTable baked = preintegrated_table(function, step_voxels, range.samples);
+        const std::vector<OpaqueInterval> opaque = opaque_intervals(function);
+        table.visible_intervals = visible_intervals_of_steps(baked.looks, range.samples, opaque);
+        table.texels = std::move(baked.looks);
+        append_depths_of_steps(table.texels, baked.depths);
+        append_opaque(table.texels, opaque, range, window);
     } else {
-        table.texels = bake_table(function, step_voxels, TABLE_ENTRIES);
-        table.visible_intervals = visible_intervals(table.texels);
+        BakedTable baked = bake_table(function, step_voxels, range.samples);
+        table.visible_intervals = visible_intervals(baked.looks);
+        table.texels = std::move(baked.looks);
+        fill_row(table.texels);
+        append_depths(table.texels, baked.depths);
     }
+    fill_row(table.texels);
     return table;
+}
+
+void set_look_table(gpu::RaycastParams& params, const TransferFunction& function, const IntensityWindow& window,
+                    bool is_preintegrated)
+{
+    const TableRange range = table_range(function, window, is_preintegrated);
+    set_table(params, range);
+    const uint32_t side = STEP_TABLE_SIDE, entries = range.samples.entries;
+    params.table_depths = is_preintegrated ? side * side : whole_rows(entries);
+    params.opaque_map = is_preintegrated && !opaque_intervals(function).empty() ? 2 * side * side : 0;
+    params.opaque_scale = opaque_scale(range);
 }
 
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels)
 {
-    std::vector<glm::vec4> looks(256);
+    std::vector<glm::vec4> looks(512);
     for (uint32_t group = 1; group < 256; ++group) {
         const ColorGroup look = group_of(groups, uint8_t(group));
-        const double opacity = look.visible ? opacity_of_step(look.opacity, step_voxels) : 0.0;
-        looks[group] = glm::vec4(glm::vec3(look.color), float(opacity));
+        const double depth = look.visible ? depth_of_step(look.opacity, step_voxels) : 0.0;
+        looks[group] = glm::vec4(glm::vec3(look.color), float(-std::expm1(-depth)));
+        looks[256 + group].x = float(std::min(depth, double(gpu::OPAQUE_DEPTH)));
     }
     return looks;
 }
@@ -77,27 +225,30 @@ Resource DeviceTable::upload(FrameGraph& graph, std::span<const glm::vec4> texel
                                {{0, glm::uvec3(0), desc.texels}}, "upload " + name_);
 }
 
-const LookTable& LookTables::table_of(const Look& look, double step_voxels)
+const LookTable& LookTables::table_of(const Look& look, const IntensityWindow& window, double step_voxels)
 {
-    if (table_ && table_->is_of(look.transfer_function, step_voxels, look.render.preintegration)) return *table_;
-    table_ = make_look_table(look.transfer_function, step_voxels, look.render.preintegration);
+    const bool is_preintegrated = look.render.preintegration;
+    const Samples samples = table_range(look.transfer_function, window, is_preintegrated).samples;
+    if (table_ && table_->is_of(look.transfer_function, step_voxels, is_preintegrated, samples)) return *table_;
+    table_ = make_look_table(look.transfer_function, window, step_voxels, is_preintegrated);
     function_on_device_.invalidate();
     return *table_;
 }
 
 Visibility LookTables::visibility_of(const Look& look, const IntensityWindow& window)
 {
-    const LookTable& table = table_of(look, table_ ? table_->step_voxels : look.render.step_voxels);
+    const LookTable& table = table_of(look, window, table_ ? table_->step_voxels : look.render.step_voxels);
     Visibility visibility{.params = {.skipping = look.render.skip_empty_space},
                           .visible_intervals = table.visible_intervals,
                           .visible_groups = visible_groups(look.groups)};
-    set_table(visibility.params, look.transfer_function, window, table.entries());
+    set_table(visibility.params, table_range(look.transfer_function, window, table.preintegrated));
     return visibility;
 }
 
-Resource LookTables::upload_function(FrameGraph& graph, const Look& look, double step_voxels)
+Resource LookTables::upload_function(FrameGraph& graph, const Look& look, const IntensityWindow& window,
+                                     double step_voxels)
 {
-    const LookTable& table = table_of(look, step_voxels);
+    const LookTable& table = table_of(look, window, step_voxels);
     return function_on_device_.upload(graph, table.texels);
 }
 

@@ -2,6 +2,7 @@
 // A transfer function as the device reads it: a table for one step length, plain or pre-integrated, and the intervals
 // of it that are visible. Baked in double on the CPU, and cached until something changes.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,42 +16,51 @@
 
 namespace shvr {
 
-/// Number of values in the plain table, and along each side of the pre-integrated one.
-inline constexpr uint32_t TABLE_ENTRIES = gpu::TABLE_WIDTH * gpu::TABLE_HEIGHT;
+/// Fewest entries of the plain table, and those along each side of the pre-integrated one.
+inline constexpr uint32_t MIN_TABLE_ENTRIES = 4096;
 inline constexpr uint32_t STEP_TABLE_SIDE = gpu::TABLE_WIDTH;
 
-/// Table coordinate of a code = (code - lower) * scale.
-struct TableMap {
-    float lower, upper, scale;
+/// What a table covers: all codes that the function shows anything of.
+struct TableRange {
+    double lower = 0.0, upper = 0.0;  ///< codes
+    Samples samples;                  ///< the same in intensities
 };
-TableMap table_map(const TransferFunction& function, const IntensityWindow& window, uint32_t entries);
+/// The plain table has few entries where all control points are at entries, and the function is continuous and nowhere
+/// rises up to 1, so that lines between entries are the function. Otherwise at most one code lies between two entries,
+/// so a step of the function is as sharp as the codes are; entries are whole codes wherever the function begins and
+/// ends at whole ones.
+TableRange table_range(const TransferFunction& function, const IntensityWindow& window, bool is_preintegrated);
 
 struct LookTable {
     std::vector<ControlPoint> points;
     double step_voxels = 0.0;  ///< reference lengths
     bool preintegrated = false;
-    std::vector<glm::vec4> texels;  ///< rows of gpu::TABLE_WIDTH
+    Samples samples;
+    std::vector<glm::vec4> texels;  ///< as raycast.h has them
     std::vector<uint32_t> visible_intervals;
 
-    /// Values along each axis of the table.
-    uint32_t entries() const { return preintegrated ? STEP_TABLE_SIDE : TABLE_ENTRIES; }
-    bool is_of(const TransferFunction& function, double step, bool is_preintegrated) const;
+    bool is_of(const TransferFunction& function, double step, bool is_preintegrated, const Samples& of) const;
 };
 
-LookTable make_look_table(const TransferFunction& function, double step_voxels, bool is_preintegrated);
-/// Linear RGB and opacity of a step for all 256 colour groups, by number; 0 where hidden.
+LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
+                          bool is_preintegrated);
+/// For all 256 colour groups, by number: linear RGB and opacity of a step, 0 where hidden; then as many texels with the
+/// optical depth.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
 /// Sets the parameters shared by all kernels that look up a transfer function table.
 template <class Params>
-void set_table(Params& params, const TransferFunction& function, const IntensityWindow& window, uint32_t entries)
+void set_table(Params& params, const TableRange& range)
 {
-    const TableMap map = table_map(function, window, entries);
-    params.table_lower = map.lower;
-    params.table_upper = map.upper;
-    params.table_scale = map.scale;
+    const uint32_t entries = range.samples.entries;
+    params.table_lower = float(range.lower);
+    params.table_upper = float(range.upper);
+    params.table_scale = float((entries - 1) / std::max(range.upper - range.lower, 1e-6));
     params.table_entries = entries;
 }
+/// Sets all parameters of the ray caster's table.
+void set_look_table(gpu::RaycastParams& params, const TransferFunction& function, const IntensityWindow& window,
+                    bool is_preintegrated);
 
 /// A table on the device: an rgba32f image in rows of gpu::TABLE_WIDTH. One thread, the renderer's.
 class DeviceTable {
@@ -76,10 +86,10 @@ public:
     {}
 
     /// The table for steps of that many reference lengths.
-    const LookTable& table_of(const Look& look, double step_voxels);
+    const LookTable& table_of(const Look& look, const IntensityWindow& window, double step_voxels);
     /// What is visible, from whichever table there is: the step length does not matter.
     Visibility visibility_of(const Look& look, const IntensityWindow& window);
-    Resource upload_function(FrameGraph& graph, const Look& look, double step_voxels);
+    Resource upload_function(FrameGraph& graph, const Look& look, const IntensityWindow& window, double step_voxels);
     Resource upload_groups(FrameGraph& graph, const Look& look, double step_voxels);
 
 private:

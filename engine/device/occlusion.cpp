@@ -326,8 +326,9 @@ OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std:
                     .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
                     .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
                     .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
-    set_table(input.params, look_->function, volume_->window(), TABLE_ENTRIES);
-    for (const glm::vec4& entry : bake_table(look_->function, stretch, TABLE_ENTRIES))
+    const TableRange range = table_range(look_->function, volume_->window(), false);
+    set_table(input.params, range);
+    for (const glm::vec4& entry : bake_table(look_->function, stretch, range.samples).looks)
         input.opacities.push_back(entry.a);
     input.mask = mask;
     for (const double opacity : look_->groups)

@@ -117,6 +117,8 @@ public:
 
     /// What pictures lack (bricks that cannot be read, features without room) since the last call, one sentence each.
     std::vector<std::string> take_messages();
+    /// Adds one.
+    void note_message(std::string message) { messages_.push_back(std::move(message)); }
 
 private:
     void load(uint64_t reserved_bytes);

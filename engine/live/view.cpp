@@ -344,6 +344,14 @@ void View::wait()
     }
 }
 
+/// Tells once for each view.
+void View::note_cut_short(const Running& done, uint64_t rays)
+{
+    if (rays == 0 || !done.sight || done.sight == cut_short_sight_) return;
+    cut_short_sight_ = done.sight;
+    scene().note_message(cut_short_sentence(rays, done.sight->look));
+}
+
 void View::reap()
 {
     while (!running_.empty() && running_.front().submission.done()) {
@@ -353,6 +361,7 @@ void View::reap()
         const gpu::FrameResult result = done.submission.finish();
         account(result, done.pixels);
         scene().volume().take_feedback(done.feedback, result);
+        note_cut_short(done, rays_cut_short(result.passes));
         switch (done.purpose) {
             case Purpose::preparation: break;
             case Purpose::base: --base_.running; break;

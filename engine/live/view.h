@@ -162,6 +162,7 @@ private:
     gpu::EncodeParams encoding() const;
     void submit(FrameGraph graph, Running running);
     void reap();
+    void note_cut_short(const Running& done, uint64_t rays);
     void account(const gpu::FrameResult& result, uint64_t pixels);
     void note(const std::string& pass, double ms);
     void learn(double ms, uint64_t pixels);
@@ -180,6 +181,7 @@ private:
     Options options_;
     SightRef sight_;                  ///< the wanted state
     SightRef shown_sight_;            ///< the state that base, tiles and patch show
+    SightRef cut_short_sight_;        ///< the last one of which rays stopped before their end
     std::optional<ProbeLook> probe_;  ///< the wanted probe
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< paint under the probe has changed

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "shaders/raycast.h"
 
 namespace shvr {
 
 namespace {
 
-/// Extinction where the opacity of a reference length is 1 over a range of densities: the smallest part of the shortest
-/// step is opaque, and differences of its integrals are still exact to 1e-8.
+/// Extinction where the opacity of a reference length rounds to 1: the smallest part of the shortest step is opaque,
+/// and differences of its integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MAX_PARTS = 16;
 
@@ -42,12 +43,11 @@ struct Integrals {
     std::vector<glm::dvec3> light;
 };
 
-Integrals integrals_of(const TransferFunction& function, uint32_t side)
+Integrals integrals_of(const TransferFunction& function, const Samples& samples)
 {
-    const double lower = function.lower(), width = function.upper() - lower;
+    const uint32_t side = samples.entries;
     Integrals sums{.density = std::vector<double>(side), .extinction = {0.0}, .light = {glm::dvec3(0.0)}};
-    for (uint32_t k = 0; k < side; ++k)
-        sums.density[k] = k + 1 == side ? function.upper() : lower + width * k / (side - 1);
+    for (uint32_t k = 0; k < side; ++k) sums.density[k] = samples.at(k);
 
     double extinction = 0.0;
     glm::dvec3 light(0.0);
@@ -55,14 +55,16 @@ Integrals integrals_of(const TransferFunction& function, uint32_t side)
     uint32_t next = 1;
     for (size_t piece = 0; piece + 1 < points.size(); ++piece) {
         const ControlPoint &p = points[piece], &q = points[piece + 1];
+        const bool is_opaque = p.opacity >= 1.0 && q.opacity >= 1.0;
         const auto share = [&](double x) { return (x - p.intensity) / (q.intensity - p.intensity); };
-        for (double x = p.intensity; x < q.intensity;) {
-            const double end = std::min(q.intensity, sums.density[next]);
+        const double piece_end = std::min(q.intensity, samples.upper);
+        for (double x = std::max(p.intensity, samples.lower); x < piece_end;) {
+            const double end = std::min(piece_end, sums.density[next]);
             const double from = share(x), to = share(end);
             const double o0 = between(p.opacity, q.opacity, from), o1 = between(p.opacity, q.opacity, to);
             const double s0 = extinction_of(o0), middle = extinction_of(0.5 * (o0 + o1)), s1 = extinction_of(o1);
             const double sum = s0 + 4.0 * middle + s1;
-            const double own = (end - x) * mean_extinction(o0, o1);
+            const double own = is_opaque ? 0.0 : (end - x) * mean_extinction(o0, o1);
             // Colours change little in such a short part: weighted by Simpson's rule.
             const double back = sum > 0.0 ? (2.0 * middle + s1) / sum : 0.5;
             extinction += own;
@@ -78,6 +80,12 @@ Integrals integrals_of(const TransferFunction& function, uint32_t side)
     sums.extinction.resize(side, extinction);  // entries missing due to rounding, or to a function of zero width
     sums.light.resize(side, light);
     return sums;
+}
+
+double depth_between(const Integrals& sums, double step, uint32_t front, uint32_t back)
+{
+    const double extinction = std::abs(sums.extinction[back] - sums.extinction[front]);
+    return step / std::abs(sums.density[back] - sums.density[front]) * extinction;
 }
 
 glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint32_t back)
@@ -100,39 +108,50 @@ glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint
         through *= 1.0 - opacity;
     }
     // The opacity of a part is not computed by subtraction from 1: small ones would cancel.
-    const double extinction = std::abs(sums.extinction[back] - sums.extinction[front]);
-    return glm::dvec4(light, -std::expm1(-scale * extinction));
+    return glm::dvec4(light, -std::expm1(-depth_between(sums, step, front, back)));
 }
 
 }  // namespace
 
-std::vector<glm::vec4> preintegrated_table(const TransferFunction& function, double step_voxels, uint32_t side)
+BakedTable preintegrated_table(const TransferFunction& function, double step_voxels, const Samples& samples)
 {
+    const uint32_t side = samples.entries;
     SHVR_CHECK(side >= 2 && step_voxels > 0.0, side, " ", step_voxels);
-    std::vector<glm::vec4> table(size_t(side) * side, glm::vec4(0.0f));
+    const size_t entries = size_t(side) * side;
+    BakedTable table{std::vector<glm::vec4>(entries, glm::vec4(0.0f)), std::vector<float>(entries, 0.0f)};
     if (function.draws_nothing()) return table;
-    const Integrals sums = integrals_of(function, side);
+    const Integrals sums = integrals_of(function, samples);
     for (uint32_t back = 0; back < side; ++back)
         for (uint32_t front = 0; front < side; ++front) {
             glm::dvec4 look;
+            double depth;
             if (front == back) {
                 const glm::dvec4 here = function.at(sums.density[front]);
                 const double opacity = opacity_of_step(here.a, step_voxels);
                 look = glm::dvec4(opacity * glm::dvec3(here), opacity);
+                depth = depth_of_step(here.a, step_voxels);
             } else {
                 look = step_between(sums, step_voxels, front, back);
+                depth = depth_between(sums, step_voxels, front, back);
             }
-            table[size_t(back) * side + front] = glm::vec4(look);
+            const size_t entry = size_t(back) * side + front;
+            table.looks[entry] = glm::vec4(look);
+            table.depths[entry] = float(std::min(depth, double(gpu::OPAQUE_DEPTH)));
         }
     return table;
 }
 
-std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, uint32_t side)
+std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, const Samples& samples,
+                                                 std::span<const OpaqueInterval> opaque)
 {
+    const uint32_t side = samples.entries;
+    size_t next = 0;  // the first opaque interval that does not end before
     const auto opacity = [&](uint32_t front, uint32_t back) { return table[size_t(back) * side + front].a; };
     std::vector<uint32_t> visible_before(side, 0);
     for (uint32_t k = 1; k < side; ++k) {
-        const bool is_visible = opacity(k - 1, k - 1) > 0.0f || opacity(k - 1, k) > 0.0f || opacity(k, k) > 0.0f;
+        while (next < opaque.size() && opaque[next].upper < samples.at(k - 1)) ++next;
+        const bool is_visible = opacity(k - 1, k - 1) > 0.0f || opacity(k - 1, k) > 0.0f || opacity(k, k) > 0.0f ||
+                                (next < opaque.size() && opaque[next].lower <= samples.at(k));
         visible_before[k] = visible_before[k - 1] + uint32_t(is_visible);
     }
     return visible_before;

@@ -14,12 +14,14 @@
 
 namespace shvr {
 
-/// Entry [back * side + front], each of `side` (2 or more) values from lower() to upper(): linear RGB times opacity,
-/// and opacity, of a step of `step_voxels` reference lengths. About 20 ms for a side of 256 on one core.
-std::vector<glm::vec4> preintegrated_table(const TransferFunction& function, double step_voxels, uint32_t side);
+/// Entry [back * entries + front], each at one of the samples: linear RGB times opacity, and opacity, of a step of
+/// `step_voxels` reference lengths, and its optical depth. Without densities at which rays end (opaque_intervals):
+/// steps that only come near them would be opaque too. About 20 ms for 256 samples on one core.
+BakedTable preintegrated_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 
 /// As `visible_intervals` of transfer_function.h, for such a table: whether a step from one end of an interval to the
-/// other is visible.
-std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, uint32_t side);
+/// other is visible, or meets an opaque density.
+std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, const Samples& samples,
+                                                 std::span<const OpaqueInterval> opaque);
 
 }  // namespace shvr

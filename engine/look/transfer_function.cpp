@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/base/error.h"
+#include "shaders/raycast.h"
 
 namespace shvr {
 namespace {
@@ -62,21 +63,54 @@ double opacity_of_step(double opacity, double step_voxels)
     return -std::expm1(step_voxels * std::log1p(-opacity));
 }
 
-std::vector<glm::vec4> bake_table(const TransferFunction& function, double step_voxels, uint32_t entries)
+double depth_of_step(double opacity, double step_voxels)
 {
-    SHVR_CHECK(entries >= 2, entries);
-    const double width = function.upper() - function.lower();
-    std::vector<glm::vec4> table(entries);
-    for (uint32_t entry = 0; entry < entries; ++entry) {
-        // Multiply before dividing, and set the last one explicitly: in a table with one entry per whole intensity,
-        // every entry is then exactly at its intensity.
-        const double intensity =
-            entry + 1 == entries ? function.upper() : function.lower() + width * entry / (entries - 1);
-        glm::dvec4 value = function.at(intensity);
-        value.a = opacity_of_step(value.a, step_voxels);
-        table[entry] = glm::vec4(value);
+    if (opacity <= 0.0 || step_voxels == 0.0) return 0.0;
+    return opacity >= 1.0 ? std::numeric_limits<double>::infinity() : -step_voxels * std::log1p(-opacity);
+}
+
+double Samples::at(uint32_t entry) const
+{
+    // Multiply before dividing, and set the last one explicitly: where entries are whole intensities, each is exactly
+    // at its own.
+    return entry + 1 == entries ? upper : lower + (upper - lower) * entry / (entries - 1);
+}
+
+Samples whole_range(const TransferFunction& function, uint32_t entries)
+{
+    return {function.lower(), function.upper(), entries};
+}
+
+BakedTable bake_table(const TransferFunction& function, double step_voxels, const Samples& samples)
+{
+    SHVR_CHECK(samples.entries >= 2, samples.entries);
+    BakedTable table{std::vector<glm::vec4>(samples.entries), std::vector<float>(samples.entries)};
+    for (uint32_t entry = 0; entry < samples.entries; ++entry) {
+        const glm::dvec4 value = function.at(samples.at(entry));
+        const double depth = depth_of_step(value.a, step_voxels);
+        table.looks[entry] = glm::vec4(glm::dvec4(glm::dvec3(value), -std::expm1(-depth)));
+        table.depths[entry] = float(std::min(depth, double(gpu::OPAQUE_DEPTH)));
     }
     return table;
+}
+
+std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function)
+{
+    std::vector<OpaqueInterval> found;
+    if (function.draws_nothing()) return found;
+    const auto is_touched = [&](double intensity) { return !found.empty() && found.back().upper == intensity; };
+    const std::span<const ControlPoint> points = function.points();
+    for (size_t i = 0; i < points.size(); ++i) {
+        const ControlPoint& point = points[i];
+        if (point.opacity < 1.0) continue;
+        const bool holds = i + 1 == points.size() || points[i + 1].intensity > point.intensity;
+        if (!holds) continue;
+        if (i + 1 < points.size() && points[i + 1].opacity >= 1.0)
+            found.push_back({point.intensity, points[i + 1].intensity, point.color, points[i + 1].color});
+        else if (!is_touched(point.intensity))
+            found.push_back({point.intensity, point.intensity, point.color, point.color});
+    }
+    return found;
 }
 
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table)

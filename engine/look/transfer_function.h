@@ -47,9 +47,35 @@ private:
 /// has opacity 0.
 double opacity_of_step(double opacity, double step_voxels);
 
-/// `entries` (2 or more) samples of the function from lower() to upper(), both included: linear RGB, and opacity of one
-/// step. Samples, not averages: a spike narrower than (upper - lower) / (entries - 1) may fall between two of them.
-std::vector<glm::vec4> bake_table(const TransferFunction& function, double step_voxels, uint32_t entries);
+/// Optical depth of such a step, sigma times length; infinite for opacity 1.
+double depth_of_step(double opacity, double step_voxels);
+
+/// Intensities at which a function is sampled: `entries` (2 or more) of them, evenly from `lower` to `upper`, both
+/// included.
+struct Samples {
+    double lower = 0.0, upper = 0.0;
+    uint32_t entries = 2;
+    bool operator==(const Samples&) const = default;
+    double at(uint32_t entry) const;
+};
+/// From function.lower() to function.upper().
+Samples whole_range(const TransferFunction& function, uint32_t entries);
+
+/// Samples of the function: linear RGB, and opacity of one step. Samples, not averages: a spike between two of them is
+/// lost.
+struct BakedTable {
+    std::vector<glm::vec4> looks;
+    std::vector<float> depths;  ///< optical depth of one step, gpu::OPAQUE_DEPTH at most
+};
+BakedTable bake_table(const TransferFunction& function, double step_voxels, const Samples& samples);
+
+/// An interval of intensities, or a single one, at which opacity is 1: rays that come by it end there.
+struct OpaqueInterval {
+    double lower = 0.0, upper = 0.0;
+    glm::dvec3 lower_color{0.0}, upper_color{0.0};  ///< linear light
+};
+/// All of them, by intensity.
+std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function);
 
 /// For each k the number of table intervals [j, j+1] with j < k in which the table's opacity is above 0; entries
 /// long. Interval j..k holds something visible exactly where result[k+1] - result[j] > 0. Integers, so nothing cancels.

@@ -1,5 +1,6 @@
 #include "engine/passes/raycast.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/passes/pixel_groups.h"
@@ -13,10 +14,39 @@ uint32_t shininess_squarings(float shininess)
     return gpu::NOT_A_POWER_OF_TWO;
 }
 
-Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
+namespace {
+
+/// Turns that the loops of one thread may take together. Some devices end loops after 65535, without a word.
+constexpr uint64_t MAX_TURNS = 32768;
+/// Threads that such a device runs in step: each may make all of them take a turn. Sixteen stay below 65535 as well.
+constexpr uint64_t LANES = 8;
+constexpr uint64_t MAX_BLOCKS = 4096;
+
+/// Steps of a ray that one dispatch may take.
+uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
+{
+    // A step is a turn, and finds its place in a loop for which the lanes wait for one another; in paged bricks that
+    // takes a turn for each level of the directory.
+    const uint64_t turns_to_place = 1 + (volume.pages ? volume.pages->depth : 0);
+    const uint64_t turns_to_find_paint = volume.pages && input.mask ? gpu::MASK_PROBES : 0;
+    double turns = double((LANES + 1) * turns_to_place + 1 + turns_to_find_paint);
+    // An iso-surface is searched cell by cell: at most three a reference length, and one where the ray enters.
+    if (is_shelled) turns += double(LANES * (turns_to_place + 1)) * (3.0 * double(input.params.step) + 1.0);
+    return std::max(uint64_t(double(MAX_TURNS) / turns), uint64_t{1});
+}
+
+/// Steps of the longest ray that there can be.
+uint64_t steps_of_ray(const gpu::RaycastParams& params)
+{
+    constexpr double ROUNDING = 1.0 + 1e-5, MOST = 4294967040.0;
+    const double longest = glm::length(glm::dvec3(params.box_upper - params.box_lower) * glm::dvec3(params.spacing));
+    return uint64_t(std::min(longest / double(params.step) * ROUNDING + 1.0, MOST));
+}
+
+Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
+                       Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    const bool is_shelled = input.shell != gpu::SHELL_NONE && !input.pick;
     Pass pass = graph.compute("raycast", {{"PAGED", volume.pages.has_value()},
                                           {"FILTERED", volume.filtered},
                                           {"MASKED", input.mask.has_value()},
@@ -49,12 +79,30 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     pass.constant("COUNT_WORK", input.count_work);
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("SLICE", input.slice);
-    pass.constant("PREINTEGRATED", input.preintegrated);
+    pass.constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pixel_groups(pass, pixels, input.group_width, input.tile);
-    return pass.write("color", target);
+    return input.params.first_step > 0 ? pass.modify("color", target) : pass.write("color", target);
+}
+
+}  // namespace
+
+Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
+{
+    const bool is_shelled = input.shell != gpu::SHELL_NONE && !input.pick;
+    const uint64_t steps = input.slice ? 1 : steps_of_ray(input.params);
+    const uint64_t steps_each = steps_of_block(volume, input, is_shelled);
+    const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
+    RaycastInput block = input;
+    for (uint64_t i = 0; i < blocks; ++i) {
+        block.params.first_step = uint32_t(i * steps_each);
+        block.params.end_step = uint32_t((i + 1) * steps_each);
+        block.params.is_last_block = i + 1 == blocks;
+        target = raycast_block(graph, volume, block, is_shelled, target);
+    }
+    return target;
 }
 
 }  // namespace shvr

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/passes/volume_binding.h"
+#include "shaders/counters.h"
 #include "shaders/occlusion/occlusion.h"
 #include "shaders/raycast.h"
 
@@ -22,9 +23,9 @@ uint32_t shininess_squarings(float shininess);
 
 struct RaycastInput {
     gpu::RaycastParams params;
-    Resource table;  ///< rgba32f image: linear RGB, opacity of a full step; preintegrated: RGB times opacity
+    Resource table;  ///< rgba32f image, as shaders/raycast.h has it
     std::optional<MaskBinding> mask;
-    Resource groups;  ///< with a mask: rgba32f image of 256 x 1, linear RGB, opacity of a full step
+    Resource groups;  ///< with a mask: rgba32f image of 256 x 2: linear RGB, opacity of a full step; its optical depth
     std::optional<RaycastOcclusion> occlusion;
     std::optional<Resource> surfaces;  ///< of the same pixels (engine/passes/surfaces.h)
     bool shaded = true;
@@ -32,13 +33,15 @@ struct RaycastInput {
     uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
     glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
-    bool preintegrated = false;        ///< `table` is for steps between two densities, TABLE_WIDTH a side
+    bool preintegrated = false;        ///< `table` is for steps between two densities
     bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays
     bool pick = false;                 ///< positions instead of colours, see the kernel
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied,
-/// over the background. Returns its new version, and updates `volume.pages->reached`.
+/// over the background. Returns its new version, and updates `volume.pages->reached`. Long rays take a pass for each
+/// block of their steps; of a ray that is longer than the largest number of blocks reaches, and of one that the device
+/// stops, COUNTER_CUT_SHORT tells.
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

@@ -1,5 +1,6 @@
 #include "engine/passes/surfaces.h"
 
+#include <algorithm>
 #include <span>
 
 #include "engine/passes/pixel_groups.h"
@@ -7,7 +8,13 @@
 
 namespace shvr {
 
-Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
+namespace {
+
+/// Nodes that one dispatch may look at: with their surfaces, half of the 65535 turns after which some devices end a
+/// thread's loops. A node is visited once at most, so lanes in step do not take each other's turns.
+constexpr uint32_t NODES_OF_BLOCK = 32768 / 6;
+
+Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource target)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     Pass pass = graph.compute("surfaces", {{"LISTED", input.listed.has_value()}});
@@ -22,7 +29,24 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pass.constant("PROBE", input.probe);
     pixel_groups(pass, pixels, input.group_width, input.tile);
-    return pass.write("surfaces", graph.create("surfaces", image_desc(Format::rgba32_float, glm::uvec3(pixels, 1))));
+    return input.scene.first_node > 0 ? pass.modify("surfaces", target) : pass.write("surfaces", target);
+}
+
+}  // namespace
+
+Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
+{
+    const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
+    const uint32_t nodes = input.listed ? input.scene.node_count : 0;
+    Resource target = graph.create("surfaces", image_desc(Format::rgba32_float, glm::uvec3(pixels, 1)));
+    SurfacesInput block = input;
+    for (uint32_t first = 0; first == 0 || first < nodes; first += NODES_OF_BLOCK) {
+        block.scene.first_node = first;
+        block.scene.end_node = std::min(first + NODES_OF_BLOCK, nodes);
+        block.scene.is_last_block = first + NODES_OF_BLOCK >= nodes;
+        target = surfaces_block(graph, block, target);
+    }
+    return target;
 }
 
 }  // namespace shvr

@@ -40,7 +40,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
         input.occlusion = RaycastOcclusion{scene.occlusion().bring_up_to_date(graph).values,
                                            {float(settings.strength), float(settings.curve)}};
     }
-    input.table = scene.tables().upload_function(graph, look, step_voxels);
+    input.table = scene.tables().upload_function(graph, look, scene.volume().window(), step_voxels);
     if (input.mask) input.groups = scene.tables().upload_groups(graph, look, step_voxels);
     if (!shot.is_slice) prepared.listed = scene.surfaces().upload(graph);
     input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
@@ -135,6 +135,21 @@ Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& sho
     input.params.opacity_limit = std::min(input.params.opacity_limit, 0.5f);
     return raycast(graph, prepared.volume, input,
                    graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1))));
+}
+
+uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes)
+{
+    uint64_t rays = 0;
+    for (const gpu::PassReport& pass : passes)
+        if (!pass.counters.empty()) rays += pass.counters[gpu::COUNTER_CUT_SHORT];
+    return rays;
+}
+
+std::string cut_short_sentence(uint64_t rays, const Look& look)
+{
+    return sentence(rays,
+                    " rays stop before their end, because they take more samples than the device draws; expected a ",
+                    "render.step_voxels above ", look.render.step_voxels, ", or a smaller box of the cutting planes");
 }
 
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)

@@ -16,6 +16,8 @@
 // (occlusion_cells, occlusion_gather, occlusion_bake). One thread, the one that owns the device.
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/device/scene.h"
 #include "engine/look/look.h"
@@ -49,6 +51,11 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
 FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 /// Adds the passes that find what is visible at one pixel: an image of one texel, with the position and 1, or 0.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
+
+/// Rays that stopped before their end, though nothing opaque ended them, in what was drawn. What they show is wrong.
+uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes);
+/// That, in a sentence.
+std::string cut_short_sentence(uint64_t rays, const Look& look);
 
 /// Sets the volume's view, as draw() does. Returns the distance between samples in reference lengths: samples of coarse
 /// bricks may be farther apart.

@@ -251,6 +251,7 @@ void PictureJob::draw_completely(const PicturePart& part)
     }
     drawn_pixels_ += area_of(part);
     if (volume.state() == State::limited) note_limited();
+    rays_cut_short_ += rays_cut_short(passes);
     picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
     append(picture_.passes, std::move(passes));
 }
@@ -270,6 +271,7 @@ Picture PictureJob::take()
 {
     picture_.complete = is_complete();
     for (std::string& message : scene().take_messages()) picture_.warnings.push_back(std::move(message));
+    if (rays_cut_short_ > 0) picture_.warnings.push_back(cut_short_sentence(rays_cut_short_, look_));
     return std::move(picture_);
 }
 

@@ -31,7 +31,7 @@ public:
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
     /// Whether nothing is missing from what is drawn so far.
-    bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room(); }
+    bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0; }
     /// All but the image. Call it once no step follows.
     Picture take();
 
@@ -63,6 +63,7 @@ private:
     std::vector<PicturePart> parts_;  ///< of the pane within the band, still to be drawn, the next one last
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
+    uint64_t rays_cut_short_ = 0;
 };
 
 }  // namespace shvr

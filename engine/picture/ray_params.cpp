@@ -107,8 +107,7 @@ gpu::RaycastParams raycast_params(const Look& look, const Camera& camera, Scene&
     }
     params.step = float(step_voxels);
     params.opacity_limit = float(look.render.opacity_limit);
-    const uint32_t entries = look.render.preintegration ? STEP_TABLE_SIDE : TABLE_ENTRIES;
-    set_table(params, look.transfer_function, scene.volume().window(), entries);
+    set_look_table(params, look.transfer_function, scene.volume().window(), look.render.preintegration);
     params.background = look.render.background;
     params.ambient = float(look.light.ambient);
     params.diffuse = float(look.light.diffuse);

@@ -80,7 +80,8 @@ void fields(Fields& f, RenderSettings& render)
              {"whether bricks are paged on the device; never: a volume that does not fit is refused; automatic: where "
               "the file has levels or does not fit"});
     f.number("detail", render.detail, {0.0, 16.0},
-             {"how fine the bricks are where there are levels to choose from; 0: the finest always",
+             {"how fine paged bricks of several levels are; 0: all voxels, as a resident volume always shows. "
+              "Pictures of different levels differ, and each is complete",
               "voxels per pixel at least"});
     f.flag("skip_empty_space", render.skip_empty_space,
            {"leap over bricks and cells in which nothing is visible; the picture is the same"});

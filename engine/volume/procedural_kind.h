@@ -26,6 +26,9 @@ public:
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
+    /// The same for a coarser level, `side` voxels to one of its own, in a volume of `size` voxels; box, y and z count
+    /// in voxels of that level. Values at their centres, except for what is thinner than they are (ProceduralSpec).
+    virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };
 
 std::unique_ptr<ProceduralKind> make_constant(const Size3& size, uint32_t seed);

@@ -165,6 +165,50 @@ public:
     };
     std::unique_ptr<Rows> rows(const VoxelBox& box) const override { return std::make_unique<BinnedRows>(*this, box); }
 
+    /// As BinnedRows, with tubes as thick as MIN_THICKNESS voxels of the level.
+    class CoarseRows final : public Rows {
+    public:
+        CoarseRows(const Tubes& kind, double side, const Size3& size, int64_t first_x)
+            : kind_(kind), side_(side), size_(size), first_x_(first_x)
+        {}
+
+        void evaluate(int64_t y, int64_t z, std::span<double> values) override
+        {
+            const auto x_of = [&](size_t x) {
+                return std::min(side_ * (double(first_x_ + int64_t(x)) + 0.5), size_.x);
+            };
+            glm::dvec3 p(0.0, std::min(side_ * (double(y) + 0.5), size_.y),
+                         std::min(side_ * (double(z) + 0.5), size_.z));
+            std::fill(values.begin(), values.end(), 1.0);
+            for (const Segment& segment : kind_.segments_) {
+                const double thicker = std::max(0.0, 0.5 * MIN_THICKNESS * side_ - segment.radius);
+                if (p.y < segment.lower.y - thicker || p.y > segment.upper.y + thicker) continue;
+                if (p.z < segment.lower.z - thicker || p.z > segment.upper.z + thicker) continue;
+                for (size_t x = 0; x < values.size(); ++x) {
+                    p.x = x_of(x);
+                    if (p.x < segment.lower.x - thicker || p.x > segment.upper.x + thicker) continue;
+                    values[x] = std::min(values[x], segment.distance(p) - thicker);
+                }
+            }
+            for (size_t x = 0; x < values.size(); ++x) {
+                const uint32_t hash =
+                    hash_of(kind_.seed_, uint32_t(int64_t(x_of(x))), uint32_t(int64_t(p.y)), uint32_t(int64_t(p.z)));
+                values[x] = profile(values[x]) + noise_of(hash);
+            }
+        }
+
+    private:
+        static constexpr double MIN_THICKNESS = 1.5;
+        const Tubes& kind_;
+        double side_;
+        glm::dvec3 size_;
+        int64_t first_x_;
+    };
+    std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const override
+    {
+        return std::make_unique<CoarseRows>(*this, side, size, box.lower.x);
+    }
+
 private:
     /// The n-th random number of tube `tube`, from -1 to 1.
     double random(uint32_t tube, uint32_t n) const

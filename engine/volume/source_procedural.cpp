@@ -102,15 +102,12 @@ public:
     {
         if (level == 0) return read(box, voxels);
         check_box(level, box, voxels);
-        const double side = std::ldexp(1.0, level);
-        const Size3 extent = box.size();
-        std::vector<double> values(size_t(extent.x));
+        const std::unique_ptr<ProceduralKind::Rows> rows = kind_->coarse_rows(std::ldexp(1.0, level), info().size, box);
+        std::vector<double> values(size_t(box.size().x));
         std::byte* row = voxels.data();
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
-                for (int64_t x = 0; x < extent.x; ++x)
-                    values[size_t(x)] = kind_->value(
-                        glm::min(side * (glm::dvec3(box.lower.x + x, y, z) + 0.5), glm::dvec3(info().size)));
+                rows->evaluate(y, z, values);
                 store(info().type, values, row);
                 row += values.size() * bytes_of(info().type);
             }
@@ -165,7 +162,33 @@ private:
     int64_t first_x_;
 };
 
+/// The same on a coarser level.
+class CoarsePointRows final : public ProceduralKind::Rows {
+public:
+    CoarsePointRows(const ProceduralKind& kind, double side, const Size3& size, int64_t first_x)
+        : kind_(kind), side_(side), size_(size), first_x_(first_x)
+    {}
+
+    void evaluate(int64_t y, int64_t z, std::span<double> values) override
+    {
+        for (size_t x = 0; x < values.size(); ++x)
+            values[x] = kind_.value(glm::min(side_ * (glm::dvec3(first_x_ + int64_t(x), y, z) + 0.5), size_));
+    }
+
+private:
+    const ProceduralKind& kind_;
+    double side_;
+    glm::dvec3 size_;
+    int64_t first_x_;
+};
+
 }  // namespace
+
+std::unique_ptr<ProceduralKind::Rows> ProceduralKind::coarse_rows(double side, const Size3& size,
+                                                                  const VoxelBox& box) const
+{
+    return std::make_unique<CoarsePointRows>(*this, side, size, box.lower.x);
+}
 
 std::unique_ptr<ProceduralKind::Rows> ProceduralKind::rows(const VoxelBox& box) const
 {

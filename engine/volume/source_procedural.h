@@ -24,7 +24,8 @@ struct ProceduralSpec {
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
     /// Number of levels; each is the same function, sampled at the centres of larger voxels. 0: one level, or above
-    /// 2^33 voxels as many as are needed to end with a single brick.
+    /// 2^33 voxels as many as are needed to end with a single brick. Tubes thinner than one and a half voxels of a
+    /// level are as thick as that on it: between the centres of its voxels they would be lost.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };

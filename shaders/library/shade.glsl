@@ -1,4 +1,4 @@
-// Local illumination, and the opacity of a part of a step.
+// Local illumination.
 
 // x^shininess. Powers of two, which most sessions use, are computed by squaring: exp2 and log2 took a tenth of a shaded
 // picture's time on a CPU. The floor keeps intermediate values out of the denormal numbers, which are even slower.
@@ -48,13 +48,4 @@ vec3 blended(const RaycastParams params, vec3 color, vec3 position)
     // pow() leaves 0^0 undefined; it is 1.
     const float grown = params.blend_rate == 0.0 ? 1.0 : depth <= 0.0 ? 0.0 : exp2(params.blend_rate * log2(depth));
     return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
-}
-
-// 1 - (1 - a)^part for 0 < part <= 1. The plain form loses small opacities to cancellation; the binomial series does
-// not, and converges fast for small `a`.
-float opacity_of_part(float a, float part)
-{
-    const float series = part * a * (1.0 + 0.5 * (1.0 - part) * a * (1.0 + (2.0 - part) / 3.0 * a *
-                         (1.0 + (3.0 - part) / 4.0 * a * (1.0 + (4.0 - part) / 5.0 * a))));
-    return a < 0.0625 ? series : a >= 1.0 ? 1.0 : 1.0 - exp2(part * log2(1.0 - a));
 }

@@ -149,17 +149,19 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end)
+// `begins_inside`: at `begin`, where an earlier block of the ray ended in the region.
+Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end, bool begins_inside)
 {
     const vec2 range = shell_range(params, ray);
     Shell shell;
     shell.next = NO_SHELL;
     shell.from = max(begin, range.x);
     shell.end = min(end, range.y);
-    shell.is_inside = false;
+    shell.is_inside = begins_inside;
     if (shell.from < shell.end) {
         const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
-        shell.is_inside = cell.is_there && above_threshold(params, ray, cell, shell.from) >= 0.0;
+        const bool is_inside = cell.is_there && above_threshold(params, ray, cell, shell.from) >= 0.0;
+        shell.is_inside = params.first_step > 0u && range.x < begin ? begins_inside : is_inside;
         search_shell(params, ray, shell);
     }
     return shell;

@@ -157,6 +157,19 @@ class Large(CliTest):
             self.assert_color(pixels[y][SIZE // 2], color, y)
         self.check_bytes(result, resident)
 
+    def test_thin_tubes_in_2_to_the_20_are_seen(self):
+        volume = {"procedural": "tubes", "size": [1 << 20] * 3}
+        middle = 1 << 19
+        session = session_of(volume, [middle, -(1 << 20), middle], [middle] * 3, 1 << 20)
+        session["transfer_function"]["points"] = [{"intensity": 130, "color": "#ff0000", "opacity": 0.0},
+                                                  {"intensity": 200, "color": "#ff0000", "opacity": 0.9},
+                                                  {"intensity": 255, "color": "#ff0000", "opacity": 0.9}]
+        result, pixels, _ = self.render(session)
+        self.assertIs(result["complete"], True)
+        seen = [y for y, row in enumerate(pixels) for color in row if color[1] < 128]
+        self.assertGreater(len(seen), SIZE)  # thirteen tubes, one pixel wide at least
+        self.assertGreater(len(set(seen)), SIZE * 3 // 4)  # from bottom to top
+
 
 class Plain(CliTest):
     """A file without levels that does not fit into the device budget."""

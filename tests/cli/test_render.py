@@ -117,6 +117,30 @@ class Render(CliTest):
         self.assertIs(self.check_json(*render, "--allow-incomplete")["complete"], False)
         self.assertTrue(picture.exists())
 
+    def test_rays_that_stop_short_make_the_picture_incomplete(self):
+        session = self.write_session(volume={"procedural": "constant", "size": [4096, 1, 1]}, transfer_function={
+            "points": [{"intensity": 0, "color": "#ffffff", "opacity": 1e-5},
+                       {"intensity": 255, "color": "#ffffff", "opacity": 1e-5}]})
+        picture = self.folder / "a.png"
+        render = ["render", session, "-o", picture, "--size", "1x1", "--camera", "left", "--set", "render.step_voxels=0.0001"]
+        self.check_refused(*render, says=["incomplete", "1 rays stop before their end", "render.step_voxels"])
+        self.assertFalse(picture.exists())
+        result = self.check_json(*render, "--allow-incomplete")
+        self.assertIs(result["complete"], False)
+        self.assertEqual(result["counters"]["rays_cut_short"], 1)
+
+    def test_the_level_that_a_picture_shows_is_told(self):
+        session = self.write_session(volume={"procedural": "sphere", "size": [2200, 2200, 2200]})
+        picture = self.folder / "a.png"
+        coarse = self.check_json("render", session, "-o", picture, "--set", "render.step_voxels=0.5")["detail"]
+        self.assertEqual(coarse["setting"], 1)
+        self.assertGreater(coarse["finest_level"], 4)
+        self.assertEqual(coarse["voxels_per_side"], 2 ** coarse["finest_level"])
+        self.assertEqual(coarse["step_voxels"], 0.5 * coarse["voxels_per_side"])
+        session = self.write_session(volume={"procedural": "sphere", "size": [24, 24, 24]})
+        fine = self.check_json("render", session, "-o", picture)["detail"]
+        self.assertEqual((fine["finest_level"], fine["voxels_per_side"]), (0, 1))
+
     def test_a_budget_that_is_too_small_names_what_did_not_fit(self):
         session = self.write_session(volume={"procedural": "sphere", "size": [128, 128, 128]})
         said = self.check_refused("render", session, "-o", self.folder / "a.png", "--budget-device", "1",

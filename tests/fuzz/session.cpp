@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
            "a session that cannot be read once written: " + last_outcome().refusal);
     expect(to_text(again, folder.path()) == written, "a session that changes when it is written:\n" + written);
 
-    bake_table(session.transfer_function, session.render.step_voxels, 64);
+    bake_table(session.transfer_function, session.render.step_voxels, whole_range(session.transfer_function, 64));
     const VolumeInfo info{.size = Size3(5, 4, 3)};
     passes([&] { camera_named(session, "", info); });
     for (const auto& [name, camera] : session.cameras) {

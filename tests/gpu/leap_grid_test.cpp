@@ -93,7 +93,7 @@ glm::dvec2 range_of(const TestVolume& volume, const glm::ivec3& cell)
 void check_occupancy(const TestVolume& volume, const Session& session, const Grid& grid)
 {
     const TransferFunction& function = session.transfer_function;
-    const double entry = (function.upper() - function.lower()) / (TABLE_ENTRIES - 1);
+    const double entry = (function.upper() - function.lower()) / (MIN_TABLE_ENTRIES - 1);
     const double margin = 1.01 * entry + 0.2;  // a table's entry, and a guard against rounding
     const auto shows = [&](double from, double to) {
         for (const ControlPoint& point : function.points())

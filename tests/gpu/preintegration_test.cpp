@@ -140,10 +140,58 @@ TEST_CASE_FIXTURE(Preintegrating, "nothing of it is there without it")
             if (resource.name == "transfer function") sum += resource.desc.bytes;
         return sum;
     };
-    CHECK(bytes() == sizeof(glm::vec4) * TABLE_ENTRIES);
+    const uint64_t rows = (tabulated(volume(), session).table_entries + 255) / 256, side = STEP_TABLE_SIDE;
+    CHECK(bytes() == 256 * (sizeof(glm::vec4) * rows + sizeof(float) * ((rows + 3) / 4 * 4)));
     session.render.preintegration = true;
     CHECK(different_bits(draw(session, camera), before) > 0);
-    CHECK(bytes() == sizeof(glm::vec4) * STEP_TABLE_SIDE * STEP_TABLE_SIDE);
+    CHECK(bytes() == 2 * sizeof(glm::vec4) * side * side);
     session.render.preintegration = false;
     CHECK(different_bits(draw(session, camera), before) == 0);
+}
+
+TEST_CASE_FIXTURE(Preintegrating, "a peak whose apex is opaque ends the ray, whatever the step and the table's entries")
+{
+    const auto tent = [](double at, double half_width, const glm::dvec3& color) {
+        return std::vector<ControlPoint>{
+            {at - half_width, color, 0.0}, {at, color, 1.0}, {at + half_width, color, 0.0}};
+    };
+    const auto with_ends = [](std::vector<ControlPoint> points) {
+        points.insert(points.begin(), {0.0, RED, 0.0});
+        points.push_back({65535.0, RED, 0.0});
+        return points;
+    };
+    std::vector<ControlPoint> two = tent(20000.0, 40.0, BLUE), more = tent(20200.0, 40.0, GREEN);
+    two.insert(two.end(), more.begin(), more.end());
+    const std::vector<std::vector<ControlPoint>> functions = {
+        with_ends(tent(32125.0, 128.0, GREEN)),  // 125 entries of 257 codes
+        with_ends(tent(32200.4, 3.0, GREEN)),
+        with_ends(two),
+        with_ends({{40000.0, RED, 0.0}, {40000.0, BLUE, 1.0}, {40001.0, GREEN, 1.0}, {40001.0, RED, 0.0}}),
+    };
+    load(volume_of({64, 8, 8}, [](const glm::dvec3& p) { return 32000.0 + 30000.0 * std::sin(0.2 * p.x); }));
+    for (const double sign : {1.0, -1.0})
+        for (const auto& function : functions)
+            for (const double step : {1.0, 0.37, 0.05}) {
+                CAPTURE(sign);
+                CAPTURE(step);
+                CAPTURE(function[2].intensity);
+                Session session = plain_session(function);
+                session.render.background = glm::dvec4(0.0);
+                session.render.step_voxels = step;
+                const Camera camera = camera_along(volume(), {sign, 0.1, 0.05}, 5.0);
+                const Pixels seen = pixels(session, camera, true);
+                const Pixels truth = expected(session, camera, reference::ExactOptions{});
+                for (const glm::dvec4& pixel : seen) CHECK(pixel.a == doctest::Approx(1.0).epsilon(1e-6));
+                check_below("exact", worst_difference(seen, truth), 0.02);
+            }
+}
+
+TEST_CASE_FIXTURE(Preintegrating, "a ray that comes near an opaque density, and not to it, goes on")
+{
+    load(volume_of({64, 8, 8}, [](const glm::dvec3& p) { return 32000.0 + 10000.0 * std::sin(0.2 * p.x); }));
+    const Camera camera = camera_along(volume(), {1, 0, 0}, 5.0);
+    Session session = plain_session({{0.0, RED, 0.0}, {41990.0, RED, 0.0}, {42100.0, GREEN, 1.0}, {42200.0, RED, 0.0}});
+    session.render.background = glm::dvec4(0.0);
+    session.render.step_voxels = 0.5;
+    for (const glm::dvec4& pixel : pixels(session, camera, true)) CHECK(pixel.a < 0.9);
 }

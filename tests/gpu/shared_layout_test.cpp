@@ -37,7 +37,10 @@ Members raycast_params()
             MEMBER(RaycastParams, page_depth),    MEMBER(RaycastParams, step),
             MEMBER(RaycastParams, opacity_limit), MEMBER(RaycastParams, table_lower),
             MEMBER(RaycastParams, table_upper),   MEMBER(RaycastParams, table_scale),
-            MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, background),
+            MEMBER(RaycastParams, table_entries), MEMBER(RaycastParams, table_depths),
+            MEMBER(RaycastParams, opaque_map),    MEMBER(RaycastParams, opaque_scale),
+            MEMBER(RaycastParams, first_step),    MEMBER(RaycastParams, end_step),
+            MEMBER(RaycastParams, is_last_block), MEMBER(RaycastParams, background),
             MEMBER(RaycastParams, light),         MEMBER(RaycastParams, ambient),
             MEMBER(RaycastParams, diffuse),       MEMBER(RaycastParams, specular),
             MEMBER(RaycastParams, shininess),     MEMBER(RaycastParams, gradient_fade),
@@ -60,11 +63,12 @@ Members preview_params()
 Members surface_params()
 {
     return {
-        MEMBER(SurfaceParams, origin),     MEMBER(SurfaceParams, origin_rest),  MEMBER(SurfaceParams, middle_corner),
-        MEMBER(SurfaceParams, middle_dx),  MEMBER(SurfaceParams, middle_dy),    MEMBER(SurfaceParams, along_corner),
-        MEMBER(SurfaceParams, along_dx),   MEMBER(SurfaceParams, along_dy),     MEMBER(SurfaceParams, begin),
-        MEMBER(SurfaceParams, middle),     MEMBER(SurfaceParams, end),          MEMBER(SurfaceParams, slack),
-        MEMBER(SurfaceParams, node_count), MEMBER(SurfaceParams, probe_center), MEMBER(SurfaceParams, probe_radius),
+        MEMBER(SurfaceParams, origin),        MEMBER(SurfaceParams, origin_rest),  MEMBER(SurfaceParams, middle_corner),
+        MEMBER(SurfaceParams, middle_dx),     MEMBER(SurfaceParams, middle_dy),    MEMBER(SurfaceParams, along_corner),
+        MEMBER(SurfaceParams, along_dx),      MEMBER(SurfaceParams, along_dy),     MEMBER(SurfaceParams, begin),
+        MEMBER(SurfaceParams, middle),        MEMBER(SurfaceParams, end),          MEMBER(SurfaceParams, slack),
+        MEMBER(SurfaceParams, node_count),    MEMBER(SurfaceParams, first_node),   MEMBER(SurfaceParams, end_node),
+        MEMBER(SurfaceParams, is_last_block), MEMBER(SurfaceParams, probe_center), MEMBER(SurfaceParams, probe_radius),
         MEMBER(SurfaceParams, probe_color)};
 }
 

@@ -15,13 +15,12 @@ DiscreteModel::DiscreteModel(const Scene& scene, const DiscreteOptions& options)
     if (!(options.step > 0.0)) throw std::invalid_argument("the step of the discrete model must be above 0");
     if (options.table_entries == 1) throw std::invalid_argument("a transfer table needs at least two entries");
     if (options.table_entries == 0 || transfer_.knots().empty()) return;
-    const double first = transfer_.knots().front(), last = transfer_.knots().back();
+    first_ = std::clamp(transfer_.knots().front(), 0.0, 1.0);
+    last_ = std::clamp(transfer_.knots().back(), 0.0, 1.0);
     for (uint32_t k = 0; k < options.table_entries; ++k) {
-        // The last entry is exactly at `last`, which the product below could miss by one bit.
+        // The last entry is exactly at `last_`, which the product below could miss by one bit.
         const bool is_last = k + 1 == options.table_entries;
-        glm::dvec4 entry = transfer_.at(is_last ? last : first + k * (last - first) / (options.table_entries - 1));
-        entry.a = opacity_of_length(entry.a, options.step);
-        table_.push_back(entry);
+        table_.push_back(transfer_.at(is_last ? last_ : first_ + k * (last_ - first_) / (options.table_entries - 1)));
     }
 }
 
@@ -32,13 +31,13 @@ glm::dvec4 DiscreteModel::looked_up(double density, double length) const
         material.a = opacity_of_length(material.a, length);
         return material;
     }
-    const double first = transfer_.knots().front(), last = transfer_.knots().back();
-    if (!(density >= first && density <= last)) return glm::dvec4(0.0);
-    const double position = last > first ? (density - first) / (last - first) * double(table_.size() - 1) : 0.0;
+    if (!(density >= first_ && density <= last_)) return glm::dvec4(0.0);
+    const double position = last_ > first_ ? (density - first_) / (last_ - first_) * double(table_.size() - 1) : 0.0;
     const size_t low = std::min(size_t(position), table_.size() - 2);
-    glm::dvec4 material = table_[low] + (table_[low + 1] - table_[low]) * (position - double(low));
-    if (length != options_.step) material.a = opacity_of_length(material.a, length / options_.step);
-    return material;
+    glm::dvec4 before = table_[low], after = table_[low + 1];
+    before.a = opacity_of_length(before.a, length);
+    after.a = opacity_of_length(after.a, length);
+    return before + (after - before) * (position - double(low));
 }
 
 glm::dvec3 DiscreteModel::blended(const glm::dvec3& voxel, const glm::dvec3& color) const

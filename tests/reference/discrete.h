@@ -19,8 +19,9 @@ struct DiscreteOptions {
     double sample_at = 0.5;  ///< share of the stretch: 0.5 its middle, 0 its front end
     /// The ray stops once A is at least this; 2 = never.
     double stop_opacity = 2.0;
-    /// 0: the transfer function itself. Otherwise a table of colour and opacity a' of a full step, both linear between
-    /// entries; entry k at x_first + k (x_last - x_first) / (entries - 1). The rest's is 1 - (1 - a')^(r / step).
+    /// 0: the transfer function itself. Otherwise a table of colour and opacity a' of a stretch, both linear between
+    /// entries; entry k at x_0 + k (x_1 - x_0) / (entries - 1), over what the function and the densities, 0 to 1, have
+    /// in common. The rest of a ray has a table of its own length.
     uint32_t table_entries = 0;
 };
 
@@ -39,7 +40,8 @@ private:
     const Scene& scene_;
     DiscreteOptions options_;
     Transfer transfer_;
-    std::vector<glm::dvec4> table_;
+    std::vector<glm::dvec4> table_;  ///< opacities of a reference voxel
+    double first_ = 0.0, last_ = 0.0;
 };
 
 glm::dvec4 integrate_discrete(const Scene& scene, const Ray& ray, const DiscreteOptions& options = {});

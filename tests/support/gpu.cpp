@@ -272,13 +272,18 @@ Pixels OnDevice::expected(const Session& session, const Camera& camera, const re
 
 Pixels OnDevice::discrete(const Session& session, const Camera& camera) const
 {
-    return expected(session, camera,
-                    reference::DiscreteOptions{.step = session.render.step_voxels, .table_entries = TABLE_ENTRIES});
+    return expected(session, camera, tabulated(volume_, session));
 }
 
 double OnDevice::error(const Session& session, const Camera& camera)
 {
     return worst_difference(pixels_of(draw(session, camera)), discrete(session, camera));
+}
+
+reference::DiscreteOptions tabulated(const TestVolume& volume, const Session& session)
+{
+    const TableRange range = table_range(session.transfer_function, volume.window(), false);
+    return {.step = session.render.step_voxels, .table_entries = range.samples.entries};
 }
 
 reference::Scene scene_of(const TestVolume& volume, const Session& session, const Camera& camera)

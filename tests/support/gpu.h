@@ -104,6 +104,8 @@ private:
 /// The scene that the reference draws for a session: densities are codes / 65535, and the transfer function is
 /// converted from intensities to those.
 reference::Scene scene_of(const TestVolume& volume, const Session& session, const Camera& camera);
+/// The discrete model with a table as fine as the device's.
+reference::DiscreteOptions tabulated(const TestVolume& volume, const Session& session);
 std::vector<reference::Ray> rays_of(const TestVolume& volume, const Session& session, const Camera& camera);
 
 }  // namespace shvr::test

@@ -177,12 +177,22 @@ std::vector<reference::Ray> rays_through(std::span<const glm::uvec2> pixels, con
     return rays;
 }
 
-reference::Mode mode_of(const Options& options, const Session& session)
+/// At most one code between two entries, and 4096 at least.
+uint32_t table_entries_of(const reference::Scene& scene)
+{
+    double first = 1.0, last = 0.0;
+    for (const reference::ControlPoint& point : scene.points)
+        first = std::min(first, point.x), last = std::max(last, point.x);
+    const double codes = std::ceil(65535.0 * (std::min(last, 1.0) - std::max(first, 0.0)));
+    return std::max(uint32_t(std::max(codes, 0.0)) + 1, 4096u);
+}
+
+reference::Mode mode_of(const Options& options, const Session& session, const reference::Scene& scene)
 {
     if (options.mode == "exact") return reference::ExactOptions{};
     return reference::DiscreteOptions{.step = options.step > 0.0 ? options.step : session.render.step_voxels,
                                       .stop_opacity = session.render.opacity_limit,
-                                      .table_entries = gpu::TABLE_WIDTH * gpu::TABLE_HEIGHT};
+                                      .table_entries = table_entries_of(scene)};
 }
 
 void run(const Options& options)
@@ -195,7 +205,7 @@ void run(const Options& options)
     const glm::uvec2 size = session.render.size;
     const std::vector<glm::uvec2> pixels = some_pixels(size, options.pixels, options.seed);
     const std::vector<reference::Ray> rays = rays_through(pixels, ray_planes(camera, size, opened.source->info()));
-    const std::vector<glm::dvec4> lights = reference::render(scene, rays, mode_of(options, session), 2);
+    const std::vector<glm::dvec4> lights = reference::render(scene, rays, mode_of(options, session, scene), 2);
 
     nlohmann::ordered_json written{
         {"size", {size.x, size.y}}, {"mode", options.mode}, {"pixels", nlohmann::json::array()}};

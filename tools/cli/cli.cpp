@@ -297,7 +297,8 @@ Json counters_of(const std::vector<gpu::PassReport>& passes)
                                                       {gpu::COUNTER_LEAPS, "leaps"},
                                                       {gpu::COUNTER_BRICKS_VISITED, "bricks_visited"},
                                                       {gpu::COUNTER_BRICKS_SKIPPED, "bricks_skipped"},
-                                                      {gpu::COUNTER_TERMINATED, "rays_terminated_early"}};
+                                                      {gpu::COUNTER_TERMINATED, "rays_terminated_early"},
+                                                      {gpu::COUNTER_CUT_SHORT, "rays_cut_short"}};
     Json counters = Json::object();
     for (const auto& [index, name] : names) {
         uint64_t sum = 0;

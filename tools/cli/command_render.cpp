@@ -1,12 +1,13 @@
 // shvr render: a picture of a session, a project or a bare volume.
 
-#include <atomic>
+#include <cmath>
 #include <csignal>
 
 #include "engine/base/file.h"
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -24,19 +25,23 @@ std::string why_incomplete(const Picture& picture)
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
 }
 
-std::atomic<bool> render_is_stopped = false;
-
-extern "C" void stop_rendering(int signal_number)
+/// Which voxels a complete picture shows: with `render.detail` above 0, paged volumes of several levels show coarser
+/// ones than resident volumes do.
+Json detail_of(const Renderer& renderer, const RenderSettings& render)
 {
-    render_is_stopped = true;
-    std::signal(signal_number, SIG_DFL);  // a second one ends the program at once
+    const int level = renderer.volume().finest_level();
+    return {{"setting", render.detail},
+            {"finest_level", level},
+            {"voxels_per_side", int64_t{1} << level},
+            {"step_voxels", std::ldexp(render.step_voxels, level)}};
 }
 
 /// Draws all parts. Fails, and leaves the old file as it was, where the picture lacks something or is stopped.
 Picture draw(PictureFile& file, const RenderCommandOptions& options)
 {
+    const StopRequest stop;
     while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
-        if (render_is_stopped) fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
+        if (stop.is_made()) fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
         file.step();
     }
     Picture picture = file.take();
@@ -65,8 +70,6 @@ void run_render(RenderCommandOptions options)
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     // From here on there is a file to take away.
-    std::signal(SIGINT, stop_rendering);
-    std::signal(SIGTERM, stop_rendering);
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
                      {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
@@ -83,6 +86,7 @@ void run_render(RenderCommandOptions options)
     print({{"output", options.output},
            {"size", {size.x, size.y}},
            {"complete", picture.complete},
+           {"detail", detail_of(*opened.renderer, opened.session.render)},
            {"device", opened.renderer->device().traits().name},
            {"passes", passes},
            {"counters", counters_of(picture.passes)},
@@ -112,7 +116,12 @@ void add_render(CLI::App& program)
     add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
-    command->footer("Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
+    command->footer(
+        "A volume of several levels, paged, is drawn from voxels about as large as a pixel, and what is thinner may "
+        "not\n"
+        "show; --set render.detail=0 draws all voxels, as a resident volume always is. Either picture is complete:\n"
+        "\"detail\" in --json tells which it is.\n\n"
+        "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
     command->callback([options] { run_render(*options); });
 }
 

@@ -111,7 +111,7 @@ TEST_CASE("nothing is drawn with fewer than two points, without width or without
     CHECK(narrow.at(7) == glm::dvec4(0.0));
     CHECK(TransferFunction({grey(0, 1, 0), grey(9, 1, 0)}).draws_nothing());
     CHECK_FALSE(TransferFunction({grey(0, 1, 0), grey(9, 1, 1e-30)}).draws_nothing());
-    for (const glm::vec4& entry : bake_table(one, 0.5, 16)) CHECK(entry == glm::vec4(0.0f));
+    for (const glm::vec4& entry : bake_table(one, 0.5, whole_range(one, 16)).looks) CHECK(entry == glm::vec4(0.0f));
 }
 
 TEST_CASE("numbers that are not finite or out of range are refused by name")
@@ -142,7 +142,7 @@ TEST_CASE("4096 points are found exactly")
 TEST_CASE("a table starts and ends on the function's ends and holds corrected opacities")
 {
     const TransferFunction function({grey(-3.7, 0.25, 0.1), grey(91.3, 0.75, 1.0)});
-    const std::vector<glm::vec4> table = bake_table(function, 0.25, 1000);
+    const std::vector<glm::vec4> table = bake_table(function, 0.25, whole_range(function, 1000)).looks;
     REQUIRE(table.size() == 1000);
     CHECK(table.front() == glm::vec4(0.25f, 0.25f, 0.25f, float(opacity_of_step(0.1, 0.25))));
     CHECK(table.back() == glm::vec4(0.75f, 0.75f, 0.75f, 1.0f));
@@ -156,7 +156,7 @@ TEST_CASE("a table with an entry for each whole intensity samples exactly there"
 {
     const TransferFunction function(
         {grey(0, 1, 0), grey(137, 1, 0), grey(137, 1, 0.5), grey(138, 1, 0), grey(255, 1, 0)});
-    const std::vector<glm::vec4> table = bake_table(function, 1.0, 256);
+    const std::vector<glm::vec4> table = bake_table(function, 1.0, whole_range(function, 256)).looks;
     for (size_t entry = 0; entry < 256; ++entry) CHECK((table[entry].a > 0.0f) == (entry == 137));
     CHECK(table[137].a == doctest::Approx(0.5).epsilon(1e-7));
 }

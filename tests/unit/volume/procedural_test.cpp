@@ -241,3 +241,41 @@ TEST_CASE("a procedural volume that cannot be is refused in words")
     flat.spacing.z = 0.0;
     CHECK(error_of([&] { open_procedural(flat); }) == "fog: spacing along z is 0; expected a finite number above 0");
 }
+
+TEST_CASE("tubes are seen on every level of a volume in which they are thinner than its voxels")
+{
+    for (const int64_t side : {int64_t{1} << 16, int64_t{1} << 20}) {
+        const std::unique_ptr<VolumeSource> tubes = open_procedural({.kind = "tubes", .size = Size3(side)});
+        for (int level = tubes->levels() - 1; level >= tubes->levels() - 3; --level) {
+            CAPTURE(level);
+            const Size3 size = size_of_level(Size3(side), level);
+            std::vector<std::byte> voxels(size_t(size.x * size.y));
+            for (int64_t z = 0; z < size.z; z += 5) {
+                tubes->read_level(level, {{0, 0, z}, {size.x, size.y, z + 1}}, voxels);
+                // Eight from bottom to top; neighbours may touch on so coarse a level.
+                CHECK(std::ranges::count_if(voxels, [](std::byte voxel) { return uint8_t(voxel) > 160; }) >= 8);
+            }
+        }
+    }
+}
+
+TEST_CASE("where tubes are thicker than the voxels of a level, it holds the function at their centres")
+{
+    const ProceduralSpec spec{.kind = "tubes", .size = Size3(64), .seed = 3, .levels = 2};
+    const ProceduralSpec bare{.kind = "speckles", .size = Size3(65, 64, 3), .seed = 3, .levels = 3};
+    for (const auto& [of, level, wrong] : {std::tuple(bare, 1, 0), {bare, 2, 0}, {spec, 1, 2000}}) {
+        const std::unique_ptr<VolumeSource> source = open_procedural(of);
+        const ScalarField field = procedural_field(of);
+        const Size3 size = size_of_level(of.size, level);
+        std::vector<std::byte> voxels(size_t(size.x * size.y * size.z));
+        source->read_level(level, {Size3(0), size}, voxels);
+        int different = 0;
+        for (int64_t i = 0; i < int64_t(voxels.size()); ++i) {
+            const glm::dvec3 voxel(i % size.x, i / size.x % size.y, i / (size.x * size.y));
+            const glm::dvec3 centre = glm::min(std::ldexp(1.0, level) * (voxel + 0.5), glm::dvec3(of.size));
+            different +=
+                int(uint8_t(voxels[size_t(i)])) != int(std::floor(std::clamp(field.value(centre), 0.0, 255.0) + 0.5));
+        }
+        CHECK(different <= wrong);  // the thinnest tubes are thicker
+    }
+}

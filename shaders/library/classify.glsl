@@ -1,0 +1,103 @@
+// What the transfer function's table says of a step, or of a part of one. Needs `table`, and PREINTEGRATED. The layout
+// of the table is in raycast.h.
+
+ivec3 table_texel(uint index)
+{
+    return ivec3(index % TABLE_WIDTH, index / TABLE_WIDTH, 0);
+}
+
+// 1 - exp(-depth). The plain form loses small opacities to cancellation; the series does not, and converges fast.
+float opacity_of_depth(float depth)
+{
+    const float series =
+        depth * (1.0 - depth / 2.0 * (1.0 - depth / 3.0 * (1.0 - depth / 4.0 * (1.0 - depth / 5.0))));
+    return depth < 0.0625 ? series : 1.0 - exp2(-1.44269504 * min(depth, 100.0));
+}
+
+// Optical depth of a full step.
+float table_depth(const RaycastParams params, uint entry)
+{
+    return imageLoad(table, table_texel(params.table_depths + entry / 4u))[entry % 4u];
+}
+
+// Colour and opacity of that part of a step for a density; both are linear between entries, and opacity is 0 outside.
+vec4 classify(const RaycastParams params, float density, float part)
+{
+    const float last = float(params.table_entries - 1u);
+    const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
+    const uint entry = uint(min(at, last - 1.0));
+    const float share = at - float(entry);
+    vec4 look = mix(imageLoad(table, table_texel(entry)), imageLoad(table, table_texel(entry + 1u)), share);
+    if (part < 1.0)
+        look.a = mix(opacity_of_depth(part * table_depth(params, entry)),
+                     opacity_of_depth(part * table_depth(params, entry + 1u)), share);
+    look.a = density >= params.table_lower && density <= params.table_upper ? look.a : 0.0;
+    return look;
+}
+
+// The same for a density that goes from `front` to `back`. Both are axes of the table; the part of the step that is
+// outside the function's range is empty.
+vec4 classify_change(const RaycastParams params, float front, float back, float part)
+{
+    const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
+    const float last = float(params.table_entries - 1u);
+    const vec2 at = clamp((ends - params.table_lower) * params.table_scale, 0.0, last);
+    const ivec2 entry = ivec2(min(at, last - 1.0));
+    const vec2 share = at - vec2(entry);
+    const vec4 near = mix(imageLoad(table, ivec3(entry, 0)), imageLoad(table, ivec3(entry + ivec2(1, 0), 0)), share.x);
+    const vec4 far =
+        mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
+    const vec4 sum = mix(near, far, share.y);
+    const float whole = abs(back - front), inside = abs(ends.y - ends.x);
+    const bool is_inside = front >= params.table_lower && front <= params.table_upper;
+    const float seen = part * (whole > 0.0 ? inside / whole : float(is_inside));
+    const vec4 depths =
+        seen * imageLoad(table, table_texel(params.table_depths + uint(entry.x) + TABLE_WIDTH * uint(entry.y)));
+    const float of_part = mix(mix(opacity_of_depth(depths.x), opacity_of_depth(depths.y), share.x),
+                              mix(opacity_of_depth(depths.z), opacity_of_depth(depths.w), share.x), share.y);
+    const float opacity = seen >= 1.0 ? sum.a : seen > 0.0 ? of_part : 0.0;
+    return vec4(sum.rgb / max(sum.a, 1e-30), opacity);
+}
+
+// An interval of densities, from one end to the other, at which rays end.
+struct Opaque {
+    vec4 lower, upper;   // colour, density
+};
+
+Opaque opaque_interval(const RaycastParams params, uint number)
+{
+    const uint at = params.opaque_map + OPAQUE_ENTRIES + 2u * number;
+    return Opaque(imageLoad(table, table_texel(at)), imageLoad(table, table_texel(at + 1u)));
+}
+
+// The interval that a density meets first on its way from `front` to `back`, or another one.
+Opaque opaque_ahead(const RaycastParams params, float front, float back)
+{
+    const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));
+    const vec2 numbers = imageLoad(table, table_texel(params.opaque_map + uint(at))).xy;
+    const bool rises = back >= front;
+    const uint number = uint(rises ? numbers.x : numbers.y);
+    const Opaque nearest = opaque_interval(params, number);
+    const bool is_passed = rises ? nearest.upper.a < front : nearest.lower.a > front;
+    if (!is_passed) return nearest;
+    return opaque_interval(params, rises ? number + 1u : number - 1u);
+}
+
+// As classify_change; a step that meets a density at which rays end shows what is in front of it, and then its colour.
+vec4 classify_step(const RaycastParams params, float front, float back, float part)
+{
+    if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);
+    // One step's back and the next one's front are the same point; rounding may leave such a gap between them.
+    const float gap = 0.004;   // codes
+    const Opaque ahead = opaque_ahead(params, front, back);
+    const float lower = min(front, back) - gap, upper = max(front, back) + gap;
+    const bool is_met = ahead.upper.a >= lower && ahead.lower.a <= upper;
+    const float there = clamp(front, ahead.lower.a, ahead.upper.a);
+    const float whole = abs(back - front);
+    const float before = whole > 0.0 ? min(abs(there - front) / whole, 1.0) : 0.0;
+    const vec4 look = classify_change(params, front, is_met ? there : back, is_met ? part * before : part);
+    const float width = ahead.upper.a - ahead.lower.a;
+    const float along = width > 0.0 ? (there - ahead.lower.a) / width : 0.0;
+    const vec3 color = mix(ahead.lower.rgb, ahead.upper.rgb, along);
+    return is_met ? vec4(mix(color, look.rgb, look.a), 1.0) : look;
+}
