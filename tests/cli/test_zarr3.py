@@ -216,11 +216,9 @@ class Projects(CliTest):
 
 
 class Archives(CliTest):
-    FORMS = {"recommended": {"zip64": True, "comment": ""}, "plain": {}, "deflated": {"deflate": True},
-             "streamed": {"stream": True}}
+    FORMS = {"stored": {}, "zip64": {"zip64": True}, "deflated": {"deflate": True}, "streamed": {"stream": True}}
 
     def pack(self, folder, name, **form):
-        form.pop("comment", None)
         independent(self, PACKER, folder, self.folder / name, json.dumps(form))
         return self.folder / name
 
@@ -228,6 +226,8 @@ class Archives(CliTest):
         header = Volume.noise((70, 66, 65), seed=1, voxel_type="int16", high=3000, spacing=(0.5, 0.5, 2)).write(self.folder)
         project = self.folder / "scan.zarr"
         self.check("import", header, project, "--ome-zarr", "0.5", "--unit", "um")
+        whole = self.pack(project, "project.ozx")
+        self.assertIn("is not read from an archive", self.check("info", whole).stderr)
         shutil.rmtree(project / "shvr")  # what an archive of another program lacks
         settings = ["--set", "render.size=[48,32]"]
         self.check("render", project, *settings, "-o", self.folder / "a.png")

@@ -136,6 +136,8 @@ def make_forms():
         keep(name, write_array({}, "", PHANTOM, (2, 3, 4), codecs))
     keep("needless_keys", write_array({}, "", PHANTOM, (2, 3, 4), [little()], note={"must_understand": False},
                                       storage_transformers=[], attributes={"a": 1}, dimension_names=None))
+    keep("axes_named", write_array({}, "", PHANTOM.transpose(2, 0, 1)[:, None], (2, 1, 3, 4), [little()],
+                                   dimension_names=["X", "c", "z", "y"]))
     keep("short_names", write_array({}, "", (PHANTOM + 100).astype("u1"), (2, 3, 4), ["bytes"]))
     floats = PHANTOM.astype("<f4")
     for name, data, fill in [("hex_nan", floats, "0x7fc00001"), ("hex_number", floats, "0xc0e00000"),

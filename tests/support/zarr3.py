@@ -3,6 +3,7 @@
 https://zarr-specs.readthedocs.io/en/latest/v3/core/, .../codecs/sharding-indexed/, PKWARE's APPNOTE 6.3.10. Values are
 kept in a dictionary, key -> bytes. Needs numpy and numcodecs (Debian's python3-numcodecs), for compressors only.
 """
+import gzip
 import itertools
 import json
 import struct
@@ -48,7 +49,7 @@ def configuration_of(one):
 def compressor(name, configuration):
     name = name.removeprefix("numcodecs.")
     if name == "gzip":
-        return numcodecs.GZip(configuration.get("level", 5))
+        return GZip(configuration.get("level", 5))
     if name == "zlib":
         return numcodecs.Zlib(configuration.get("level", 5))
     if name == "zstd":
@@ -56,6 +57,19 @@ def compressor(name, configuration):
     assert name == "blosc", name
     return numcodecs.Blosc(configuration["cname"], configuration["clevel"], SHUFFLES[configuration["shuffle"]],
                            configuration["blocksize"])
+
+
+class GZip:
+    """Without the time, which numcodecs puts into the header."""
+
+    def __init__(self, level):
+        self.level = level
+
+    def encode(self, data):
+        return gzip.compress(bytes(data), self.level, mtime=0)
+
+    def decode(self, data):
+        return gzip.decompress(data)
 
 
 def with_endian(dtype, configuration):

@@ -267,31 +267,50 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     read_ome_place(node.attributes(), image.levels[0].translation, info);
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
+    std::error_code ignored;
+    if (place.has(PROJECT_RECORD) && !fs::exists(folder / PROJECT_RECORD, ignored)) {
+        info.warnings.push_back(sentence("what the project ", folder.string(), " knows beside its image (orientation, ",
+                                         "statistics, annotations) is not read from an archive"));
+    }
     if (node.ome()["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
 
-/// A bare array states nothing about its axes.
+/// The axes called x, y and z; nothing unless each is there once.
+std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
+{
+    std::array<size_t, 3> xyz{};
+    for (size_t along = 0; along < 3; ++along) {
+        const auto is_meant = [&](const std::string& name) { return lower_case(name) == std::string(1, "xyz"[along]); };
+        if (std::ranges::count_if(metadata.axes, is_meant) != 1) return std::nullopt;
+        xyz[along] = size_t(std::ranges::find_if(metadata.axes, is_meant) - metadata.axes.begin());
+    }
+    return xyz;
+}
+
+/// A bare array states no spacing and, in version 2, nothing about its axes.
 std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, const OpenOptions& options)
 {
     const fs::path folder = place.path_of("");
     ZarrMetadata metadata = read_zarr_metadata(place, version);
     const size_t axes = metadata.shape.size();
     OmeImage image{.axes = axes};
+    const std::optional<std::array<size_t, 3>> named = named_axes(metadata);
+    image.xyz = named.value_or(std::array<size_t, 3>{axes - 1, axes - 2, axes - 3});
     bool is_volume = axes >= 3;
-    for (size_t axis = 0; axis + 3 < axes; ++axis) is_volume = is_volume && metadata.shape[axis] == 1;
+    for (size_t axis = 0; axis < axes; ++axis)
+        is_volume = is_volume && (metadata.shape[axis] == 1 || std::ranges::find(image.xyz, axis) != image.xyz.end());
     if (!is_volume) {
         std::string shape;
         for (const int64_t side : metadata.shape) shape += sentence(shape.empty() ? "" : ",", side);
         fail(place.path_of(metadata.key()).string(), ": key shape is [", shape,
-             "]; expected three axes z, y, x, those before them 1 voxel long");
+             "]; expected three axes z, y, x, all others 1 voxel long");
     }
-    image.xyz = {axes - 1, axes - 2, axes - 3};
     VolumeInfo info{.name = name_of_folder(folder), .format = "ome-zarr", .size = size_along(metadata, image.xyz)};
     info.type = metadata.type;
     static_cast<void>(voxel_count(info));
-    info.warnings.emplace_back("a Zarr array alone does not name its axes; z, y, x assumed");
+    if (!named) info.warnings.emplace_back("a Zarr array alone does not name its axes; z, y, x assumed");
     apply_spacing(info, std::nullopt, std::nullopt, "um");
     std::vector<ZarrVolume> volumes;
     const ZarrView view = view_of(folder, image, metadata, options);

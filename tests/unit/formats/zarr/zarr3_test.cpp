@@ -158,6 +158,18 @@ TEST_CASE("zarr 3: every spelling of keys, names and codecs")
     }
 }
 
+TEST_CASE("zarr 3: an array that names its axes is read along them")
+{
+    for (const fs::path& path : forms_of("axes_named")) {
+        const auto source = open_volume(path);
+        CHECK(is_chirality_phantom(*source));
+        CHECK_FALSE(warns_of(*source, "does not name its axes"));
+    }
+    const Copy partly("axes_named");
+    partly.change("zarr.json", [](Json& node) { node["dimension_names"] = {nullptr, "x", "x", "y"}; });
+    CHECK(contains(partly.refusal(), "key shape is [5,1,3,4]; expected three axes z, y, x, all others 1 voxel long"));
+}
+
 TEST_CASE("zarr 3: fill values by their bits, as words, and null")
 {
     for (size_t form = 0; form < 2; ++form) {
