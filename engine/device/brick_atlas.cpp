@@ -26,7 +26,7 @@ BrickAtlas::BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, uint64_t sl
     for (Staging& staging : staging_)
         staging.bytes =
             memory.create("brick staging", buffer_desc(BATCH * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),
-                          gpu::Placement::upload);
+                          gpu::Placement::upload, "the transfer of the volume");
 }
 
 uint32_t BrickAtlas::packed(uint32_t slot) const

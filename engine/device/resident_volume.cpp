@@ -23,7 +23,7 @@ public:
           capacity_(uint32_t(std::min<uint64_t>(BRICKS_IN_UPLOAD, bricks))),
           staging_(memory.create("staging",
                                  buffer_desc(capacity_ * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),
-                                 gpu::Placement::upload))
+                                 gpu::Placement::upload, "the transfer of the volume"))
     {}
 
     void add(const glm::uvec3& brick, uint32_t packed_slot, const BrickTexels& texels)

@@ -50,12 +50,18 @@ uint64_t bytes_for_pictures(const gpu::Memory& memory)
     return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
 }
 
-/// Device bytes beside the volume, and for each byte of it twice over with ambient occlusion.
+/// Device memory that ambient occlusion takes besides what it takes for each brick.
+uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
+{
+    return options.with_occlusion ? Occlusion::scratch_bytes(memory.device_budget()) : 0;
+}
+
+/// With ambient occlusion a brick takes less than twice as much.
 bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
                    uint64_t reserved_bytes)
 {
     const uint64_t bytes = ResidentVolume::bytes_for(source.info());
-    const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes;
+    const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes + scratch_bytes(memory, options);
     return beside <= memory.device_bytes_left() &&
            (options.with_occlusion ? 2 * bytes : bytes) <= memory.device_bytes_left() - beside;
 }
@@ -156,7 +162,10 @@ void Scene::load(uint64_t reserved_bytes)
 void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();
-    if (bytes + bytes_for_pictures(memory_) <= memory_.device_bytes_left()) return;
+    const glm::u64vec3 slots(volume_->atlas_slots());
+    const uint64_t light = options_.with_occlusion ? slots.x * slots.y * slots.z * Occlusion::slot_bytes() : 0;
+    if (bytes + bytes_for_pictures(memory_) + light + scratch_bytes(memory_, options_) <= memory_.device_bytes_left())
+        return;
     occlusion_.clear();
     volume_.reset();
     mask_.reset();
