@@ -8,7 +8,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/formats/zarr/zarr_node.h"
+#include "engine/formats/zarr/store/zarr_node.h"
 
 namespace shvr {
 

@@ -11,7 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/base/spelling.h"
-#include "engine/formats/zarr/zarr_node.h"
+#include "engine/formats/zarr/store/zarr_node.h"
 
 namespace shvr {
 

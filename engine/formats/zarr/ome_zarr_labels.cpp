@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/formats/zarr/zarr_node.h"
+#include "engine/formats/zarr/store/zarr_node.h"
 
 namespace shvr {
 

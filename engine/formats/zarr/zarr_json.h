@@ -2,7 +2,7 @@
 // The small JSON files of Zarr. They are untrusted: size and depth are bounded. Any thread.
 
 #include "engine/base/json.h"
-#include "engine/formats/zarr/zarr_store.h"
+#include "engine/formats/zarr/store/zarr_store.h"
 
 namespace shvr {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/formats/zarr/zarr_store.h"
+#include "engine/formats/zarr/store/zarr_store.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {

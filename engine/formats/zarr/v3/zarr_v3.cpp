@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/store/zarr_node.h"
 #include "engine/formats/zarr/zarr_fields.h"
-#include "engine/formats/zarr/zarr_node.h"
 
 namespace shvr {
 namespace {

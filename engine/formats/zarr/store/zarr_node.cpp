@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/zarr_node.h"
+#include "engine/formats/zarr/store/zarr_node.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/zarr_store.h"
+#include "engine/formats/zarr/store/zarr_store.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
