@@ -51,7 +51,7 @@ struct Model {
     std::string holder;  ///< who writes the project, if that is another process: then this window only looks
     std::filesystem::path session_path{};
     std::span<const Dispute> disputes{};  ///< saved files that others have changed; empty: nothing to choose
-    std::string status;                    ///< the last action, in words
+    std::string status;                   ///< the last action, in words
     bool shows_help = false;
 
     // The device

@@ -314,6 +314,7 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks)
         journal_->flush();
     }
     unsaved_ = 0;
+    misses_files_ = false;
     touched_ = {};
     return saved;
 }
