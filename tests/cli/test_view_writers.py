@@ -81,7 +81,8 @@ class Writers(Window):
         session = self.write_ball()
         holder = self.writer(session)
         self.view(session)
-        holder.communicate(json.dumps(DAB) + '\n{"op":"save"}\n', PATIENCE_S)
+        elsewhere = {**DAB, "path": [[32, 54, 54]]}  # not where the window paints
+        holder.communicate(json.dumps(elsewhere) + '\n{"op":"save"}\n', PATIENCE_S)
         self.click(158, 38)  # "Try again"
         self.do("key", "7", pause_s=0.5)
         self.paint()
