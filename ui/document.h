@@ -68,7 +68,7 @@ struct Document {
     Session saved_session() const;
     /// Closing would lose no work and no setting, except perhaps the camera and the probe's position.
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
-    bool work_is_saved() const { return only_looks() || annotator.work().unsaved() == 0; }
+    bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
     /// Nothing can be painted or saved: another process writes the work.
     bool only_looks() const { return annotator.work().only_looks(); }
     /// Call after anything that may have changed the session, except the camera and the probe's position: clears the

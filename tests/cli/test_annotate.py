@@ -142,6 +142,7 @@ class Annotate(CliTest):
         with_paint, hidden, without = (self.folder / name for name in ("a.png", "b.png", "c.png"))
         self.check("render", self.session, "-o", with_paint)
         self.check("render", self.session, "-o", hidden, "--set", 'groups.1={"visible":false}')
+        (self.folder / "session.journal").unlink()
         self.mask.unlink()
         self.check("render", self.session, "-o", without)
         self.assertEqual(len({path.read_bytes() for path in (with_paint, hidden, without)}), 3)

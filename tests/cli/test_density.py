@@ -119,7 +119,7 @@ class Density(CliTest):
 
     def test_offsets_without_a_file_to_go_to_are_refused(self):
         self.prepare(Volume((4, 4, 4), [1] * 64))
-        session = self.write_session(volume={"path": "volume.nhdr"})
+        session = self.write_session(volume={"path": "volume.nhdr"}, annotation={"trace": "paint.graphml"})
         script = self.write_script("script.jsonl", [density("fill", 0, 2, [[2, 2, 2]], offset=5), {"op": "save"}])
         self.check_refused("annotate", session, "--script", script, "--quiet",
                            says=["script.jsonl:2", "annotation.density"])

@@ -151,7 +151,7 @@ class Export(CliTest):
         for name in ["a.nrrd", "a.tif", "a.zarr"]:
             with self.subTest(name=name):
                 self.export("--mask", self.folder / name)
-                other = self.write_session("other.json", annotation={"mask": name}, volume={
+                other = self.write_session(f"other-{name}.json", annotation={"mask": name}, volume={
                     "procedural": "constant", "size": self.SIZE, "spacing": self.SPACING, "unit": "mm"})
                 self.check("export", other, "--mask", self.folder / "b.mask")
                 self.assertEqual((self.folder / "b.mask").read_bytes(), saved)
@@ -304,6 +304,8 @@ class Export(CliTest):
                 self.assertIn("ends in one of", stderr)
                 self.assertFalse((self.folder / "b.txt").exists())
         (self.folder / "paint.graphml").unlink()
+        self.assertEqual(self.export()["nodes"], 4)  # the journal has them
+        (self.folder / "session.journal").unlink()
         stderr = self.export("--trace", self.folder / "b.txt", status=1)
         self.assertIn("paint.graphml", stderr)
         self.assertEqual(self.export()["nodes"], 0)

@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/annotation/files/mask_image.h"
 #include "tests/durability/desk.h"
 #include "tests/durability/watched_calls.h"
 #include "tests/support/volume_files.h"
@@ -73,9 +74,17 @@ TEST_CASE("every call of a save fails once: each file is the old or the new one,
                 CHECK((contains(refused, "cannot be ") || contains(refused, "could not")));
             }
             CHECK((between.size() >= before.size() && between.size() <= after.size()));
+            // MASK.json says which save it is of, and that is in the journal.
+            const std::optional<MaskJournal> named = journal_of_mask(files_in(desk).mask);
+            const JournalScan scan = scan_journal(files_in(desk).journal);
+            REQUIRE(named.has_value());
+            REQUIRE(named->record <= scan.records.size());
+            CHECK(scan.records[named->record - 1].kind == RecordKind::saving);
+            CHECK(scan.records[named->record - 1].checksum == named->checksum);
             for (const auto& [name, content] : between)
-                CHECK_MESSAGE(((before.contains(name) && before.at(name) == content) || after.at(name) == content),
-                              name);
+                if (name != "a.mask.json")
+                    CHECK_MESSAGE(((before.contains(name) && before.at(name) == content) || after.at(name) == content),
+                                  name);
             // Interrupted and short calls are continued.
             if (error == EINTR || error == SHORT_WRITE) CHECK(refused.empty());
             work.reset();

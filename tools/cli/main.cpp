@@ -104,7 +104,7 @@ int main(int argc, char** argv)
         return report(error.what(), Exit::gate);
     } catch (const shvr::Disputed& error) {
         return report(shvr::sentence(error.what(),
-                                     "; both are kept; expected --believe files, to take what is in the file "
+                                     "; both are kept; answer with --believe files, to take what is in the file "
                                      "as a step that undo takes back, or --believe journal, with which the "
                                      "next save keeps the file under another name")
                           .c_str(),

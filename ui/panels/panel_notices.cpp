@@ -22,12 +22,12 @@ void read_only_banner(const Model& model, const glm::vec2& begin, float width, A
     ImGui::Begin("Read only", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::Text("Read only: open for writing in %s. Nothing that is changed here is saved.", model.holder.c_str());
-    ImGui::PopTextWrapPos();
     if (ImGui::Button("Work on a copy")) actions.push_back(WorkOnCopy{});
     ImGui::SameLine();
     if (ImGui::Button("Try again")) actions.push_back(Open{model.session_path});
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("Read only: open for writing in %s. Nothing that is changed here is saved.", model.holder.c_str());
+    ImGui::PopTextWrapPos();
     ImGui::End();
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();

@@ -318,6 +318,7 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function
         journal_->flush();
     }
     unsaved_ = 0;
+    misses_files_ = false;
     touched_ = {};
     return saved;
 }

@@ -122,6 +122,8 @@ public:
                     const std::filesystem::path& density);
     /// Commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
+    /// Nothing is to be saved: no command, and no file that is missing or cannot be read.
+    bool is_saved() const { return unsaved_ == 0 && !misses_files_; }
     /// All commands are on disk, in the journal: closing without a save loses none.
     bool is_kept() const;
     /// Ends what is under way beside the work, so that another Work can open the same files before this one is gone.
@@ -216,6 +218,7 @@ private:
     std::array<Seen, 3> seen_;
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;
+    bool misses_files_ = false;      ///< that the journal holds and the next save writes
     std::array<bool, 3> touched_{};  ///< since the last save
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;

@@ -99,7 +99,7 @@ std::vector<Notice> Work::open_once()
     settings_from_outside_.clear();
     touched_ = {};
     unsaved_ = 0;
-    is_to_set_aside_ = false;
+    misses_files_ = is_to_set_aside_ = false;
     read_journal();
     if (!scan_.records.empty()) check_subject();
     const std::string damage = holds_state(scan_) ? replay() : std::string();
@@ -110,10 +110,10 @@ std::vector<Notice> Work::open_once()
     if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is taken"), true});
     // What another process is just writing is no damage.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
-        notices.push_back(
-            {sentence(name, ": its last ", scan_.file_bytes - scan_.end, " bytes were not written to the end; the ",
-                      scan_.records.size(), " records before are taken"),
-             true});
+        notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
+                                    " bytes were not written to the end, or turned since; expected whole records; the ",
+                                    scan_.records.size(), " records before are taken"),
+                           true});
     unsaved_ = steps_since_save(scan_);
     touched_.fill(unsaved_ > 0);
     if (unsaved_ > 0)
@@ -294,7 +294,7 @@ void Work::look_at_file(Part part, std::vector<Notice>& notices)
     Seen& seen = seen_[size_t(part)];
     bool& is_touched = touched_[size_t(part)];
     const auto keep_unreadable = [&](const Error& error) {
-        seen.is_foreign = is_touched = true;
+        seen.is_foreign = is_touched = misses_files_ = true;
         notices.push_back(
             {sentence(error.what(), "; ", journal_holds, "; the next save keeps this file as ", old_of(file).string()),
              true});
@@ -309,7 +309,7 @@ void Work::look_at_file(Part part, std::vector<Notice>& notices)
         return;
     }
     if (!seen.digest) {
-        is_touched = true;
+        is_touched = misses_files_ = true;
         notices.push_back({sentence(file.string(), ": is missing; expected the ", name_of(part), " as it was saved; ",
                                     journal_holds, "; saving writes the file again"),
                            true});
