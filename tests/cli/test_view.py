@@ -329,7 +329,7 @@ class View(Window):
         self.wait_for_window("sphere.* - SHVR")
         self.do("key", "ctrl+z", pause_s=0.7)
         report = self.finish()
-        self.assertIn("nothing is lost", " ".join(report["messages"]))
+        self.assertIn("none of them is lost", " ".join(report["messages"]))
         self.assertTrue(any(message.startswith("Undone: cut: lower") for message in report["messages"]), report["messages"])
         self.assertGreater(report["voxels_in_group"]["3"], 0)
         kept = self.saved(session)["cut"]["lower"]

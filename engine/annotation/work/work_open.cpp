@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/files/volume_place.h"
 #include "engine/annotation/work/work.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
@@ -176,7 +177,7 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        if (is_there(file_of(files_, part))) load(part, files_, document_);
+        if (is_there(file_of(files_, part)) || is_in_archive(file_of(files_, part))) load(part, files_, document_);
         digest_of(known_, part) = seen_[size_t(part)].digest;
     }
     return notices;

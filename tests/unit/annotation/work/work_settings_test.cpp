@@ -34,7 +34,7 @@ public:
             return values;
         };
         said.clear();
-        for (const std::string& message : work->open(files)) said += message + "\n";
+        for (const Notice& notice : work->open(files)) said += notice.text + "\n";
         return work;
     }
     mutable std::string said;
@@ -59,7 +59,7 @@ TEST_CASE("a setting is a step: it comes back from the journal, and undo takes b
 
     work = desk.open(GREY);
     CHECK(work->settings() == DIM);
-    CHECK(contains(desk.said, "holds 3 steps that were not saved; nothing is lost"));
+    CHECK(contains(desk.said, "holds 3 steps that were not saved; none of them is lost"));
     CHECK(work->undo()->label == "dim");
     CHECK(work->settings() == RED);
     CHECK(work->undo()->label == "dab");
