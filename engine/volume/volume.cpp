@@ -113,10 +113,10 @@ bool states_place(const VolumeInfo& info)
 
 bool are_axes(const glm::dmat3& directions)
 {
-    constexpr double TOLERANCE = 1e-6;
+    constexpr double TOLERANCE = 1e-6, FLATTEST = 1e-6;
     for (int axis = 0; axis < 3; ++axis)
         if (!(std::abs(glm::length(directions[axis]) - 1.0) < TOLERANCE)) return false;
-    return glm::determinant(directions) > 0.0;
+    return glm::determinant(directions) >= FLATTEST;
 }
 
 bool is_float(VoxelType type)

@@ -576,6 +576,14 @@ def make_trace():
     seed("trace", "two.txt", b"\1-v 1, 2.5, -3, 7, 1.5\n-v 2,3,4,0,0\n-l 1, 0, 255\n")
     seed("trace", "star.swc", b"\2# unit um\n# size 9 8 7\n# spacing 1 0.5 2\n# SCALE 1 1 1\n"
          b"1 7 1 2 3 1.5 -1\n2 7 1 2 4 1.5 1\n3 8 1 3 3 1 1\n4 0 0 2 3 0 1\n9 1 5 5 5 2 -1\n")
+    place = b"# space physical\n# frame LPS\n# origin -10.5 20 1e3\n# directions -1 0 0 0 -1 0 0 0 1\n"
+    seed("trace", "physical.swc", b"\2" + place + b"# unit um\n# size 9 8 7\n# spacing 1 0.5 2\n"
+         b"1 1 -11 20.25 1001 1 -1\n2 1 -12.25 19.1 1003 1 1\n")
+    seed("trace", "physical.txt", b"\1" + place + b"# spacing 1 0.5 2\n-v -11, 20.25, 1001, 1, 1\n")
+    seed("trace", "flat.txt", b"\1# space physical\n# origin 0 0 0\n# directions 1 0 0 1 1e-5 0 0 0 1\n"
+         b"# spacing 1 1 1\n-v 1, 2, 3, 1, 1\n")
+    seed("trace", "far.txt", b"\1# space physical\n# origin -1e15 0 0\n# directions 1 0 0 0 1 0 0 0 1\n"
+         b"# spacing 1 1 1\n-v 9e14, 2, 3, 1, 1\n")
     seed("trace", "ring.swc", b"\2" + b"1 1 0 0 0 1 3\n2 1 1 0 0 1 1\n3 1 1 1 0 1 2\n")
     seed("trace", "branches.rsml", b"\3<rsml><metadata><unit>um</unit><resolution>2</resolution></metadata><scene><plant>"
          b"<root ID='1'><properties><group>3</group></properties><geometry><polyline><point x='1' y='2' z='3'/>"

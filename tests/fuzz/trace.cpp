@@ -1,5 +1,7 @@
 // A trace: the first byte gives the format of the rest. A trace that opens is written in every format and read again.
 
+#include <algorithm>
+
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "tests/fuzz/support/attempt.h"
@@ -20,6 +22,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         const TraceSpace space = opened.space.value_or(TraceSpace{{4, 4, 4}, {1.0, 1.0, 1.0}, "um"});
         save_trace(folder.path() / "b.graphml", trace, space);
         expect(load_trace(folder.path() / "b.graphml", space).trace == trace, "a trace that GraphML does not keep");
+        // Where physical positions are not too far away to be read.
+        const bool is_near =
+            glm::length(space.origin) < 1e12 && std::ranges::all_of(trace.nodes(), [](const auto& numbered) {
+                return glm::length(numbered.second.position) < 1e12;
+            });
+        if (is_near && glm::length(space.spacing) < 1e12) {
+            save_trace(folder.path() / "c.graphml", trace, space, Loops::refuse, Positions::physical);
+            expect(load_trace(folder.path() / "c.graphml", space).trace == trace,
+                   "a trace that GraphML does not keep in physical space");
+        }
         save_trace(folder.path() / "b.txt", trace, space);
         const TraceGraph renumbered = load_trace(folder.path() / "b.txt", space).trace;
         expect(renumbered.nodes().size() == trace.nodes().size(), "a trace that the thesis's text does not keep");

@@ -164,9 +164,9 @@ void add_export(CLI::App& program)
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
-        "Masks, offsets, traces and meshes lie where the volume's file says: in NRRD and OME-Zarr as these formats say "
-        "it; "
-        "in TIFF, which has no place for it, only SHVR reads it. Traces and meshes say their space in comments.\n"
+        "Masks, offsets, traces and meshes lie where the volume's file says: NRRD and OME-Zarr say it in their own "
+        "way, "
+        "traces\nand meshes in comments; in TIFF, which has no place for it, only SHVR reads it.\n"
         "Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
     command->callback([options] { run_export(*options); });
 }

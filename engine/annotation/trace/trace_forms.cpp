@@ -172,18 +172,23 @@ void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
     TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
                      .directions = *stated.directions,
                      .origin = *stated.origin};
-    // What separates a position from what was written for it: the rounding of numbers of this size.
-    constexpr double ROUNDING = 1e-14;
+    // What separates a position from what was written for it: the rounding of numbers of this size, which flat axes
+    // enlarge.
+    const double rounding = 1e-14 / glm::determinant(space.directions);
     std::vector<TraceNodeChange> changes;
     for (const auto& [number, node] : trace.nodes()) {
         TraceNode moved = node;
         moved.position = position_of(space, node.position);
         if (const auto found = exact.find(number); found != exact.end()) {
             const glm::dvec3 apart = glm::abs(found->second - moved.position);
-            const double most = ROUNDING * (glm::length(node.position) + glm::length(space.origin) +
+            const double most = rounding * (glm::length(node.position) + glm::length(space.origin) +
                                             glm::length(moved.position) + glm::length(space.spacing));
             if (glm::all(glm::lessThanEqual(apart, glm::dvec3(most)))) moved.position = found->second;
         }
+        const glm::dvec3 far = glm::abs(moved.position);
+        if (!(std::max({far.x, far.y, far.z}) <= FARTHEST))
+            fail(file_, ": node ", number, " lies beyond 1e15 ", stated.unit.value_or("units"),
+                 " from the volume's corner; expected it nearer");
         changes.push_back({number, node, moved});
     }
     for (const TraceNodeChange& change : changes) trace.apply(change, Direction::forwards);

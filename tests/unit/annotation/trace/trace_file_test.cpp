@@ -555,6 +555,12 @@ TEST_CASE("a trace that lies elsewhere, or does not say where, is refused")
     CHECK(contains(refusal("a.swc", "# space physical\n# directions 1 0 0 0 1 0 0 0 -1\n"),
                    "expected three right-handed"));
     CHECK(contains(refusal("a.swc", "# space physical\n# frame XYZ\n"), "frame is \"XYZ\"; expected LPS or RAS"));
+    CHECK(contains(refusal("a.swc", "# space physical\n# directions 1 0 0 1 1e-7 0 0 0 1\n"),
+                   "expected three right-handed"));
+    CHECK(contains(
+        refusal("a.swc", "# space physical\n# origin -1e15 0 0\n# directions 1 0 0 0 1 0 0 0 1\n1 1 9e14 0 0 1 -1\n",
+                SPACE),
+        "a.swc: node 0 lies beyond 1e15 units from the volume's corner; expected it nearer"));
     // Comments of other programs are theirs.
     CHECK(refusal("a.swc", "# space is big\n# origin unknown\n1 1 0 0 0 1 -1\n", SPACE).empty());
 }
