@@ -113,8 +113,9 @@ Place place_at(const RaycastParams params, vec3 position)
 
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
-// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface.
-const uint INSIDE_BIT = 0x80000000u;
+// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
+// this is 0, whose sign devices may lose.
+const float LEAST_ALPHA = 1e-30;
 
 struct Ray {
     vec3 origin;      // voxel space, at length 0
@@ -328,8 +329,8 @@ void main()
     bool begins_inside = false;   // of the iso-surface
     if (params.first_step > 0u) {
         sum = imageLoad(color, texel);
-        begins_inside = (floatBitsToUint(sum.a) & INSIDE_BIT) != 0u;
-        sum.a = uintBitsToFloat(floatBitsToUint(sum.a) & ~INSIDE_BIT);
+        begins_inside = sum.a < 0.0;
+        sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
         if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
     }
     Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
@@ -411,7 +412,7 @@ void main()
     const bool is_stopped = sum.a >= params.opacity_limit;
     if (!is_last && (PICK == 0u || !is_stopped)) {
 #ifdef SHELLED
-        if (shell.is_inside) sum.a = uintBitsToFloat(floatBitsToUint(sum.a) | INSIDE_BIT);
+        if (shell.is_inside) sum.a = -max(sum.a, LEAST_ALPHA);
 #endif
         imageStore(color, texel, sum);
         return;
