@@ -110,16 +110,22 @@ Members occlusion_bake_params()
             MEMBER(OcclusionBakeParams, turn_sin),
             MEMBER(OcclusionBakeParams, reach),
             MEMBER(OcclusionBakeParams, grow),
+            MEMBER(OcclusionBakeParams, table_lower),
+            MEMBER(OcclusionBakeParams, table_upper),
+            MEMBER(OcclusionBakeParams, table_scale),
+            MEMBER(OcclusionBakeParams, table_entries),
             MEMBER(OcclusionBakeParams, aprons),
             MEMBER(OcclusionBakeParams, cell_counts),
-            MEMBER(OcclusionBakeParams, taps)};
+            MEMBER(OcclusionBakeParams, near_taps),
+            MEMBER(OcclusionBakeParams, far_taps),
+            MEMBER(OcclusionBakeParams, far_exponents)};
 }
 
 Members occlusion_gather_params()
 {
     return {MEMBER(OcclusionGatherParams, voxels), MEMBER(OcclusionGatherParams, cell_counts),
             MEMBER(OcclusionGatherParams, reach), MEMBER(OcclusionGatherParams, aprons),
-            MEMBER(OcclusionGatherParams, exponent)};
+            MEMBER(OcclusionGatherParams, exponents)};
 }
 
 Members occlusion_cells_params()
