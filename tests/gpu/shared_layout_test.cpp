@@ -100,24 +100,15 @@ Members brick_leap_jobs()
 
 Members occlusion_bake_params()
 {
-    return {MEMBER(OcclusionBakeParams, inverse_spacing),
-            MEMBER(OcclusionBakeParams, radius),
-            MEMBER(OcclusionBakeParams, first),
-            MEMBER(OcclusionBakeParams, gradient_fade),
-            MEMBER(OcclusionBakeParams, full_sphere),
-            MEMBER(OcclusionBakeParams, rays),
-            MEMBER(OcclusionBakeParams, turn_cos),
-            MEMBER(OcclusionBakeParams, turn_sin),
-            MEMBER(OcclusionBakeParams, reach),
-            MEMBER(OcclusionBakeParams, grow),
-            MEMBER(OcclusionBakeParams, table_lower),
-            MEMBER(OcclusionBakeParams, table_upper),
-            MEMBER(OcclusionBakeParams, table_scale),
-            MEMBER(OcclusionBakeParams, table_entries),
-            MEMBER(OcclusionBakeParams, aprons),
-            MEMBER(OcclusionBakeParams, cell_counts),
-            MEMBER(OcclusionBakeParams, near_taps),
-            MEMBER(OcclusionBakeParams, far_taps),
+    return {MEMBER(OcclusionBakeParams, inverse_spacing), MEMBER(OcclusionBakeParams, radius),
+            MEMBER(OcclusionBakeParams, first),           MEMBER(OcclusionBakeParams, gradient_fade),
+            MEMBER(OcclusionBakeParams, full_sphere),     MEMBER(OcclusionBakeParams, rays),
+            MEMBER(OcclusionBakeParams, turn_cos),        MEMBER(OcclusionBakeParams, turn_sin),
+            MEMBER(OcclusionBakeParams, reach),           MEMBER(OcclusionBakeParams, grow),
+            MEMBER(OcclusionBakeParams, table_lower),     MEMBER(OcclusionBakeParams, table_upper),
+            MEMBER(OcclusionBakeParams, table_scale),     MEMBER(OcclusionBakeParams, table_entries),
+            MEMBER(OcclusionBakeParams, aprons),          MEMBER(OcclusionBakeParams, cell_counts),
+            MEMBER(OcclusionBakeParams, near_taps),       MEMBER(OcclusionBakeParams, far_taps),
             MEMBER(OcclusionBakeParams, far_exponents)};
 }
 
