@@ -65,7 +65,7 @@ uint64_t Occlusion::slot_bytes()
     uint64_t bytes = TEXELS * TEXELS * TEXELS;
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         const uint64_t side = gpu::BRICK_SIZE >> (size + 1);
-        bytes += side * side * side;
+        bytes += sizeof(uint32_t) * side * side * side;
     }
     return bytes;
 }
@@ -85,7 +85,7 @@ void Occlusion::create(const glm::uvec3& slots)
     near_ = create_image("occlusion scratch", occlusion_near_desc(slice_));
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         cells_[size] =
-            create_image("occlusion cells", image_desc(Format::r8_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
+            create_image("occlusion cells", image_desc(Format::r32_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
         around_[size] = create_image("occlusion scratch", occlusion_around_desc(size, slice_));
     }
     images_are_new_ = true;
@@ -116,9 +116,9 @@ void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceM
     mask_ = &mask;
     const std::optional<Look> before = std::exchange(look_, look);
     if (!before) return;
-    if (!same_function(*before, look)) return mark_all(true);
-    const bool is_other = before->radius != look.radius || before->rays != look.rays ||
-                          before->full_sphere != look.full_sphere || before->gradient_fade != look.gradient_fade;
+    if (!same_function(*before, look) || before->radius != look.radius) return mark_all(true);
+    const bool is_other = before->rays != look.rays || before->full_sphere != look.full_sphere ||
+                          before->gradient_fade != look.gradient_fade || before->preintegrated != look.preintegrated;
     if (is_other) mark_all(false);
     if (before->groups != look.groups)
         for (const VoxelBox& voxels : mask.bricks(volume.info().size)) changed(voxels);
@@ -223,11 +223,18 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// A brick with nothing visible may still contain voxels beside painted ones.
+/// A brick with nothing visible may still contain voxels beside painted ones, or beside what a step's ends show.
 bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
 {
     if (!entry.needs_values || !volume_->is_drawn(key)) return false;
-    return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1);
+    if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
+    bool found = false;
+    if (look_->preintegrated)
+        for_each_offset(1, [&](const glm::ivec3& offset) {
+            const auto neighbour = entries_.find({key.level, key.brick + offset});
+            found = found || (neighbour != entries_.end() && shows(neighbour->first, neighbour->second));
+        });
+    return found;
 }
 
 bool Occlusion::is_due()
@@ -346,7 +353,8 @@ void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, Occlus
     }
     for (const auto& [level, list] : jobs) {
         counts_.cells += list.size();
-        occlusion_cells(graph, volume, images, cells_input(level, std::ldexp(1.0, level), mask), list);
+        const double stretched = occlusion_taps(radius_of(level)).stretched;
+        occlusion_cells(graph, volume, images, cells_input(level, std::ldexp(stretched, level), mask), list);
     }
 }
 
@@ -355,7 +363,17 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
 {
     const int level = keys.front().level;
     const glm::dvec3& spacing = volume_->info().spacing;
-    OcclusionInput input{.params = {}, .taps = occlusion_taps(radius_of(level)), .near = {}};
+    OcclusionInput input{.params = {},
+                         .taps = occlusion_taps(radius_of(level)),
+                         .visible_intervals = look_->visibility.visible_intervals,
+                         .near = {}};
+    for (int above = 0; above < volume_->levels() - level; ++above)
+        input.exponents[size_t(above)] =
+            float(std::ldexp(input.taps.stretched / occlusion_taps(radius_of(level + above)).stretched, -above));
+    input.params.table_lower = look_->visibility.params.table_lower;
+    input.params.table_upper = look_->visibility.params.table_upper;
+    input.params.table_scale = look_->visibility.params.table_scale;
+    input.params.table_entries = look_->visibility.params.table_entries;
     input.params.rays = look_->rays;
     // For radii below a voxel there are no near taps; the tables need some stretch all the same.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
@@ -363,7 +381,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;
     input.params.gradient_fade = float(look_->gradient_fade);
     input.params.full_sphere = look_->full_sphere;
-    input.params.grow = mask.has_value();
+    input.params.grow = mask.has_value() || look_->preintegrated;
     std::vector<gpu::OcclusionJob> jobs;
     std::vector<uint32_t> bricks_around;
     for (const BrickKey& key : keys) {

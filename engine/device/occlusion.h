@@ -4,8 +4,8 @@
 // the device until a look asks for it.
 //
 //   bricks come, painted voxels, cut     -> cells of those bricks, and values as far as light comes from them
-//   transfer function                    -> all cells, all values
-//   radius, rays, hemisphere             -> all values
+//   transfer function, radius            -> all cells, all values
+//   rays, hemisphere                     -> all values
 //
 // Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing what is stale gives
 // the same bits as recomputing everything. One thread, the one that owns the memory.
@@ -37,6 +37,7 @@ public:
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
+        bool preintegrated = false;  ///< a step may show what its ends have, half a step from where it is lit
     };
 
     /// Frees all memory.

@@ -10,21 +10,19 @@ namespace shvr {
 
 namespace {
 
-/// Half a voxel more than keeps grazing rays out of a plane: real edges are a voxel or two wide.
-constexpr double LIFT = 1.5;
-constexpr double LIFT_OF_LARGE_CELLS = 0.5;  ///< per voxel of their side beyond the first
+/// How far from its voxel a ray may begin.
+constexpr double MAX_OFFSET = double(gpu::OCCLUSION_EDGE_REACH) + double(gpu::OCCLUSION_LIFT);
 
-/// In units, for a radius of 16: two taps each in half voxels, in cells of two voxels and in cells of four; their
-/// stretches grow with the radius. Smaller radii have fewer taps.
-constexpr double NEAR_STRETCH = 0.875;
-constexpr double NO_SHADOW = 0.65;  ///< to the voxel's own border: a compromise between rays along its edges and across
-constexpr uint32_t NEAR_TAPS = 2;
-constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
+/// In units, for a radius of 16: taps in half voxels, in cells of two voxels and in cells of four; the stretches of the
+/// latter grow with the radius. Smaller radii have fewer taps.
+constexpr double NEAR_STRETCH = 1.14;
 constexpr uint32_t FAR_SIZES[] = {0, 0, 1, 1};
+constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
 constexpr uint32_t MAX_APRON = 14;     ///< in cells of any size, for the largest radius
 constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
-static_assert(NEAR_TAPS + std::size(FAR_STRETCHES) == gpu::OCCLUSION_MAX_TAPS);
-static_assert(NO_SHADOW + (NEAR_TAPS - 0.5) * NEAR_STRETCH + LIFT + 0.5 < gpu::OCCLUSION_NEAR_APRON);
+static_assert(std::size(FAR_STRETCHES) == gpu::OCCLUSION_SIZES * gpu::OCCLUSION_FAR_TAPS);
+static_assert((gpu::OCCLUSION_NEAR_TAPS - 0.5) * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);
+static_assert(2.0 * double(gpu::OCCLUSION_EDGE_REACH) + 0.5 < gpu::OCCLUSION_NEAR_APRON);
 
 /// Angle between successive directions: the golden angle.
 const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
@@ -40,35 +38,33 @@ ResourceDesc occlusion_near_desc(uint32_t jobs)
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
 {
     const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MAX_APRON;
-    return image_desc(Format::r8_uint, {side, side, side * jobs});
+    return image_desc(Format::r32_uint, {side, side, side * jobs});
 }
 
 OcclusionTaps occlusion_taps(double radius)
 {
-    OcclusionTaps result{.radius = radius, .first = radius < 1.0 ? radius : NO_SHADOW};
+    OcclusionTaps result{.radius = radius, .first = radius < 1.0 ? radius : 0.0};
     if (radius < 1.0) return result;
-    double begin = result.first;
-    const auto add = [&](double stretch, double lift) {
-        const double middle = begin + 0.5 * stretch;
-        result.taps.push_back({float(std::max(middle, 1.0)), float(lift), float(stretch)});
+    double begin = 0.0;
+    const auto add = [&](double stretch) {
+        result.taps.push_back({float(begin + 0.5 * stretch), float(stretch)});
         begin += stretch;
     };
-    result.near_stretch = std::min(NEAR_STRETCH, (radius - begin) / NEAR_TAPS);
-    for (uint32_t i = 0; i < NEAR_TAPS; ++i) add(result.near_stretch, LIFT);
-    result.end.fill(NEAR_TAPS);
+    result.near_stretch = std::min(NEAR_STRETCH, radius / gpu::OCCLUSION_NEAR_TAPS);
+    for (uint32_t i = 0; i < gpu::OCCLUSION_NEAR_TAPS; ++i) add(result.near_stretch);
+    result.end.fill(gpu::OCCLUSION_NEAR_TAPS);
     const double rest = radius - begin;
     double covered = 0.0;
     size_t count = 0;
     while (rest > 1e-6 && count < std::size(FAR_STRETCHES) && rest > MAX_STRETCHED * covered)
         covered += FAR_STRETCHES[count++];
-    if (count > 0) result.exponent = rest / covered;
+    if (count > 0) result.stretched = rest / covered;
     for (size_t i = 0; i < count; ++i) {
         const uint32_t size = FAR_SIZES[i];
-        const double cell = 2 << size;
-        add(result.exponent * FAR_STRETCHES[i], LIFT + LIFT_OF_LARGE_CELLS * (cell - 1.0));
+        add(result.stretched * FAR_STRETCHES[i]);
         for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
-        const gpu::OcclusionTap& tap = result.taps.back();
-        result.aprons[size] = uint32_t(std::ceil((double(tap.distance) + double(tap.lift)) / cell));
+        const double cell = 2 << size;
+        result.aprons[size] = uint32_t(std::ceil((double(result.taps.back().distance) + MAX_OFFSET) / cell));
         SHVR_CHECK(result.aprons[size] <= MAX_APRON);
     }
     return result;
@@ -76,7 +72,7 @@ OcclusionTaps occlusion_taps(double radius)
 
 uint32_t occlusion_reach(double radius)
 {
-    // A tap lies within the radius plus its lift; 4 covers the lift and the voxel itself.
+    // A tap lies within the radius of where its ray begins; 4 covers how far that is from the voxel, and the voxel.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 
@@ -139,8 +135,9 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
                                       .cell_counts = volume.cell_counts,
                                       .reach = occlusion_reach(input.taps.radius),
                                       .aprons = {},
-                                      .exponent = float(input.taps.exponent)};
+                                      .exponents = {}};
     std::ranges::copy(input.taps.aprons, params.aprons);
+    std::ranges::copy(input.exponents, params.exponents);
     pass.block("params_block", std::span<const gpu::OcclusionGatherParams>(&params, 1));
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
@@ -188,14 +185,20 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     params.reach = occlusion_reach(input.taps.radius);
     std::ranges::copy(input.taps.aprons, params.aprons);
     params.cell_counts = volume.cell_counts;
-    std::ranges::fill(params.taps, gpu::OcclusionTap{.distance = 1.0f, .lift = 0.0f, .stretch = 0.0f});
-    // The taps of each size start at a fixed place.
-    for (uint32_t size = 0, i = 0; size <= gpu::OCCLUSION_SIZES; ++size)
-        for (uint32_t of_size = 0; i < input.taps.end[size]; ++i, ++of_size)
-            params.taps[gpu::OCCLUSION_TAPS_EACH * size + of_size] = input.taps.taps[i];
+    constexpr gpu::OcclusionTap UNUSED{.distance = 0.0f, .stretch = 0.0f};
+    std::ranges::fill(params.near_taps, UNUSED);
+    std::ranges::fill(params.far_taps, UNUSED);
+    const OcclusionTaps& taps = input.taps;
+    for (uint32_t i = 0; i < taps.end[0]; ++i) params.near_taps[i] = taps.taps[i];
+    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+        for (uint32_t i = taps.end[size]; i < taps.end[size + 1]; ++i)
+            params.far_taps[gpu::OCCLUSION_FAR_TAPS * size + i - taps.end[size]] = taps.taps[i];
+        params.far_exponents[size] = float(taps.stretched * (2 << size) / std::max(taps.near_stretch, 1e-3));
+    }
     pass.block("params_block", std::span<const gpu::OcclusionBakeParams>(&params, 1));
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
+    pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
     pass.read("atlas", volume.atlas);
     pass.read("near", scratch.near);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);

@@ -13,13 +13,13 @@ namespace shvr {
 /// Images of slots, as many as the density atlas has.
 struct OcclusionBinding {
     Resource values;                                     ///< r8ui, BRICK_TEXELS a side
-    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r8ui; half of BRICK_SIZE a side, a quarter
+    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r32ui; half of BRICK_SIZE a side, a quarter
 };
 
 /// Temporary data gathered for a slice of bricks: images for as many jobs, at most OCCLUSION_SLICE.
 struct OcclusionScratch {
     Resource near;                                        ///< r32ui, see near_opacity
-    std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r8ui, cells with aprons
+    std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons
 };
 ResourceDesc occlusion_near_desc(uint32_t jobs);
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
@@ -31,8 +31,8 @@ struct OcclusionTaps {
     std::vector<gpu::OcclusionTap> taps;  ///< the nearest first; their stretches and `first` make the radius
     std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};  ///< end of the near taps, then of each cell size's
     double near_stretch = 0.0;                             ///< of each near tap
-    double exponent = 1.0;  ///< maps the path length through a cell to the stretch of its taps
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};  ///< cells around a brick that taps may reach
+    double stretched = 1.0;                                ///< stretch of a tap in cells, in sides of those cells
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};   ///< cells around a brick that taps may reach
 };
 /// The largest radius, in units of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
@@ -47,9 +47,9 @@ void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<c
 
 struct OcclusionCellsInput {
     gpu::OcclusionCellsParams params;  ///< all but the mask
-    std::vector<float> opacities;      ///< per unit, for each entry of the table
+    std::vector<float> opacities;      ///< for each entry of the table
     std::optional<MaskBinding> mask;
-    std::vector<float> group_opacities;  ///< 256, per unit; used with a mask
+    std::vector<float> group_opacities;  ///< 256; used with a mask
 };
 /// Jobs of one level. Updates the handles of `occlusion` that it writes.
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
@@ -58,7 +58,9 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
 struct OcclusionInput {
     gpu::OcclusionBakeParams params;  ///< all but what follows from the other inputs
     OcclusionTaps taps;
-    OcclusionCellsInput near;  ///< opacities of the near taps' stretch
+    std::vector<uint32_t> visible_intervals;               ///< engine/look/transfer_function.h
+    std::array<float, gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
+    OcclusionCellsInput near;                              ///< opacities of the near taps' stretch
 };
 /// Jobs of one level, at most OCCLUSION_SLICE. `around`: for each job the bricks around it, see OcclusionJob.
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,

@@ -1,10 +1,26 @@
 // Local ambient occlusion: how much light reaches a voxel from the space around it, up to a radius (Hernell, Ljung and
 // Ynnerman 2007). Lengths are in units of the brick's level: 2^level reference lengths.
 //
-// "Cells" hold the opacity of the medium, in two coarse copies of every brick: means over 2^3 and 4^3 voxels. A cell's
-// code gives the opacity of a path through it, 2 or 4 units long: opacity = (code / 255)^2. The square root puts more
-// codes where opacities are small. The mean is of path opacities, not of extinction: half of a cell behind a surface
-// stops half of the light, however dense it is.
+// Definition: the light of a ray is the share of the radius along which light arrives, (1 / radius) integral of the
+// light left; a voxel's light is the mean over directions. With o(s) the opacity of one unit, s along the voxel's
+// normal, and o' the maximum of o over -1.5 < s < 0.25:
+//
+//   surface   strength = g^2 / (g^2 + fade^2) for a gradient g
+//   edge      the voxel is moved along the normal to where the medium ends: by the integral over 0 < s < 1.5 of the
+//             minimum so far of e(s), less that over -1.5 < s < 0 of 1 - the maximum so far, where
+//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.08 units in front of that; all this times the strength.
+//   side      directions whose cosine with the normal is below strength - 1 come from the front instead, mirrored in
+//             the surface. Unless the full sphere is asked for.
+//   itself    as far as a ray is in its own voxel it meets no more than half a unit after leaving it.
+//
+// So a ray begins where what is seen begins, however deep in the edge its voxel lies: on a plane all light arrives, and
+// in a hollow the wall is as near as it is. tests/reference/occlusion.h has all of it in double.
+//
+// "Cells" hold the opacity of the medium, in two coarse copies of every brick, of 2^3 and 4^3 voxels. A cell's three
+// codes are the opacities of paths through it along x, y and z, each the mean over its columns: a wall stops what
+// crosses it, however thin, and not what runs beside it. They are those of the stretch of a ray that a cell stands for,
+// 2 or 4 units times a factor that makes all of them as long as the radius. Opacity = (code / 255)^2; the square root
+// puts more codes where opacities are small. A ray takes their mean, weighted with the squares of its direction.
 //
 // "Near" is the opacity right around a voxel, in steps of half a voxel: at steep surfaces, whole voxels are too coarse
 // for rays that pass close by. It is computed from densities and gradients for each brick in turn, with the
@@ -19,7 +35,6 @@
 SHARED_BEGIN
 
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // of cells: 2 << size voxels a side
-SHARED_CONST uint OCCLUSION_MAX_TAPS = 6u;
 /// Bricks whose values can be computed at once: the scratch images hold as many, stacked along z.
 SHARED_CONST uint OCCLUSION_SLICE = 16u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
@@ -31,6 +46,9 @@ SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3
 SHARED_CONST uint OCCLUSION_SPLIT = 8u;
 /// An entry of `around` is a packed slot and, from this bit on, how many levels its brick is above the job's; 0: none.
 SHARED_CONST uint OCCLUSION_LEVEL_SHIFT = 24u;
+
+/// Maximum number of levels of a volume.
+SHARED_CONST uint OCCLUSION_LEVELS = 32u;
 
 /// A brick whose cells are computed: one workgroup.
 struct OcclusionCellsJob {
@@ -56,20 +74,13 @@ struct OcclusionJob {
     uint around;  ///< index of the first of the bricks around it in their list, x fastest
 };
 
-/// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
-struct OcclusionTap {
-    float distance;
-    float lift;  ///< offset along the normal; keeps grazing rays, and large cells, out of the surface
-    float stretch;
-};
-
 /// Parameters for gathering the surroundings of bricks of one level.
 struct OcclusionGatherParams {
     OcclusionCellsParams voxels;
     uvec3 cell_counts;  ///< of the leap grid
     uint reach;
-    uint aprons[OCCLUSION_SIZES];  ///< in cells of each size
-    float exponent;                ///< maps the path length through a cell to the stretch of its taps
+    uint aprons[OCCLUSION_SIZES];       ///< in cells of each size
+    float exponents[OCCLUSION_LEVELS];  ///< from the cells of a level above to the stretches of this one's taps
 };
 
 /// Opacity of a voxel's eight octants: 8 bits for their maximum, coded as in cells, and 3 bits for each octant, in

@@ -3,10 +3,15 @@
 
 shared uint around[OCCLUSION_AROUND];
 
-void load_around(const OcclusionJob job, uint reach)
+uint around_count(uint reach)
 {
     const uint side = 2u * reach + 1u;
-    for (uint i = gl_LocalInvocationIndex; i < side * side * side; i += 64u)
+    return side * side * side;
+}
+
+void load_around(const OcclusionJob job, uint reach)
+{
+    for (uint i = gl_LocalInvocationIndex; i < around_count(reach); i += 64u)
         around[i] = bricks_around.entries[job.around + i];
 }
 

@@ -1,8 +1,6 @@
-// How much light reaches every potentially visible voxel of a brick (occlusion.h): the mean over rays of the share of
-// the radius along which light arrives. Value of a ray = (1 / radius) sum over stretches of length * light left in
-// their middle. Only voxels in occupied cells are computed: the ranges of cells overlap by a voxel, so a visible sample
-// reads no others. PAGED: cells are those of paged bricks.
-// variants: PAGED FILTERED
+// How much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray takes
+// three samples in half voxels, two in cells of two voxels and two in cells of four. PAGED: cells are those of paged
+// bricks. variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -19,24 +17,39 @@ layout(binding = 3) uniform sampler3D atlas;
 layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
 layout(binding = 4, r32ui) uniform readonly uimage3D near;
-layout(binding = 5, r8ui) uniform readonly uimage3D around_2;
-layout(binding = 6, r8ui) uniform readonly uimage3D around_4;
+layout(binding = 5, r32ui) uniform readonly uimage3D around_2;
+layout(binding = 6, r32ui) uniform readonly uimage3D around_4;
 layout(binding = 7, r8ui) uniform writeonly uimage3D values;
 #ifdef PAGED
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 #else
 layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
+layout(binding = 9, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
 
 #include "occlusion_around.glsl"
 #include "../library/voxel_code.glsl"
 
+OcclusionBakeParams params;
+#include "../library/occupancy.glsl"
+
+// Found by search: least errors over the cases of tests/gpu/occlusion_light_test.cpp. A cell counts as this much nearer
+// to the surface than it is, in units; ...
+const float MARGIN_HALVES = 0.12, MARGIN_2 = 0.1, MARGIN_4 = 0.6;
+// ... that much more of it is taken to be the surface's; ...
+const float WALL_4 = 1.6;
+// ... and what stops light does so this much earlier than evenly along the stretch.
+const float BEND_2 = 0.2, BEND_4 = 0.06;
+
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
+const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
+shared uint voxels[CELLS_OF_ONE * VOXELS_OF_CELL / 2u];   // two in each entry
+shared uint voxel_count;
 
 // Whether any of these voxels is in an occupied cell, or with `grow` within one voxel of such a cell.
-bool any_cell_is_occupied(const OcclusionBakeParams params, const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
+bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
     const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes, so that they stay together
     const ivec3 first = first_voxel - grow >> 2, last = last_voxel + grow >> 2;
@@ -48,59 +61,240 @@ bool any_cell_is_occupied(const OcclusionBakeParams params, const OcclusionJob j
     return found;
 }
 
-struct Ray {
-    vec3 origin;   // voxels from the brick's corner
-    vec3 direction;
-    vec3 lift;
+ivec3 voxel_of(uint cell, uint lane)
+{
+    return 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) + ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
+}
+
+// Whether visible samples may read the values of four voxels in a row: bits. They may if the transfer function shows
+// something between a voxel's density and those around it. Not of use where a voxel may be seen for another reason.
+uint shows_nearby(ivec3 texel)
+{
+    vec4 lower = vec4(65535.0), upper = vec4(0.0);
+    for (int i = 0; i < 9; ++i) {
+        const ivec3 first = texel + ivec3(-1, i % 3 - 1, i / 3 - 1);
+        const vec2 before = vec2(code_at(first), code_at(first + ivec3(1, 0, 0)));
+        const vec2 middle = vec2(code_at(first + ivec3(2, 0, 0)), code_at(first + ivec3(3, 0, 0)));
+        const vec2 behind = vec2(code_at(first + ivec3(4, 0, 0)), code_at(first + ivec3(5, 0, 0)));
+        const vec4 a = vec4(before, middle), b = vec4(before.y, middle, behind.x), c = vec4(middle, behind);
+        lower = min(lower, min(a, min(b, c)));
+        upper = max(upper, max(a, max(b, c)));
+    }
+    uint bits = 0u;
+    for (int i = 0; i < 4; ++i)
+        bits |= uint(transfer_function_shows(uint(lower[i]) | uint(upper[i]) << 16u)) << i;
+    return bits;
+}
+
+void add_voxel(uint cell, uint in_cell)
+{
+    const uint at = atomicAdd(voxel_count, 1u);
+    atomicAdd(voxels[at >> 1u], (cell << 6u | in_cell) << 16u * (at & 1u));
+}
+
+// Lists the voxels that are computed, in no order.
+void list_voxels(const OcclusionJob job)
+{
+    const uint lane = gl_LocalInvocationIndex;
+    if (lane == 0u) {
+        cell_count = 0u;
+        voxel_count = 0u;
+    }
+    for (uint i = lane; i < CELLS_OF_ONE * VOXELS_OF_CELL / 2u; i += 64u) voxels[i] = 0u;
+    barrier();
+    for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
+        const uint cell = i * OCCLUSION_SPLIT + gl_WorkGroupID.z;
+        const ivec3 first = voxel_of(cell, 0u);
+        if (any_cell_is_occupied(job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
+    }
+    barrier();
+    // Loops' counts are the same for all lanes; the one that is not of use is 0.
+    const uint found = cell_count, by_voxel = params.grow != 0u ? found : 0u;
+    for (uint i = 0u; i < by_voxel; ++i) {
+        const ivec3 voxel = voxel_of(cells[i], lane);
+        if (any_cell_is_occupied(job, voxel, voxel)) add_voxel(cells[i], lane);
+    }
+    const ivec3 slot = ivec3(slot_origin(job.slot)) + int(BRICK_APRON);
+    const uint row = lane & 15u, by_rows = params.grow != 0u ? 0u : (found + 3u) / 4u;
+    for (uint i = 0u; i < by_rows; ++i) {
+        const uint index = 4u * i + (lane >> 4u), cell = cells[min(index, found - 1u)];
+        const uint bits = shows_nearby(slot + voxel_of(cell, 4u * row));
+        for (uint k = 0u; k < 4u; ++k)
+            if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell, 4u * row + k);
+    }
+    barrier();
+}
+
+// Positions are above 0 where they are truncated: aprons are in them.
+ivec3 with_job(ivec3 texel, uint side)
+{
+    return texel + ivec3(0, 0, side * gl_WorkGroupID.x);   // the images hold jobs stacked along z
+}
+
+// Opacity of half a voxel over the stretch of a near tap; `half_voxel` from the apron's corner.
+float near_at(ivec3 half_voxel)
+{
+    const uint packed = imageLoad(near, with_job(half_voxel >> 1, OCCLUSION_NEAR_SIDE)).x;
+    const ivec3 half_of = half_voxel & 1;
+    return near_opacity(packed, uint(half_of.x | half_of.y << 1 | half_of.z << 2));
+}
+
+// `place` in voxels from the brick's corner.
+float near_between(vec3 place)
+{
+    const vec3 lattice = 2.0 * place + (2.0 * float(OCCLUSION_NEAR_APRON) - 0.5);
+    const ivec3 c = ivec3(lattice);
+    const vec3 f = lattice - vec3(c);
+    const vec4 v = mix(vec4(near_at(c), near_at(c + ivec3(0, 1, 0)), near_at(c + ivec3(0, 0, 1)),
+                            near_at(c + ivec3(0, 1, 1))),
+                       vec4(near_at(c + ivec3(1, 0, 0)), near_at(c + ivec3(1, 1, 0)), near_at(c + ivec3(1, 0, 1)),
+                            near_at(c + ivec3(1, 1, 1))), f.x);
+    const vec2 w = mix(v.xz, v.yw, f.y);
+    return mix(w.x, w.y, f.z);
+}
+
+// What a ray samples at: cells of one size, or half voxels. Positions are in these, from the apron's corner.
+struct Lattice {
+    vec3 origin;    // where rays begin
+    float height;   // of the surface, as dot(heights, position)
+    float wall;     // opacity of the half-space behind the surface over the stretch of a tap
 };
 
-vec3 place_of(const Ray ray, const OcclusionTap tap)
+// The surface at a voxel, and what cells hold of the half-space behind it: that stops no ray which leaves it.
+struct Surface {
+    vec3 normal;
+    float strength;
+    vec3 place;    // where rays begin, voxels from the brick's corner
+    vec3 heights;  // units along the normal for each voxel
+    vec3 scale;    // the part of a cell's columns along each axis that are behind it: base - scale * height in cells
+    vec3 base;
+    Lattice halves, cells_2, cells_4;
+};
+
+float saturated(float share)
 {
-    return ray.origin + tap.distance * ray.direction + tap.lift * ray.lift;
+    const float rest = 1.0 - min(share, 1.0);
+    return 1.0 - rest * rest;
+}
+
+Lattice lattice_of(const Surface s, float per_voxel, uint apron, float margin, float wall)
+{
+    const vec3 origin = s.place * per_voxel + float(apron);
+    const float lift = (margin - s.strength * OCCLUSION_LIFT) * per_voxel;
+    return Lattice(origin, dot(origin - 0.5, s.heights) + lift, s.strength * wall);
+}
+
+Surface surface_at(vec3 centre, vec3 slope)
+{
+    Surface s;
+    const float square = dot(slope, slope), fade = params.gradient_fade * params.gradient_fade;
+    s.strength = square > 0.0 ? square / (square + fade) : 0.0;
+    s.normal = square > 0.0 ? -slope * inversesqrt(square) : vec3(0.0, 0.0, 1.0);
+    const vec3 step = s.normal * params.inverse_spacing;
+    const float apart = OCCLUSION_EDGE_REACH / float(OCCLUSION_EDGE_TAPS);
+    float before[OCCLUSION_EDGE_TAPS], behind[OCCLUSION_EDGE_TAPS], most = 0.0, clear = 1.0;
+    for (uint i = 0u; i < OCCLUSION_EDGE_TAPS; ++i) {
+        const float along = (float(i) + 0.5) * apart;
+        before[i] = near_between(centre + along * step);
+        behind[i] = near_between(centre - along * step);
+        most = max(most, behind[i]);
+        clear = min(clear, before[i]);
+    }
+    most = max(most, before[0]);
+    const float inverse = 1.0 / max(most, 1e-6);
+    float least = 1.0, greatest = 0.0, offset = 0.0;
+    for (uint i = 0u; i < OCCLUSION_EDGE_TAPS; ++i) {
+        least = min(least, saturated(before[i] * inverse));
+        greatest = max(greatest, saturated(behind[i] * inverse));
+        offset += apart * (least + greatest - 1.0);
+    }
+    if (most < 1e-6) offset = 0.0;
+    s.place = centre + s.strength * (offset + OCCLUSION_LIFT) * step;
+    s.heights = s.normal / params.inverse_spacing;
+    const vec3 extent = abs(s.heights), across = extent.yzx + extent.zxy;
+    s.scale = 1.0 / max(across, 0.1);
+    s.base = 0.5 + 0.5 * extent * s.scale;
+    const float left = clamp((1.0 - most) / max(1.0 - clear, 1e-6), 1e-4, 1.0);
+    s.halves = lattice_of(s, 2.0, 2u * OCCLUSION_NEAR_APRON, MARGIN_HALVES, 1.0 - left);
+    s.cells_2 = lattice_of(s, 0.5, params.aprons[0], MARGIN_2, 1.0 - pow(left, params.far_exponents[0]));
+    s.cells_4 = lattice_of(s, 0.25, params.aprons[1], MARGIN_4, WALL_4 * (1.0 - pow(left, params.far_exponents[1])));
+    return s;
+}
+
+// An opacity without what the half-space behind the surface has of it.
+float beyond_surface(float opacity, float of_surface)
+{
+    const float own = min(of_surface, 0.95);
+    return max(opacity - own, 0.0) / (1.0 - own);
+}
+
+// `leaves`: 1 if the ray leaves the surface, otherwise 0.
+float near_tap(const Surface s, ivec3 half_voxel, float leaves)
+{
+    const float height = dot(vec3(half_voxel), s.heights) - s.halves.height;
+    return beyond_surface(near_at(half_voxel), leaves * s.halves.wall * clamp(0.5 - height, 0.0, 1.0));
+}
+
+float cell_tap(const Surface s, const Lattice lattice, ivec3 cell, uint packed, vec3 weights, float leaves)
+{
+    const vec3 code = vec3(uvec3(packed, packed >> 8u, packed >> 16u) & 255u);
+    const float opacity = dot(weights, code * code) * (1.0 / 65025.0);
+    const float height = dot(vec3(cell), s.heights) - lattice.height;
+    const vec3 behind = clamp(s.base - height * s.scale, 0.0, 1.0);
+    return beyond_surface(opacity, leaves * lattice.wall * dot(weights, behind));
 }
 
 // x: light left; y: light that arrived.
-vec2 after(vec2 light, const OcclusionTap tap, float opacity)
+vec2 after(vec2 light, float stretch, float stopped, float bend)
 {
-    const float left = 1.0 - opacity;
-    return vec2(light.x * left, light.y + light.x * tap.stretch * (0.5 + 0.5 * left));
+    return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + bend * stopped)));
 }
 
-float opacity_of(uint code)
+vec2 after_near(vec2 light, float stretch, float stopped)
 {
-    return float(code * code) * (1.0 / 65025.0);
+    return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * sqrt(1.0 - stopped));
 }
 
-// Reads no buffer, and no loop count is variable: SIMD devices would run those lane by lane.
-float along(const OcclusionBakeParams params, const Ray ray, ivec3 voxel)
+// Light that arrives along a ray, in units. No buffer is read and nothing is a loop: SIMD devices would go lane by
+// lane.
+float along(const Surface s, vec3 direction, float leaves, ivec3 voxel)
 {
-    const int behind = int(gl_WorkGroupID.x);
-    const ivec3 aprons = ivec3(OCCLUSION_NEAR_APRON, params.aprons[0], params.aprons[1]);
-    const ivec3 beyond = (ivec3(BRICK_SIZE, BRICK_SIZE >> 1u, BRICK_SIZE >> 2u) + 2 * aprons) * behind;
-    vec2 light = vec2(1.0, params.first);
-    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
-        const OcclusionTap tap = params.taps[i];
-        const ivec3 half_voxel = ivec3(floor(2.0 * place_of(ray, tap))), at = half_voxel >> 1, half_of = half_voxel & 1;
-        const uint packed = imageLoad(near, at + aprons.x + ivec3(0, 0, beyond.x)).x;
-        const float opacity = near_opacity(packed, uint(half_of.x | half_of.y << 1 | half_of.z << 2));
-        light = after(light, tap, at == voxel ? 0.0 : opacity);   // where voxels are long, a step may not leave one
-    }
-    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
-        const OcclusionTap tap = params.taps[OCCLUSION_TAPS_EACH + i];
-        const ivec3 at = ivec3(floor(0.5 * place_of(ray, tap))) + aprons.y + ivec3(0, 0, beyond.y);
-        light = after(light, tap, opacity_of(imageLoad(around_2, at).x));
-    }
-    for (uint i = 0u; i < OCCLUSION_TAPS_EACH; ++i) {
-        const OcclusionTap tap = params.taps[2u * OCCLUSION_TAPS_EACH + i];
-        const ivec3 at = ivec3(floor(0.25 * place_of(ray, tap))) + aprons.z + ivec3(0, 0, beyond.z);
-        light = after(light, tap, opacity_of(imageLoad(around_4, at).x));
-    }
-    return light.y;
+    const vec3 step = direction * params.inverse_spacing, weights = direction * direction;
+    const ivec3 half_0 = ivec3(s.halves.origin + 2.0 * params.near_taps[0].distance * step);
+    const ivec3 half_1 = ivec3(s.halves.origin + 2.0 * params.near_taps[1].distance * step);
+    const ivec3 half_2 = ivec3(s.halves.origin + 2.0 * params.near_taps[2].distance * step);
+    const ivec3 own = voxel + int(OCCLUSION_NEAR_APRON);
+    float stop_0 = near_tap(s, half_0, leaves), stop_1 = near_tap(s, half_1, leaves);
+    float stop_2 = near_tap(s, half_2, leaves);
+    stop_2 = half_2 >> 1 == own ? 0.0 : stop_2;
+    stop_1 = half_1 >> 1 == own ? min(stop_1, stop_2) : stop_1;
+    stop_0 = half_0 >> 1 == own ? min(stop_0, stop_1) : stop_0;
+    vec2 light = after_near(vec2(1.0, params.first), params.near_taps[0].stretch, stop_0);
+    light = after_near(light, params.near_taps[1].stretch, stop_1);
+    light = after_near(light, params.near_taps[2].stretch, stop_2);
+
+    const uint side_2 = (BRICK_SIZE >> 1u) + 2u * params.aprons[0], side_4 = (BRICK_SIZE >> 2u) + 2u * params.aprons[1];
+    const ivec3 cell_0 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[0].distance * step);
+    const ivec3 cell_1 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[1].distance * step);
+    const ivec3 cell_2 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[2].distance * step);
+    const ivec3 cell_3 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[3].distance * step);
+    const uint packed_0 = imageLoad(around_2, with_job(cell_0, side_2)).x;
+    const uint packed_1 = imageLoad(around_2, with_job(cell_1, side_2)).x;
+    const uint packed_2 = imageLoad(around_4, with_job(cell_2, side_4)).x;
+    const uint packed_3 = imageLoad(around_4, with_job(cell_3, side_4)).x;
+    const float far_0 = cell_tap(s, s.cells_2, cell_0, packed_0, weights, leaves);
+    const float far_1 = cell_tap(s, s.cells_2, cell_1, packed_1, weights, leaves);
+    const float far_2 = cell_tap(s, s.cells_4, cell_2, packed_2, weights, leaves);
+    const float far_3 = cell_tap(s, s.cells_4, cell_3, packed_3, weights, leaves);
+    light = after(light, params.far_taps[0].stretch, far_0, BEND_2);
+    light = after(light, params.far_taps[1].stretch, far_1, BEND_2);
+    light = after(light, params.far_taps[2].stretch, far_2, BEND_4);
+    return after(light, params.far_taps[3].stretch, far_3, BEND_4).y;
 }
 
 // Stores the value at the voxel and at its copies in other bricks. Aprons that no brick of this level writes repeat
 // their edge voxels.
-void store(const OcclusionBakeParams params, const OcclusionJob job, ivec3 voxel, uint value)
+void store(const OcclusionJob job, ivec3 voxel, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
     const uint copies = side == ivec3(0) ? 1u : 8u;
@@ -115,55 +309,44 @@ void store(const OcclusionBakeParams params, const OcclusionJob job, ivec3 voxel
 
 void main()
 {
-    const OcclusionBakeParams params = params_block.data;
+    params = params_block.data;
     const OcclusionJob job = jobs.list[gl_WorkGroupID.x];
-    const uint lane = gl_LocalInvocationIndex;
     load_around(job, params.reach);
-    if (lane == 0u) cell_count = 0u;
-    barrier();
-    // Skipped by loop counts, never by branches: SIMD devices execute branches masked.
-    for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
-        const uint cell = i * OCCLUSION_SPLIT + gl_WorkGroupID.z;
-        const ivec3 first = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u);
-        if (any_cell_is_occupied(params, job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
-    }
-    barrier();
+    list_voxels(job);
 
-    const uint turns = cell_count;
+    const uint count = voxel_count, turns = (count + 63u) / 64u;
     for (uint turn = 0u; turn < turns; ++turn) {
-        const uint cell = cells[turn];
-        const ivec3 voxel = 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) +
-                            ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
-        const uint rays = any_cell_is_occupied(params, job, voxel, voxel) ? params.rays : 0u;
+        const uint index = 64u * turn + gl_LocalInvocationIndex;
+        const uint listed = voxels[min(index, count - 1u) >> 1u] >> 16u * (index & 1u) & 0xffffu;
+        const uint rays = index < count ? params.rays : 0u;
+        const ivec3 voxel = voxel_of(listed >> 6u, listed & 63u);
 
         const ivec3 texel = ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;
         const vec3 slope = 0.5 * params.inverse_spacing *
                            vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
                                 code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                                 code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
-        const float square = dot(slope, slope), fade = params.gradient_fade * params.gradient_fade;
-        const bool has_side = square > 0.0 && params.full_sphere == 0u;
-        const float surface = has_side ? square / (square + fade) : 0.0;
-        const vec3 normal = has_side ? -slope * inversesqrt(square) : vec3(0.0);
+        const Surface surface = surface_at(vec3(voxel) + 0.5, slope);
+        // Two vectors that are square to the normal and to each other (Duff et al. 2017).
+        const vec3 n = surface.normal;
+        const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
+        const vec3 one = vec3(1.0 + up * n.x * n.x * a, up * b, -up * n.x), other = vec3(b, up + n.y * n.y * a, -n.y);
+        // Of the sphere behind the surface, the part whose rays come from the front instead.
+        const float open = params.full_sphere != 0u ? 1.0 : 1.0 - surface.strength;
 
         float sum = 0.0;
-        Ray ray;
-        ray.origin = vec3(voxel) + 0.5;
-        ray.lift = surface * normal * params.inverse_spacing;
         vec2 turned = vec2(1.0, 0.0);
-        const float apart = 2.0 / float(params.rays);
+        const float share = 1.0 / float(params.rays);
         for (uint k = 0u; k < rays; ++k) {
-            // Spherical Fibonacci points (Gonzalez 2010).
-            const float height = 1.0 - apart * (float(k) + 0.5);
-            const vec3 direction = vec3(sqrt(1.0 - height * height) * turned, height);
+            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where both sides' rays go.
+            const float height_share = 1.0 - share * (float(k) + 0.5);
+            const float height = height_share < open ? 2.0 * height_share - open : height_share;
+            const vec2 beside = sqrt(max(1.0 - height * height, 0.0)) * turned;
             turned = vec2(turned.x * params.turn_cos - turned.y * params.turn_sin,
                           turned.x * params.turn_sin + turned.y * params.turn_cos);
-            // Rays from behind the surface are mirrored to its front; the weaker the surface, the fewer are.
-            const vec3 ahead = dot(direction, normal) < surface - 1.0 ? -direction : direction;
-            ray.direction = ahead * params.inverse_spacing;
-            sum += along(params, ray, voxel);
+            sum += along(surface, beside.x * one + beside.y * other + height * n, float(height > 1e-4), voxel);
         }
-        const float value = sum / (params.radius * float(params.rays));
-        if (rays > 0u) store(params, job, voxel, uint(255.0 * min(value, 1.0) + 0.5));
+        const float value = sum * share / params.radius;
+        if (rays > 0u) store(job, voxel, uint(255.0 * min(value, 1.0) + 0.5));
     }
 }

@@ -5,23 +5,43 @@
 
 SHARED_BEGIN
 
-/// Number of taps each in half voxels, in cells of two voxels and in cells of four.
-SHARED_CONST uint OCCLUSION_TAPS_EACH = 2u;
+/// Samples of a ray: in half voxels, and in cells of each size.
+SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
+SHARED_CONST uint OCCLUSION_FAR_TAPS = 2u;
+/// Along the normal, on each side of a voxel, half a unit apart: where the medium ends.
+SHARED_CONST uint OCCLUSION_EDGE_TAPS = 3u;
+SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
+/// Rays begin this far in front of the edge.
+SHARED_CONST float OCCLUSION_LIFT = 0.08f;
+/// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
+struct OcclusionTap {
+    float distance;
+    float stretch;
+};
 
 struct OcclusionBakeParams {
     vec3 inverse_spacing;  ///< voxels per unit
     float radius;
-    float first;          ///< length that light always passes, in units: no voxel shadows itself
-    float gradient_fade;  ///< codes per unit; gradients of 0, or any if `full_sphere`, have no hemisphere
+    float first;          ///< length that light always passes, in units
+    float gradient_fade;  ///< codes per unit
     uint full_sphere;
     uint rays;
-    float turn_cos;  ///< angle between successive rays, about z
+    float turn_cos;  ///< angle between successive rays, about the normal
     float turn_sin;
     uint reach;
-    uint grow;  ///< 1: also voxels beside those of occupied cells (painted ones show outside the cells' ranges)
+    /// 1: all voxels of occupied cells and those beside them (painted ones and ends of steps show outside the cells'
+    /// ranges); 0: only those beside which the transfer function shows something.
+    uint grow;
+    float table_lower;  ///< of `visible_intervals`, as in RaycastParams
+    float table_upper;
+    float table_scale;
+    uint table_entries;
     uint aprons[OCCLUSION_SIZES];
-    uvec3 cell_counts;                      ///< of the leap grid
-    OcclusionTap taps[OCCLUSION_MAX_TAPS];  ///< the nearest first; unused ones have a stretch of 0
+    uvec3 cell_counts;  ///< of the leap grid
+    /// The nearest first; unused ones have a stretch of 0.
+    OcclusionTap near_taps[OCCLUSION_NEAR_TAPS];
+    OcclusionTap far_taps[OCCLUSION_SIZES * OCCLUSION_FAR_TAPS];
+    float far_exponents[OCCLUSION_SIZES];  ///< from the stretch of a near tap to that of these
 };
 
 SHARED_END

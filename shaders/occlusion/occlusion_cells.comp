@@ -14,8 +14,8 @@ layout(binding = 3) uniform sampler3D atlas;
 #else
 layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
-layout(binding = 4, r8ui) uniform writeonly uimage3D cells_2;
-layout(binding = 5, r8ui) uniform writeonly uimage3D cells_4;
+layout(binding = 4, r32ui) uniform writeonly uimage3D cells_2;
+layout(binding = 5, r32ui) uniform writeonly uimage3D cells_4;
 #include "occlusion_opacity.glsl"
 #include "../library/voxel_code.glsl"
 
@@ -26,9 +26,10 @@ float opacity_at(const OcclusionCellsParams params, const OcclusionCellsJob job,
     return held < 0.0 ? opacity : held;
 }
 
-uvec4 code_of(float opacity)
+uvec4 code_of(vec3 opacity)
 {
-    return uvec4(uint(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5));
+    const uvec3 code = uvec3(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5);
+    return uvec4(code.x | code.y << 8u | code.z << 16u);
 }
 
 uvec3 corner_of_cube(uint i)
@@ -43,19 +44,25 @@ void main()
     const uvec3 slot = unpack_slot(job.slot);
     for (uint z = 0u; z < 8u; ++z) {
         const uvec3 block = uvec3(gl_LocalInvocationID.xy, z);   // of 4^3 voxels
-        float sum_4 = 0.0;
+        // Light left by columns of four voxels: along x by yz, along y by xz, along z by xy.
+        vec4 left_x[4] = vec4[4](vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0)), left_y[4] = left_x, left_z[4] = left_x;
         for (uint octant = 0u; octant < 8u; ++octant) {
-            const uvec3 half_block = 2u * block + corner_of_cube(octant);
-            float sum_2 = 0.0;
-            for (uint corner = 0u; corner < 8u; ++corner) {
-                const uvec3 voxel = 2u * half_block + corner_of_cube(corner);
-                const float one = opacity_at(params, job, voxel);
-                const float two = one * (2.0 - one);   // 1 - (1 - a)^2
-                sum_2 += two;
-                sum_4 += two * (2.0 - two);
-            }
-            imageStore(cells_2, ivec3(BRICK_SIZE / 2u * slot + half_block), code_of(sum_2 / 8.0));
+            const uvec3 of_cube = corner_of_cube(octant), half_block = 2u * block + of_cube;
+            float left[8];
+            for (uint corner = 0u; corner < 8u; ++corner)
+                left[corner] = 1.0 - opacity_at(params, job, 2u * half_block + corner_of_cube(corner));
+            const vec4 x = vec4(left[0] * left[1], left[2] * left[3], left[4] * left[5], left[6] * left[7]);
+            const vec4 y = vec4(left[0] * left[2], left[1] * left[3], left[4] * left[6], left[5] * left[7]);
+            const vec4 z = vec4(left[0] * left[4], left[1] * left[5], left[2] * left[6], left[3] * left[7]);
+            left_x[of_cube.y + 2u * of_cube.z] *= x;
+            left_y[of_cube.x + 2u * of_cube.z] *= y;
+            left_z[of_cube.x + 2u * of_cube.y] *= z;
+            const vec3 through = vec3(dot(x, vec4(0.25)), dot(y, vec4(0.25)), dot(z, vec4(0.25)));
+            imageStore(cells_2, ivec3(BRICK_SIZE / 2u * slot + half_block), code_of(1.0 - through));
         }
-        imageStore(cells_4, ivec3(BRICK_SIZE / 4u * slot + block), code_of(sum_4 / 64.0));
+        vec3 through = vec3(0.0);
+        for (uint i = 0u; i < 4u; ++i)
+            through += vec3(dot(left_x[i], vec4(1.0)), dot(left_y[i], vec4(1.0)), dot(left_z[i], vec4(1.0)));
+        imageStore(cells_4, ivec3(BRICK_SIZE / 4u * slot + block), code_of(1.0 - through / 16.0));
     }
 }

@@ -22,11 +22,11 @@ layout(binding = 5, r8ui) uniform readonly uimage3D cell_leap;
 #else
 layout(binding = 5, r32ui) uniform readonly uimage3D leap;
 #endif
-layout(binding = 9, r8ui) uniform readonly uimage3D cells_2;
-layout(binding = 10, r8ui) uniform readonly uimage3D cells_4;
+layout(binding = 9, r32ui) uniform readonly uimage3D cells_2;
+layout(binding = 10, r32ui) uniform readonly uimage3D cells_4;
 layout(binding = 11, r32ui) uniform writeonly uimage3D near;
-layout(binding = 12, r8ui) uniform writeonly uimage3D around_2;
-layout(binding = 13, r8ui) uniform writeonly uimage3D around_4;
+layout(binding = 12, r32ui) uniform writeonly uimage3D around_2;
+layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 #include "occlusion_around.glsl"
 #include "occlusion_opacity.glsl"
@@ -55,18 +55,26 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const uint entry = entry_at(params.reach, voxel >> 5), above = entry >> OCCLUSION_LEVEL_SHIFT;
     const ivec3 texel = ivec3(slot_origin(entry)) + int(BRICK_APRON) + in_brick_of(job, voxel, int(above));
     const float side = float(1u << above);
-    const vec3 slope = vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
-                            code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
-                            code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1))) / (2.0 * side);
+    const float middle = code_at(texel);
+    const vec3 before = vec3(code_at(texel - ivec3(1, 0, 0)), code_at(texel - ivec3(0, 1, 0)),
+                             code_at(texel - ivec3(0, 0, 1)));
+    const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
+                             code_at(texel + ivec3(0, 0, 1)));
+    const vec3 slope = (behind - before) / (2.0 * side);
     // A coarse voxel covers several: this one lies off its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    const float code = code_at(texel) + dot(slope, beside);
+    const float code = middle + dot(slope, beside);
+    // Nothing is more extreme than its neighbours: where these show nothing, cells are not occupied and never read.
+    const vec3 least = min(before, behind), most = max(before, behind);
+    const float lower = min(middle, min(least.x, min(least.y, least.z)));
+    const float upper = max(middle, max(most.x, max(most.y, most.z)));
     const vec3 centre = float(1u << params.voxels.level) * (vec3(ivec3(BRICK_SIZE * job.brick) + voxel) + 0.5);
     const float held = entry != 0u ? opacity_held(params.voxels, centre) : 0.0;
     float halves[8], greatest = 0.0;
     for (uint octant = 0u; octant < 8u; ++octant) {
         const vec3 corner = vec3(octant & 1u, octant >> 1u & 1u, octant >> 2u) - 0.5;
-        halves[octant] = held < 0.0 ? opacity_of(params.voxels, code + 0.5 * dot(slope, corner)) : held;
+        const float of_half = clamp(code + 0.5 * dot(slope, corner), lower, upper);
+        halves[octant] = held < 0.0 ? opacity_of(params.voxels, of_half) : held;
         greatest = max(greatest, halves[octant]);
     }
     uint packed = uint(255.0 * sqrt(min(greatest, 1.0)) + 0.5);
@@ -75,36 +83,39 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     return (packed & 255u) != 0u ? packed : 0u;
 }
 
-// A cell's code, for the stretch of a tap there instead of the path through the cell.
-uvec4 stretched(uint code, float exponent)
+// Codes of a cell of a coarser level, for the stretch of a tap of this one.
+uint stretched(uint packed, float exponent)
 {
-    const float opacity = float(code * code) / 65025.0;
-    const float left = code < 255u ? pow(1.0 - opacity, exponent) : 0.0;
-    return uvec4(uint(255.0 * sqrt(1.0 - left) + 0.5));
+    const uvec3 code = uvec3(packed, packed >> 8u, packed >> 16u) & 255u;
+    const vec3 left = pow(max(1.0 - vec3(code * code) / 65025.0, 0.0), vec3(exponent));
+    const uvec3 of_tap = uvec3(255.0 * sqrt(1.0 - left) + 0.5);
+    return packed == 0u ? 0u : of_tap.x | of_tap.y << 8u | of_tap.z << 16u;
 }
 
-// Copies the cells of one size around the brick. One loop instead of three: on SIMD devices each loop runs one extra
-// time, with all of its body.
-void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size)
+// Copies the cells of one size around the brick. `are_coarser`: those that bricks of coarser levels stand in for, in
+// place of all others.
+void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size, bool are_coarser, uint end)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
     const uint side = (BRICK_SIZE >> shift) + 2u * params.aprons[size];
     const float inverse_side = 1.0 / float(side);
     const ivec3 behind = ivec3(0, 0, side * gl_WorkGroupID.x);
-    for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < side * side * side;
+    for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < min(side * side * side, end);
          i += 64u * OCCLUSION_SPLIT) {
         // Exact for these numbers; integer divisions are slow.
         const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);
         const int above = int(entry >> OCCLUSION_LEVEL_SHIFT);
+        if (are_coarser != above > 0) continue;
         const ivec3 from = int(BRICK_SIZE >> shift) * ivec3(unpack_slot(entry)) +
                            (in_brick_of(job, voxel, above) >> shift);
-        const float exponent = ldexp(params.exponent, -above);
+        uint packed = size == 0u ? imageLoad(cells_2, from).x : imageLoad(cells_4, from).x;
+        if (are_coarser) packed = stretched(packed, params.exponents[above]);
         if (size == 0u)
-            imageStore(around_2, texel + behind, stretched(imageLoad(cells_2, from).x, exponent));
+            imageStore(around_2, texel + behind, uvec4(packed));
         else
-            imageStore(around_4, texel + behind, stretched(imageLoad(cells_4, from).x, exponent));
+            imageStore(around_4, texel + behind, uvec4(packed));
     }
 }
 
@@ -116,6 +127,9 @@ void main()
     load_around(job, params.reach);
     if (lane == 0u) cell_count = 0u;
     barrier();
+    bool is_any_coarser = false;
+    for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
+        is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
     for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
         const uint cell = i * OCCLUSION_SPLIT + share;
         if (cell >= CELLS_OF_ALL) continue;
@@ -131,6 +145,10 @@ void main()
         const uint packed = near_of(params, job, texel - int(OCCLUSION_NEAR_APRON));
         imageStore(near, texel + int(OCCLUSION_NEAR_SIDE) * behind, uvec4(packed));
     }
-    copy_cells(params, job, 0u);
-    copy_cells(params, job, 1u);
+    // Work that is rarely there is skipped by the loops' ends.
+    const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
+    copy_cells(params, job, 0u, false, ~0u);
+    copy_cells(params, job, 1u, false, ~0u);
+    copy_cells(params, job, 0u, true, end_of_coarser);
+    copy_cells(params, job, 1u, true, end_of_coarser);
 }

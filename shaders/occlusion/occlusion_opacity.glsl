@@ -14,8 +14,7 @@ float opacity_of(const OcclusionCellsParams params, float code)
 {
     const float last = float(params.table_entries - 1u);
     const float at = clamp((code - params.table_lower) * params.table_scale, 0.0, last);
-    const uint entry = uint(min(at, last - 1.0));
-    const float opacity = mix(opacities.values[entry], opacities.values[entry + 1u], at - float(entry));
+    const float opacity = opacities.values[uint(at + 0.5)];
     return code >= params.table_lower && code <= params.table_upper ? opacity : 0.0;
 }
 

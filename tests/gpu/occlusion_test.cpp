@@ -13,8 +13,7 @@
 #include "engine/live/annotator.h"
 #include "engine/live/view.h"
 #include "engine/volume/source_procedural.h"
-#include "tests/reference/occlusion.h"
-#include "tests/support/gpu.h"
+#include "tests/support/occlusion.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -25,175 +24,19 @@ namespace {
 constexpr double STORED = 0.5 / 255.0;
 constexpr double ROUNDED_OTHERWISE = 1.6 / 255.0;
 
-Session occluded(std::vector<ControlPoint> points, double radius = 16.0, const glm::uvec2& pixels = {48, 40})
-{
-    Session session = plain_session(std::move(points), pixels);
-    session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
-    session.light.occlusion = {.strength = 1.0, .radius = radius};
-    return session;
-}
-
-Camera overview(const TestVolume& volume)
-{
-    return camera_along(volume, {1.0, 2.0, 3.0}, 1.2 * glm::length(glm::dvec3(volume.size) * volume.spacing));
-}
-
-/// Blobs with soft edges: surfaces, gaps, and an inside.
-TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
-{
-    TestVolume volume = volume_of(size, [](const glm::dvec3& p) {
-        return std::clamp(32000.0 + 14000.0 * std::sin(0.35 * p.x + 0.1 * p.y) +
-                              14000.0 * std::sin(0.29 * p.y - 0.2 * p.z) +
-                              14000.0 * std::cos(0.4 * p.z + 0.15 * p.x + 1.0),
-                          0.0, 65535.0);
-    });
-    volume.spacing = spacing;
-    return volume;
-}
-
-/// Values of all voxels of a resident volume, 0 ... 1.
-std::vector<double> values_of(OnDevice& device)
-{
-    FrameGraph graph;
-    const OcclusionBinding binding = device.renderer().scene().occlusion().bring_up_to_date(graph);
-    const uint32_t back = graph.read_back(binding.values);
-    const gpu::FrameResult result = device.renderer().executor().run(graph, {.timestamps = false});
-    const std::vector<std::byte>& bytes = result.read_backs[back];
-    const glm::ivec3 size = device.volume().size;
-    const glm::uvec3 texels = gpu::BRICK_TEXELS * device.renderer().volume().atlas_slots();
-    const RegionBricks bricks = *device.renderer().volume().region({Size3(0), Size3(size)}, true);
-    std::vector<double> values;
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y)
-            for (int x = 0; x < size.x; ++x) {
-                const glm::uvec3 voxel(x, y, z);
-                const uint32_t slot = bricks.slots[gpu::grid_index(voxel / gpu::BRICK_SIZE, bricks.counts)];
-                const glm::uvec3 texel = gpu::slot_origin(slot) + gpu::BRICK_APRON + voxel % gpu::BRICK_SIZE;
-                values.push_back(double(std::to_integer<uint8_t>(
-                                     bytes[texel.x + size_t(texels.x) * (texel.y + size_t(texels.y) * texel.z)])) /
-                                 255.0);
-            }
-    return values;
-}
-
-struct Expected {
-    const TestVolume& volume;
-    const Session& session;
-
-    double code(const glm::ivec3& at) const
-    {
-        const glm::ivec3 held = glm::clamp(at, glm::ivec3(0), volume.size - 1);
-        return volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
-    }
-    std::vector<double> opacities{};
-
-    Expected(const TestVolume& of_volume, const Session& of_session) : volume(of_volume), session(of_session)
-    {
-        for (int z = 0; z < volume.size.z; ++z)
-            for (int y = 0; y < volume.size.y; ++y)
-                for (int x = 0; x < volume.size.x; ++x) {
-                    opacities.push_back(is_kept({x, y, z}) ? session.transfer_function.at(code({x, y, z})).a : 0.0);
-                }
-    }
-    bool is_inside(const glm::ivec3& at) const
-    {
-        return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, volume.size));
-    }
-    bool is_kept(const glm::ivec3& at) const
-    {
-        const glm::dvec3 centre = glm::dvec3(at) + 0.5;
-        return is_inside(at) && glm::all(glm::greaterThanEqual(centre, session.cut.lower)) &&
-               glm::all(glm::lessThan(centre, session.cut.upper));
-    }
-    /// Density and slope of one octant of a voxel, a quarter of a voxel from its centre.
-    double half_opacity(const glm::ivec3& at, const glm::ivec3& half) const
-    {
-        if (!is_kept(at)) return 0.0;
-        double of_half = code(at);
-        for (int axis = 0; axis < 3; ++axis) {
-            glm::ivec3 step(0);
-            step[axis] = 1;
-            of_half += (half[axis] - 0.5) * 0.25 * (code(at + step) - code(at - step));
-        }
-        return session.transfer_function.at(of_half).a;
-    }
-    double opacity(const glm::ivec3& at) const
-    {
-        return is_inside(at) ? opacities[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))] : 0.0;
-    }
-    glm::dvec3 units() const
-    {
-        return std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z}) / volume.spacing;
-    }
-    reference::OcclusionSide side(const glm::ivec3& at) const
-    {
-        glm::dvec3 slope(0.0);
-        for (int axis = 0; axis < 3; ++axis) {
-            glm::ivec3 step(0);
-            step[axis] = 1;
-            slope[axis] = 0.5 * (code(at + step) - code(at - step)) * units()[axis];
-        }
-        const double square = glm::dot(slope, slope);
-        const double fade = session.light.gradient_fade * (volume.maximum - volume.minimum);
-        if (square == 0.0 || session.light.occlusion.full_sphere) return {};
-        return {-slope / std::sqrt(square), square / (square + fade * fade)};
-    }
-    reference::OcclusionRays rays() const
-    {
-        const OcclusionTaps taps = occlusion_taps(session.light.occlusion.radius);
-        reference::OcclusionRays rays{
-            .radius = taps.radius, .first = taps.first, .exponent = taps.exponent, .voxels_per_unit = units()};
-        rays.directions = reference::occlusion_directions(session.light.occlusion.rays);
-        for (uint32_t i = 0; i < taps.taps.size(); ++i)
-            rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].lift), double(taps.taps[i].stretch),
-                                 i < taps.end[0]   ? 0
-                                 : i < taps.end[1] ? 2
-                                                   : 4});
-        return rays;
-    }
-    double value(const glm::ivec3& at) const
-    {
-        return reference::occlusion_by_taps(
-            [&](const glm::ivec3& v) { return opacity(v); },
-            [&](const glm::ivec3& v, const glm::ivec3& half) { return half_opacity(v, half); }, rays(), at, side(at));
-    }
-};
-
-/// Codes between voxels; 0 outside.
-struct FieldCodes {
-    const TestVolume& volume;
-    double at(const glm::dvec3& p) const
-    {
-        if (glm::any(glm::lessThan(p, glm::dvec3(0.0))) || glm::any(glm::greaterThanEqual(p, glm::dvec3(volume.size))))
-            return 0.0;
-        const glm::dvec3 lattice = p - 0.5;
-        const glm::ivec3 corner(glm::floor(lattice));
-        const glm::dvec3 f = lattice - glm::dvec3(corner);
-        double sum = 0.0;
-        for (int i = 0; i < 8; ++i) {
-            const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2);
-            const glm::ivec3 held = glm::clamp(corner + offset, glm::ivec3(0), volume.size - 1);
-            const glm::dvec3 weight = glm::mix(1.0 - f, f, glm::dvec3(offset));
-            sum += weight.x * weight.y * weight.z *
-                   volume.voxels[size_t(held.x + volume.size.x * (held.y + volume.size.y * held.z))];
-        }
-        return sum;
-    }
-};
-
 /// Compares some of the volume's visible voxels with the definition.
 void check_values(OnDevice& device, const Session& session, size_t every)
 {
     device.draw(session, overview(device.volume()));
-    const std::vector<double> values = values_of(device);
-    const Expected expected{device.volume(), session};
+    const std::vector<double> values = occlusion_values(device);
+    const ExpectedOcclusion expected(device.volume(), session);
     const glm::ivec3 size = device.volume().size;
     size_t seen = 0, far = 0;
     double worst = 0.0;
     for (size_t i = 0; i < values.size(); i += every) {
         const glm::ivec3 voxel(int(i) % size.x, int(i) / size.x % size.y, int(i) / (size.x * size.y));
         if (expected.opacity(voxel) == 0.0) continue;
-        const double error = std::abs(values[i] - expected.value(voxel));
+        const double error = std::abs(values[i] - expected.by_taps(voxel));
         ++seen;
         far += error > STORED + 1e-4;
         worst = std::max(worst, error);
@@ -413,41 +256,6 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
         const Image8 renewed = view.read_back();
         CHECK(renewed.rgba != seen.rgba);
         CHECK(is_picture(renewed));
-    }
-}
-
-TEST_CASE_FIXTURE(OnDevice, "32 rays of six looks come close to 512 rays of 32 steps: tubes in noise")
-{
-    // The middle of a volume of 256^3.
-    const std::unique_ptr<VolumeSource> tubes = open_procedural({.kind = "tubes", .size = Size3(256), .seed = 3});
-    constexpr int SIDE = 128;
-    std::vector<std::byte> bytes(size_t{SIDE} * SIDE * SIDE);
-    tubes->read({Size3(64), Size3(64 + SIDE)}, bytes);
-    TestVolume scene{.size = glm::ivec3(SIDE)};
-    for (const std::byte voxel : bytes) scene.voxels.push_back(257.0 * std::to_integer<int>(voxel));
-    load(scene);
-    const std::vector<glm::dvec3> directions = reference::occlusion_directions(512);
-    for (const double densest : {0.9, 0.27}) {
-        CAPTURE(densest);
-        const Session session =
-            occluded({{257.0 * 90, RED, 0.0}, {257.0 * 130, RED, densest}, {65535.0, RED, densest}}, 16.0);
-        draw(session, overview(scene));
-        const std::vector<double> values = values_of(*this);
-        const Expected expected(volume(), session);
-        const FieldCodes codes{volume()};
-        double squares = 0.0, count = 0.0;
-        size_t visible = 0;
-        for (size_t i = 0; i < values.size(); ++i) {
-            const glm::ivec3 voxel(int(i) % SIDE, int(i) / SIDE % SIDE, int(i) / (SIDE * SIDE));
-            if (expected.opacity(voxel) == 0.0 || ++visible % 211 != 0) continue;
-            const auto opacity = [&](const glm::dvec3& p) { return session.transfer_function.at(codes.at(p)).a; };
-            const double truth = reference::occlusion_by_steps(opacity, directions, 16.0, 32, 1.0, 1.5,
-                                                               glm::dvec3(voxel) + 0.5, expected.side(voxel));
-            squares += (values[i] - truth) * (values[i] - truth);
-            ++count;
-        }
-        CHECK(count >= 200.0);
-        check_below("rms error", std::sqrt(squares / count), 0.016);
     }
 }
 

@@ -104,26 +104,23 @@ Members brick_leap_jobs()
 
 Members occlusion_bake_params()
 {
-    return {MEMBER(OcclusionBakeParams, inverse_spacing),
-            MEMBER(OcclusionBakeParams, radius),
-            MEMBER(OcclusionBakeParams, first),
-            MEMBER(OcclusionBakeParams, gradient_fade),
-            MEMBER(OcclusionBakeParams, full_sphere),
-            MEMBER(OcclusionBakeParams, rays),
-            MEMBER(OcclusionBakeParams, turn_cos),
-            MEMBER(OcclusionBakeParams, turn_sin),
-            MEMBER(OcclusionBakeParams, reach),
-            MEMBER(OcclusionBakeParams, grow),
-            MEMBER(OcclusionBakeParams, aprons),
-            MEMBER(OcclusionBakeParams, cell_counts),
-            MEMBER(OcclusionBakeParams, taps)};
+    return {MEMBER(OcclusionBakeParams, inverse_spacing), MEMBER(OcclusionBakeParams, radius),
+            MEMBER(OcclusionBakeParams, first),           MEMBER(OcclusionBakeParams, gradient_fade),
+            MEMBER(OcclusionBakeParams, full_sphere),     MEMBER(OcclusionBakeParams, rays),
+            MEMBER(OcclusionBakeParams, turn_cos),        MEMBER(OcclusionBakeParams, turn_sin),
+            MEMBER(OcclusionBakeParams, reach),           MEMBER(OcclusionBakeParams, grow),
+            MEMBER(OcclusionBakeParams, table_lower),     MEMBER(OcclusionBakeParams, table_upper),
+            MEMBER(OcclusionBakeParams, table_scale),     MEMBER(OcclusionBakeParams, table_entries),
+            MEMBER(OcclusionBakeParams, aprons),          MEMBER(OcclusionBakeParams, cell_counts),
+            MEMBER(OcclusionBakeParams, near_taps),       MEMBER(OcclusionBakeParams, far_taps),
+            MEMBER(OcclusionBakeParams, far_exponents)};
 }
 
 Members occlusion_gather_params()
 {
     return {MEMBER(OcclusionGatherParams, voxels), MEMBER(OcclusionGatherParams, cell_counts),
             MEMBER(OcclusionGatherParams, reach), MEMBER(OcclusionGatherParams, aprons),
-            MEMBER(OcclusionGatherParams, exponent)};
+            MEMBER(OcclusionGatherParams, exponents)};
 }
 
 Members occlusion_cells_params()

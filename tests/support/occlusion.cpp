@@ -1,0 +1,170 @@
+#include "tests/support/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/passes/occlusion.h"
+
+namespace shvr::test {
+
+Session occluded(std::vector<ControlPoint> points, double radius, const glm::uvec2& pixels)
+{
+    Session session = plain_session(std::move(points), pixels);
+    session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};
+    session.light.occlusion = {.strength = 1.0, .radius = radius};
+    return session;
+}
+
+Camera overview(const TestVolume& volume)
+{
+    return camera_along(volume, {1.0, 2.0, 3.0}, 1.2 * glm::length(glm::dvec3(volume.size) * volume.spacing));
+}
+
+TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing)
+{
+    TestVolume volume = volume_of(size, [](const glm::dvec3& p) {
+        return std::clamp(32000.0 + 14000.0 * std::sin(0.35 * p.x + 0.1 * p.y) +
+                              14000.0 * std::sin(0.29 * p.y - 0.2 * p.z) +
+                              14000.0 * std::cos(0.4 * p.z + 0.15 * p.x + 1.0),
+                          0.0, 65535.0);
+    });
+    volume.spacing = spacing;
+    return volume;
+}
+
+std::vector<double> occlusion_values(OnDevice& device)
+{
+    FrameGraph graph;
+    const OcclusionBinding binding = device.renderer().scene().occlusion().bring_up_to_date(graph);
+    const uint32_t back = graph.read_back(binding.values);
+    const gpu::FrameResult result = device.renderer().executor().run(graph, {.timestamps = false});
+    const std::vector<std::byte>& bytes = result.read_backs[back];
+    const glm::ivec3 size = device.volume().size;
+    const glm::uvec3 texels = gpu::BRICK_TEXELS * device.renderer().volume().atlas_slots();
+    const RegionBricks bricks = *device.renderer().volume().region({Size3(0), Size3(size)}, true);
+    std::vector<double> values;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const glm::uvec3 voxel(x, y, z);
+                const uint32_t slot = bricks.slots[gpu::grid_index(voxel / gpu::BRICK_SIZE, bricks.counts)];
+                const glm::uvec3 texel = gpu::slot_origin(slot) + gpu::BRICK_APRON + voxel % gpu::BRICK_SIZE;
+                values.push_back(double(std::to_integer<uint8_t>(
+                                     bytes[texel.x + size_t(texels.x) * (texel.y + size_t(texels.y) * texel.z)])) /
+                                 255.0);
+            }
+    return values;
+}
+
+ExpectedOcclusion::ExpectedOcclusion(const TestVolume& volume, const Session& session)
+    : volume_(volume), session_(session)
+{
+    for (int z = 0; z < volume.size.z; ++z)
+        for (int y = 0; y < volume.size.y; ++y)
+            for (int x = 0; x < volume.size.x; ++x)
+                opacities_.push_back(is_kept({x, y, z}) ? opacity_of_code(code({x, y, z})) : 0.0);
+}
+
+double ExpectedOcclusion::code(const glm::ivec3& at) const
+{
+    const glm::ivec3 held = glm::clamp(at, glm::ivec3(0), volume_.size - 1);
+    return volume_.voxels[size_t(held.x + volume_.size.x * (held.y + volume_.size.y * held.z))];
+}
+
+bool ExpectedOcclusion::is_kept(const glm::ivec3& at) const
+{
+    const glm::dvec3 centre = glm::dvec3(at) + 0.5;
+    return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, volume_.size)) &&
+           glm::all(glm::greaterThanEqual(centre, session_.cut.lower)) &&
+           glm::all(glm::lessThan(centre, session_.cut.upper));
+}
+
+/// The nearest of the table's 4096 entries.
+double ExpectedOcclusion::opacity_of_code(double code) const
+{
+    const auto points = session_.transfer_function.points();
+    const double lower = points.front().intensity, upper = points.back().intensity;
+    if (code < lower || code > upper) return 0.0;
+    const double per_entry = (upper - lower) / 4095.0;
+    return session_.transfer_function.at(lower + per_entry * std::floor((code - lower) / per_entry + 0.5)).a;
+}
+
+/// Density and slope of one octant of a voxel, a quarter of a voxel from its centre, within what its neighbours have.
+double ExpectedOcclusion::half_opacity(const glm::ivec3& at, const glm::ivec3& half) const
+{
+    if (!is_kept(at)) return 0.0;
+    double of_half = code(at), lower = of_half, upper = of_half;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 step(0);
+        step[axis] = 1;
+        const double before = code(at - step), behind = code(at + step);
+        of_half += (half[axis] - 0.5) * 0.25 * (behind - before);
+        lower = std::min({lower, before, behind});
+        upper = std::max({upper, before, behind});
+    }
+    return opacity_of_code(std::clamp(of_half, lower, upper));
+}
+
+double ExpectedOcclusion::opacity(const glm::ivec3& at) const
+{
+    if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, volume_.size))) return 0.0;
+    return opacities_[size_t(at.x + volume_.size.x * (at.y + volume_.size.y * at.z))];
+}
+
+reference::OcclusionAsked ExpectedOcclusion::asked() const
+{
+    const glm::dvec3& spacing = volume_.spacing;
+    return {.radius = session_.light.occlusion.radius,
+            .full_sphere = session_.light.occlusion.full_sphere,
+            .voxels_per_unit = std::min({spacing.x, spacing.y, spacing.z}) / spacing};
+}
+
+reference::OcclusionSide ExpectedOcclusion::side(const glm::ivec3& at) const
+{
+    glm::dvec3 slope(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 step(0);
+        step[axis] = 1;
+        slope[axis] = 0.5 * (code(at + step) - code(at - step)) * asked().voxels_per_unit[axis];
+    }
+    const double square = glm::dot(slope, slope);
+    const double fade = session_.light.gradient_fade * (volume_.maximum - volume_.minimum);
+    if (square == 0.0) return {};
+    return {-slope / std::sqrt(square), square / (square + fade * fade)};
+}
+
+reference::OcclusionRays ExpectedOcclusion::rays() const
+{
+    const OcclusionTaps taps = occlusion_taps(session_.light.occlusion.radius);
+    reference::OcclusionRays rays{.asked = asked(),
+                                  .count = session_.light.occlusion.rays,
+                                  .first = taps.first,
+                                  .taps = {},
+                                  .near_stretch = std::max(taps.near_stretch, 1e-3),
+                                  .stretched = taps.stretched};
+    for (uint32_t i = 0; i < taps.taps.size(); ++i)
+        rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].stretch),
+                             i < taps.end[0]   ? 0
+                             : i < taps.end[1] ? 2
+                                               : 4});
+    return rays;
+}
+
+double ExpectedOcclusion::by_taps(const glm::ivec3& at) const
+{
+    return reference::occlusion_by_taps(
+        [&](const glm::ivec3& v) { return opacity(v); },
+        [&](const glm::ivec3& v, const glm::ivec3& half) { return half_opacity(v, half); }, rays(), at, side(at));
+}
+
+double ExpectedOcclusion::defined(const glm::ivec3& at, uint32_t directions, int steps) const
+{
+    const auto opacity = [&](const glm::dvec3& p) {
+        const bool is_inside = glm::all(glm::greaterThanEqual(p, glm::max(glm::dvec3(0.0), session_.cut.lower))) &&
+                               glm::all(glm::lessThan(p, glm::min(glm::dvec3(volume_.size), session_.cut.upper)));
+        return is_inside ? session_.transfer_function.at(value_at(volume_, p)).a : 0.0;
+    };
+    return reference::occlusion_defined(opacity, asked(), at, side(at), directions, steps);
+}
+
+}  // namespace shvr::test

@@ -1,0 +1,45 @@
+#pragma once
+// What tests of local ambient occlusion share: scenes, the device's values, and what the reference makes of them.
+
+#include <vector>
+
+#include "tests/reference/occlusion.h"
+#include "tests/support/gpu.h"
+
+namespace shvr::test {
+
+/// Lit by ambient light alone.
+Session occluded(std::vector<ControlPoint> points, double radius = 16.0, const glm::uvec2& pixels = {48, 40});
+Camera overview(const TestVolume& volume);
+/// Blobs with soft edges: surfaces, gaps, and an inside.
+TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1.0));
+
+/// The device's values for all voxels of a resident volume, 0 ... 1.
+std::vector<double> occlusion_values(OnDevice& device);
+
+/// The reference's values for a volume whose intensities are codes. Copies neither.
+class ExpectedOcclusion {
+public:
+    ExpectedOcclusion(const TestVolume& volume, const Session& session);
+    /// Of a unit; 0 outside and where it is cut away.
+    double opacity(const glm::ivec3& voxel) const;
+    /// As the device computes it, sample by sample.
+    double by_taps(const glm::ivec3& voxel) const;
+    /// As it is defined, between voxels.
+    double defined(const glm::ivec3& voxel, uint32_t directions, int steps) const;
+
+private:
+    double code(const glm::ivec3& at) const;
+    bool is_kept(const glm::ivec3& at) const;
+    double opacity_of_code(double code) const;
+    double half_opacity(const glm::ivec3& at, const glm::ivec3& half) const;
+    reference::OcclusionSide side(const glm::ivec3& at) const;
+    reference::OcclusionAsked asked() const;
+    reference::OcclusionRays rays() const;
+
+    const TestVolume& volume_;
+    const Session& session_;
+    std::vector<double> opacities_;
+};
+
+}  // namespace shvr::test
