@@ -62,7 +62,8 @@ class Spacing(CliTest):
                         ["annotate", tiff, "--script", tiff]):
             for text in ("0,1,1", "1,-1,1", "nan,1,1", "1,1,inf", "1,1", "1,1,1,1", "a,b,c", ",,", "", "1e-13,1,1"):
                 with self.subTest(command=command[0], text=text):
-                    self.check_refused(*command, f"--spacing={text}", "--unit", "um", status=2, says=["--spacing is", "0.8"])
+                    self.check_refused(*command, f"--spacing={text}", "--unit", "um", status=2,
+                                       says=["--spacing is", "0.8"] if text else ["--spacing is empty"])
             for text in (" ", "u\tm"):
                 self.check_refused(*command, "--spacing", "1,1,1", f"--unit={text}", status=2, says=["--unit is", "as in um"])
         for command in (["info", tiff], ["label", tiff, "--threshold", 1], ["import", tiff, self.folder / "project"]):

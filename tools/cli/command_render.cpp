@@ -37,9 +37,8 @@ Json detail_of(const Renderer& renderer, const RenderSettings& render)
 }
 
 /// Draws all parts. Fails, and leaves the old file as it was, where the picture lacks something or is stopped.
-Picture draw(PictureFile& file, const RenderCommandOptions& options)
+Picture draw(PictureFile& file, const RenderCommandOptions& options, const StopRequest& stop)
 {
-    const StopRequest stop;
     while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
         if (stop.is_made()) fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
         file.step();
@@ -71,9 +70,10 @@ void run_render(RenderCommandOptions options)
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     // From here on there is a file to take away.
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
+    const StopRequest stop;
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
                      {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
-    const Picture picture = draw(file, options);
+    const Picture picture = draw(file, options, stop);
     check_validation(opened);
     warn(picture.warnings, options.common);
     for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);

@@ -177,7 +177,9 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        if (is_there(file_of(files_, part)) || is_in_archive(file_of(files_, part))) load(part, files_, document_);
+        // A mask may be a label image in an archive; what stands beside it by default cannot be.
+        const fs::path& file = file_of(files_, part);
+        if (is_there(file) || (part == Part::mask && is_in_archive(file))) load(part, files_, document_);
         digest_of(known_, part) = seen_[size_t(part)].digest;
     }
     return notices;
