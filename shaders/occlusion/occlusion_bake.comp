@@ -1,6 +1,7 @@
 // How much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray takes
 // three samples in half voxels, two in cells of two voxels and two in cells of four. PAGED: cells are those of paged
-// bricks. variants: PAGED FILTERED
+// bricks.
+// variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
