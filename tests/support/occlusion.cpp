@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/device/look_table.h"
 #include "engine/passes/occlusion.h"
 
 namespace shvr::test {
@@ -57,7 +58,9 @@ std::vector<double> occlusion_values(OnDevice& device)
 }
 
 ExpectedOcclusion::ExpectedOcclusion(const TestVolume& volume, const Session& session)
-    : volume_(volume), session_(session)
+    : volume_(volume),
+      session_(session),
+      samples_(table_range(session.transfer_function, volume.window(), false).samples)
 {
     for (int z = 0; z < volume.size.z; ++z)
         for (int y = 0; y < volume.size.y; ++y)
@@ -79,14 +82,13 @@ bool ExpectedOcclusion::is_kept(const glm::ivec3& at) const
            glm::all(glm::lessThan(centre, session_.cut.upper));
 }
 
-/// The nearest of the table's 4096 entries.
+/// The nearest of the table's entries.
 double ExpectedOcclusion::opacity_of_code(double code) const
 {
-    const auto points = session_.transfer_function.points();
-    const double lower = points.front().intensity, upper = points.back().intensity;
-    if (code < lower || code > upper) return 0.0;
-    const double per_entry = (upper - lower) / 4095.0;
-    return session_.transfer_function.at(lower + per_entry * std::floor((code - lower) / per_entry + 0.5)).a;
+    const TransferFunction& function = session_.transfer_function;
+    if (code < function.lower() || code > function.upper()) return 0.0;
+    const double per_entry = (samples_.upper - samples_.lower) / (samples_.entries - 1);
+    return function.at(samples_.lower + per_entry * std::floor((code - samples_.lower) / per_entry + 0.5)).a;
 }
 
 /// Density and slope of one octant of a voxel, a quarter of a voxel from its centre, within what its neighbours have.

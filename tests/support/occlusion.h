@@ -39,6 +39,7 @@ private:
 
     const TestVolume& volume_;
     const Session& session_;
+    Samples samples_;  ///< of the function, as the device's table has them
     std::vector<double> opacities_;
 };
 
