@@ -67,7 +67,8 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
     const bool filtered = filters(traits(), options.sampling);
     if (!pages(memory, *source, options)) {
         offsets_ = std::make_shared<OffsetSource>(std::move(source));
-        volume_ = std::make_unique<ResidentVolume>(executor, memory, offsets_, window, filtered, options.threads);
+        volume_ = std::make_unique<ResidentVolume>(executor, memory, offsets_, window, filtered, options.threads,
+                                                   options.progress);
         return;
     }
     const uint64_t fifths = options.with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
@@ -76,7 +77,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
         .threads = options.threads,
         .host_bytes = options.host_bytes / HOST_SHARES,
         .device_bytes = std::min(MAX_ATLAS_BYTES, memory.device_bytes_left() / 5 * fifths)};
-    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes));
+    offsets_ = std::make_shared<OffsetSource>(with_levels(std::move(source), options.host_bytes, options.progress));
     volume_ = std::make_unique<PagedVolume>(executor, memory, offsets_, window, paged);
 }
 
@@ -84,6 +85,12 @@ bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Opti
 {
     static_cast<void>(filters(memory.device().traits(), options.sampling));
     return !pages(memory, source, options) && fits_resident(memory, source, options);
+}
+
+void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)
+{
+    static_cast<void>(filters(memory.device().traits(), options.sampling));
+    if (pages(memory, source, options)) check_levels(source, options.host_bytes);
 }
 
 // ---- Changes --------------------------------------------------------------------------------------------------------
@@ -176,9 +183,9 @@ bool Scene::replace_surfaces(std::span<const uint64_t> keys, std::span<const Key
     return surfaces_.replace(keys, surfaces, info());
 }
 
-void Scene::advance(bool wait)
+void Scene::advance(bool wait, const Progress& progress)
 {
-    for (const VoxelBox& voxels : volume_->advance(wait)) note_changed(voxels, Cause::bricks);
+    for (const VoxelBox& voxels : volume_->advance(wait, progress)) note_changed(voxels, Cause::bricks);
 }
 
 void Scene::note_changed(const VoxelBox& voxels, Cause cause)

@@ -1,6 +1,7 @@
 #include "engine/picture/picture_job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -102,17 +103,31 @@ void PictureJob::end_pane()
 }
 
 /// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
-void PictureJob::renew_occlusion()
+void PictureJob::renew_occlusion(const Progress& progress)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     if (pane().shot.is_slice) return;
     if (scene().has_occlusion(look_)) {
         scene().want_occlusion(look_);
-        scene().advance(true);
+        scene().advance(true, progress);
     }
-    while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST))
+    while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST)) {
+        tell(progress, 0.0);
         append(picture_.passes,
                renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
+    }
+}
+
+/// Of a part that is drawn for the nth time: how often it will be is not known, so each round counts half of the rest.
+Progress PictureJob::progress_of(const PicturePart& part, int round)
+{
+    if (!options_.progress) return {};
+    const double all = double(uint64_t(size_.x) * size_.y);
+    const double area = double(area_of(part)), left = std::ldexp(area, -round);
+    return [=, this, drawn = double(drawn_pixels_)](double fraction) {
+        told_ = std::max(told_, (drawn + area - left + 0.5 * left * fraction) / all);
+        options_.progress(told_);
+    };
 }
 
 void PictureJob::step()
@@ -155,10 +170,12 @@ void PictureJob::draw_completely(const PicturePart& part)
     look_at(scene(), look_, pane().shot, part);
     if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
     std::vector<gpu::PassReport> passes;
-    for (;;) {
-        renew_occlusion();
+    for (int round = 0;; ++round) {
+        const Progress progress = progress_of(part, round);
+        tell(progress, 0.0);
+        renew_occlusion(progress);
         passes = draw(part);
-        scene().advance(true);
+        scene().advance(true, progress);
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) break;
         if (volume.state() == State::limited) break;

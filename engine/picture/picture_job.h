@@ -26,7 +26,8 @@ private:
     void end_pane();
     std::vector<gpu::PassReport> draw(const PicturePart& part);
     void draw_completely(const PicturePart& part);
-    void renew_occlusion();
+    void renew_occlusion(const Progress& progress);
+    Progress progress_of(const PicturePart& part, int round);
     Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }
 
@@ -40,6 +41,7 @@ private:
     std::vector<PicturePart> parts_;  ///< parts of the pane still to be drawn, the next one last
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
+    double told_ = 0.0;  ///< share, which never falls
 };
 
 }  // namespace shvr

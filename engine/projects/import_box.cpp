@@ -18,7 +18,7 @@ ImportBox::ImportBox(const VolumeSource& source, const VoxelBox& box, bool rever
     : source_(source), box_(box), reverses_(reverses)
 {
     if (!reverses || !is_float(type())) return;
-    const VolumeStatistics statistics = measure(source);
+    const VolumeStatistics statistics = measure(source, {.exact = true});
     ends_ = statistics.minimum + statistics.maximum;
 }
 

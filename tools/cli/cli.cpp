@@ -95,7 +95,7 @@ void add_device_options(CLI::App& command, Common& common)
 
 void say(const Common& common, const std::string& line)
 {
-    if (!common.quiet) std::cerr << line << '\n';
+    if (!common.quiet) print_beside_progress(line);
 }
 
 void warn(const std::vector<std::string>& warnings, const Common& common)
@@ -105,6 +105,7 @@ void warn(const std::vector<std::string>& warnings, const Common& common)
 
 void print(const Json& result)
 {
+    clear_progress();
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");
 }
@@ -137,20 +138,26 @@ glm::uvec2 parse_size(const std::string& text)
     return {width, height};
 }
 
-Opened open(const std::string& path, const Common& common, Work::Start start)
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Start start)
 {
-    OpenedSession session = open_session(path, common.settings);
-    Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings), nullptr, nullptr};
+    std::unique_ptr<Renderer> renderer;
+    OpeningOptions opening{.measure = {.progress = work.begin("opening " + path)}};
+    opening.before_reading = [&](const Session& session, const VolumeSource& source) {
+        const char* validation = std::getenv("SHVR_VALIDATION");
+        renderer = std::make_unique<Renderer>(
+            Renderer::Options{.device = {common.device, validation && *validation == '1'},
+                              .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
+                              .threads = common.threads});
+        renderer->check_sizes(source, session.render, shows_occlusion(session.light));
+        static_cast<void>(work.begin("measuring " + path));
+    };
+    OpenedSession session = open_session(path, common.settings, opening);
+    Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings),
+                  std::move(renderer), nullptr};
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
-
-    const char* validation = std::getenv("SHVR_VALIDATION");
-    opened.renderer = std::make_unique<Renderer>(
-        Renderer::Options{.device = {common.device, validation && *validation == '1'},
-                          .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
-                          .threads = common.threads});
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
-                          shows_occlusion(opened.session.light));
+                          shows_occlusion(opened.session.light), work.begin("loading " + path));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     warn(opened.annotator->open(work_files(opened.session, opened.source->info()), start), common);
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,

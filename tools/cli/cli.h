@@ -12,6 +12,7 @@
 
 #include "engine/live/annotator.h"
 #include "engine/session/session.h"
+#include "tools/cli/long_work.h"
 
 namespace shvr::cli {
 
@@ -53,7 +54,8 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
 };
-Opened open(const std::string& path, const Common& common, Work::Start start = Work::Start::as_left);
+/// Refuses what is too large for the budgets before it reads voxels.
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Start start = Work::Start::as_left);
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);

@@ -110,7 +110,9 @@ public:
 void run_annotate(const AnnotateCommandOptions& options)
 {
     const std::vector<ScriptLine> script = read_script(options.script);
-    Opened opened = open(options.project, options.common, options.fresh ? Work::Start::fresh : Work::Start::as_left);
+    LongWork work(options.common.quiet);
+    Opened opened =
+        open(options.project, options.common, work, options.fresh ? Work::Start::fresh : Work::Start::as_left);
     const VolumeInfo& volume = opened.source->info();
     for (const ScriptLine& line : script)  // before anything is painted
         if (const auto* paint = std::get_if<PaintOp>(&line.op)) try {
@@ -119,9 +121,11 @@ void run_annotate(const AnnotateCommandOptions& options)
                 fail(options.script, ":", line.number, ": ", error.what());
             }
     Replay replay{opened, options};
-    for (const ScriptLine& line : script) {
-        replay.at = sentence(options.script, ":", line.number);
-        std::visit(replay, line.op);
+    const Progress progress = work.begin("replaying " + options.script);
+    for (size_t i = 0; i < script.size(); ++i) {
+        tell(progress, double(i) / double(script.size()));
+        replay.at = sentence(options.script, ":", script[i].number);
+        std::visit(replay, script[i].op);
     }
     opened.annotator->work().flush();
     check_validation(opened);

@@ -9,6 +9,7 @@
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/measures/trace_score.h"
 #include "engine/volume/unit.h"
+#include "engine/volume/voxel_walk.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -26,15 +27,17 @@ bool is_bare_mask(const std::filesystem::path& path)
     return path.extension() == ".mask";
 }
 
-Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
+Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space, LongWork& work)
 {
+    const Progress progress = work.begin("reading " + path);
     if (!is_bare_mask(path)) {
         const std::unique_ptr<VolumeSource> source = open_volume(path);
         if (space && source->info().size != space->size)
             fail(path, ": has ", source->info().size.x, " x ", source->info().size.y, " x ", source->info().size.z,
                  " voxels; expected ", space->size.x, " x ", space->size.y, " x ", space->size.z);
         Mask mask(source->info().size);
-        for (const MaskBrickChange& change : mask_changes(*source, path)) mask.apply(change, Direction::forwards);
+        for (const MaskBrickChange& change : mask_changes(ToldSource(*source, progress), path))
+            mask.apply(change, Direction::forwards);
         return mask;
     }
     if (!space)
@@ -48,7 +51,8 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space)
 /// The space of --volume; else of the first trace or mask that states one.
 std::optional<TraceSpace> find_space(const EvaluateCommandOptions& options)
 {
-    if (!options.volume.empty()) return space_of(open_session(options.volume, options.common.settings).source->info());
+    if (!options.volume.empty())
+        return space_of(open_unmeasured_session(options.volume, options.common.settings).source->info());
     for (const std::string& path : {options.truth_trace, options.trace}) {
         if (path.empty()) continue;
         if (std::optional<TraceSpace> space = load_trace(path, {}).space) return space;
@@ -64,7 +68,7 @@ Json number_or_null(const std::optional<double>& value)
 }
 
 /// Dice of two bare masks, whose shape may be unknown.
-Dice dice_of_files(const std::string& a, const std::string& b)
+Dice dice_of_files(const std::string& a, const std::string& b, const Progress& progress)
 {
     std::ifstream files[2];
     std::uintmax_t sizes[2];
@@ -84,6 +88,7 @@ Dice dice_of_files(const std::string& a, const std::string& b)
                 fail(index == 0 ? a : b, ": became shorter while it was read; expected its size to stay");
         }
         counter.add(bytes[0], bytes[1]);
+        tell(progress, double(done) / double(sizes[0]));
     }
     return counter.result();
 }
@@ -95,10 +100,11 @@ void add_dice(const Dice& dice, Json& result)
 }
 
 void add_mask_scores(const EvaluateCommandOptions& options, const Mask& truth, const std::optional<TraceSpace>& space,
-                     Json& result)
+                     Json& result, LongWork& work)
 {
     if (options.mask.empty()) return;
-    const Mask mask = read_mask(options.mask, space);
+    const Mask mask = read_mask(options.mask, space, work);
+    static_cast<void>(work.begin("comparing masks"));
     if (mask.size() != truth.size())
         fail(options.mask, ": has another size than ", options.truth_mask, "; expected the same");
     add_dice(dice_of(truth, mask), result);
@@ -143,6 +149,7 @@ void run_evaluate(const EvaluateCommandOptions& options)
         throw UsageError("neither --mask nor --trace is given; expected what is to be evaluated");
     if (!options.truth_trace.empty() && options.trace.empty())
         throw UsageError("--truth-trace is given without --trace; expected both");
+    LongWork work(options.common.quiet);
     const std::optional<TraceSpace> space = find_space(options);
     Json result = {{"dice", nullptr},
                    {"dice_by_group", Json::object()},
@@ -155,12 +162,14 @@ void run_evaluate(const EvaluateCommandOptions& options)
                    {"centreline_rms_um", nullptr},
                    {"unit", space ? Json(space->unit) : Json(nullptr)}};
     if (!space && options.trace.empty() && is_bare_mask(options.truth_mask) && is_bare_mask(options.mask)) {
-        add_dice(dice_of_files(options.truth_mask, options.mask), result);
+        add_dice(dice_of_files(options.truth_mask, options.mask, work.begin("comparing masks")), result);
     } else {
-        const Mask truth = read_mask(options.truth_mask, space);
-        add_mask_scores(options, truth, space, result);
+        const Mask truth = read_mask(options.truth_mask, space, work);
+        add_mask_scores(options, truth, space, result, work);
+        static_cast<void>(work.begin("comparing traces"));
         if (!options.trace.empty()) add_trace_scores(options, truth, space.value(), result);
     }
+    clear_progress();
     if (options.common.json)
         print(result);
     else

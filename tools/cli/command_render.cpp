@@ -35,15 +35,20 @@ void run_render(RenderCommandOptions options)
                                           (is_file ? read_text(options.transfer_function, 1 << 20)
                                                    : Json{{"preset", options.transfer_function}}.dump()));
     }
-    Opened opened = open(options.input, options.common);
+    LongWork work(options.common.quiet);
+    Opened opened = open(options.input, options.common, work);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
-    const Picture picture = opened.renderer->render(
-        opened.session, camera, {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
+    const Picture picture = opened.renderer->render(opened.session, camera,
+                                                    {.probe = probe,
+                                                     .outlines_probe = true,
+                                                     .count_work = options.common.json,
+                                                     .progress = work.begin("drawing " + options.output)});
     if (!picture.complete && !options.allows_incomplete)
         fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
              "; --allow-incomplete writes it nevertheless");
+    static_cast<void>(work.begin("writing " + options.output));
     if (lower_case(std::filesystem::path(options.output).extension().string()) == ".pfm")
         write_pfm(options.output, picture.image);
     else

@@ -24,16 +24,18 @@ bool is_mask_export(const std::filesystem::path& path)
     return is_label_image(path) || is_volume_export(path) || lower_case(path.extension().string()) == ".mask";
 }
 
-void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume, const LabelImage& image)
+void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume, const LabelImage& image,
+                 const Progress& progress)
 {
     if (!is_mask_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .mask, .nrrd, .tif or .zarr");
     const MaskSource groups(mask, volume);
     if (is_label_image(path))
-        static_cast<void>(export_label_image(groups, path, image));
+        static_cast<void>(export_label_image(
+            groups, path, image, {.progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }}));
     else if (is_volume_export(path))
-        export_volume(path, groups);
+        export_volume(path, groups, progress);
     else
         save_mask(path, mask);
 }

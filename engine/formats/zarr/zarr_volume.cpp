@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/formats/zarr/zarr_codec.h"
+#include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
 namespace {
@@ -156,6 +157,44 @@ bool ZarrVolume::is_missing(const Size3& chunk) const
     if (!checksums_.empty()) return checksums_[size_t(index_of(chunk))] == 0;
     struct stat status {};
     return ::stat(path_of(chunk).c_str(), &status) != 0 && errno == ENOENT;
+}
+
+ChunkNames ZarrVolume::names() const
+{
+    ChunkNames names{.folder = array_, .separator = metadata_.separator};
+    for (size_t axis = 0; axis < metadata_.shape.size(); ++axis) {
+        names.counts.push_back((metadata_.shape[axis] - 1) / metadata_.chunks[axis] + 1);
+        const bool is_of_volume = std::ranges::find(view_.xyz, axis) != view_.xyz.end();
+        names.at.push_back(is_of_volume ? std::nullopt : std::optional(view_.at[axis] / metadata_.chunks[axis]));
+    }
+    return names;
+}
+
+bool ZarrVolume::list_stored(int64_t most, const std::function<void(const Size3&)>& take) const
+{
+    if (checksums_.empty())
+        return list_chunks(names(), most, [&](std::span<const int64_t> numbers) {
+            take({numbers[view_.xyz[0]], numbers[view_.xyz[1]], numbers[view_.xyz[2]]});
+        });
+    for (size_t i = 0; i < checksums_.size(); ++i) {
+        if (checksums_[i] == 0) continue;
+        if (--most < 0) return false;
+        take(position_of(int64_t(i), counts_));
+    }
+    return true;
+}
+
+std::string ZarrVolume::stray_chunk() const
+{
+    const std::string name = shvr::stray_chunk(names());
+    return name.empty() ? name : (array_ / name).string();
+}
+
+double ZarrVolume::fill() const
+{
+    double fill = 0.0;
+    load_voxels(metadata_.type, metadata_.fill.data(), std::span(&fill, 1));
+    return fill;
 }
 
 bool ZarrVolume::is_there() const

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/formats/zarr/chunk_cache.h"
+#include "engine/formats/zarr/chunk_listing.h"
 #include "engine/formats/zarr/zarr_metadata.h"
 #include "engine/volume/grid.h"
 
@@ -46,6 +47,14 @@ public:
 
     /// True if the chunk is not stored, and should not be: it holds the fill value. Reads nothing.
     bool is_missing(const Size3& chunk) const;
+    /// Calls `take` for each chunk that is stored, or should be, in no order; false, and stops, if there are more than
+    /// `most`. Reads the names of files at most, and never looks for what is missing.
+    bool list_stored(int64_t most, const std::function<void(const Size3& chunk)>& take) const;
+    /// The path of a file in the array's folder that is named like a chunk and can be none of its; empty if none is
+    /// seen.
+    std::string stray_chunk() const;
+    /// The value of voxels in missing chunks.
+    double fill() const;
     /// Whether the array still exists where it was opened.
     bool is_there() const;
 
@@ -54,6 +63,7 @@ public:
               const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const;
 
 private:
+    ChunkNames names() const;
     Block decoded(std::span<const std::byte> stored, const std::string& name) const;
     Block arranged(Block chunk) const;
 
