@@ -1,6 +1,7 @@
 #include "engine/components/bit_slab.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/volume/grid.h"
 #include "shaders/bricks.h"
@@ -11,36 +12,112 @@ namespace {
 /// Bytes of voxels read at once, unless a row of blocks is larger: the size of a core's second-level cache.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
+constexpr int64_t WORD = 64;
+
+/// Blocks of the row that `block` begins, which touch along x, as columns.
+template <class Block>
+BitLayout::Columns touching(Block& block, Block end, const StoredBlocks& stored, int64_t width)
+{
+    const Block first = block;
+    while (++block != end && block->z == first->z && block->y == first->y && block->x == (block - 1)->x + 1) continue;
+    return {first->x * stored.block.x, std::min(width, ((block - 1)->x + int64_t{1}) * stored.block.x)};
+}
 
 }  // namespace
 
-BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits)
-    : source_(source), bits_(bits), size_(source.info().size), row_words_(words_of_row(size_.x))
+BitLayout::BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored)
 {
-    const Size3 block = glm::min(source.block(), size_);
-    const int64_t row_bytes = size_.x * int64_t(bytes_of(source.info().type));
-    const int64_t bit_bytes = row_words_ * size_.y * 8;
-    slices_ = std::clamp<int64_t>(MAX_BIT_BYTES / bit_bytes, 1, block.z);
-    rows_ = std::max<int64_t>(STRIP_BYTES / (row_bytes * slices_) / block.y, 1) * block.y;
-    if (rows_ >= size_.y) {
-        rows_ = size_.y;
-        slices_ *= std::max<int64_t>(STRIP_BYTES / (row_bytes * rows_ * slices_), 1);
+    if (!stored) {
+        layers_.push_back({.upper = size.z, .strips = {{.upper = size.y, .columns = {{0, size.x}}}}});
+    } else {
+        for (auto block = stored->blocks.begin(); block != stored->blocks.end();) {
+            const int64_t z = block->z * stored->block.z, y = block->y * stored->block.y;
+            if (layers_.empty() || layers_.back().lower != z)
+                layers_.push_back({.lower = z, .upper = std::min(size.z, z + stored->block.z)});
+            std::vector<Strip>& strips = layers_.back().strips;
+            if (strips.empty() || strips.back().lower != y)
+                strips.push_back({.lower = y, .upper = std::min(size.y, y + stored->block.y)});
+            strips.back().columns.push_back(touching(block, stored->blocks.end(), *stored, size.x));
+        }
     }
-    slices_ = std::min(slices_, size_.z);
+    for (Layer& layer : layers_) {
+        for (const Strip& strip : layer.strips)
+            for (const Columns& columns : strip.columns)
+                layer.words += (strip.upper - strip.lower) * words_of_row(columns.upper - columns.lower);
+        words_ += layer.words * (layer.upper - layer.lower);
+    }
 }
 
-void BitSlab::read(int64_t lower, int64_t upper)
+const BitLayout::Layer* BitLayout::layer_from(int64_t z) const
 {
-    words_.resize(size_t(row_words_ * size_.y * slices_));
-    for (int64_t y = 0; y < size_.y; y += rows_) read_rows(lower, upper, y, std::min(size_.y, y + rows_));
+    const auto found = std::ranges::upper_bound(layers_, z, {}, &Layer::upper);
+    return found == layers_.end() ? nullptr : &*found;
 }
 
-/// The columns that can hold a voxel at or above the threshold: whole words, and all of them inside the volume.
-std::pair<int64_t, int64_t> BitSlab::columns_above(const VoxelBox& strip) const
+BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits, const BitLayout& layout)
+    : source_(source), bits_(bits), layout_(layout), block_(glm::min(source.block(), source.info().size))
+{}
+
+int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 {
+    const int64_t thickness = std::clamp<int64_t>(MAX_BIT_BYTES / (8 * layer.words), 1, block_.z);
+    // Where blocks are thin and slices small, many.
+    const int64_t bytes = layer.words * WORD * int64_t(bytes_of(bits_.type()));
+    return thickness < block_.z ? thickness : thickness * std::max<int64_t>(STRIP_BYTES / (bytes * thickness), 1);
+}
+
+bool BitSlab::read(int64_t z, int64_t end)
+{
+    layer_ = layout_.layer_from(z);
+    if (layer_ == nullptr || std::max(z, layer_->lower) >= end) return false;
+    lower_ = std::max(z, layer_->lower);
+    upper_ = std::min({end, layer_->upper, lower_ + thickness_of(*layer_)});
+    words_.assign(size_t(words()), 0);
+    int64_t word = 0;
+    for (const BitLayout::Strip& strip : layer_->strips) {
+        read_strip(strip, word);
+        for (const BitLayout::Columns& columns : strip.columns)
+            word += (strip.upper - strip.lower) * words_of_row(columns.upper - columns.lower);
+    }
+    return true;
+}
+
+/// `first_word`: of its first row, in each slice.
+void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
+{
+    const auto voxel_bytes = int64_t(bytes_of(bits_.type()));
+    const int64_t slices = upper_ - lower_;
+    int64_t words_of_rows = 0;
+    for (const BitLayout::Columns& columns : strip.columns)
+        words_of_rows += words_of_row(columns.upper - columns.lower);
+    int64_t word_of_columns = first_word;
+    for (const BitLayout::Columns& columns : strip.columns) {
+        const int64_t width = columns.upper - columns.lower;
+        // Whole rows of blocks as far as they fit, or else whole blocks, and always whole words.
+        const int64_t least_bytes = voxel_bytes * block_.y * slices;
+        int64_t step = width;
+        if (width * least_bytes > STRIP_BYTES) {
+            const int64_t unit = std::lcm(block_.x, WORD);
+            step = std::max<int64_t>(STRIP_BYTES / least_bytes / unit, 1) * unit;
+        }
+        const int64_t rows =
+            std::max<int64_t>(STRIP_BYTES / (std::min(step, width) * voxel_bytes * slices) / block_.y, 1) * block_.y;
+        for (int64_t y = strip.lower; y < strip.upper; y += rows)
+            for (int64_t x = columns.lower; x < columns.upper; x += step)
+                read_part(
+                    {{x, y, lower_}, {std::min(columns.upper, x + step), std::min(strip.upper, y + rows), upper_}},
+                    word_of_columns + (y - strip.lower) * words_of_rows + (x - columns.lower) / WORD, words_of_rows);
+        word_of_columns += words_of_row(width);
+    }
+}
+
+/// The columns of the part that can hold a voxel at or above the threshold: whole words of it. Nothing: none.
+std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) const
+{
+    const int64_t begin = part.lower.x, end = part.upper.x;
     // Infinities can be above the threshold, but ranges leave them out.
-    if (is_float(bits_.type())) return {0, size_.x};
-    const Size3 first = strip.lower / BRICK_SIDE, last = (strip.upper - int64_t{1}) / BRICK_SIDE;
+    if (is_float(bits_.type())) return BitLayout::Columns{begin, end};
+    const Size3 first = part.lower / BRICK_SIDE, last = (part.upper - int64_t{1}) / BRICK_SIDE;
     const auto is_above = [&](int64_t x) {
         for (int64_t z = first.z; z <= last.z; ++z)
             for (int64_t y = first.y; y <= last.y; ++y) {
@@ -52,29 +129,26 @@ std::pair<int64_t, int64_t> BitSlab::columns_above(const VoxelBox& strip) const
     int64_t lower = first.x, upper = last.x + 1;
     while (lower < upper && !is_above(lower)) ++lower;
     while (lower < upper && !is_above(upper - 1)) --upper;
-    if (lower == upper) return {0, 0};
-    return {lower * BRICK_SIDE / 64 * 64, std::min(size_.x, words_of_row(upper * BRICK_SIDE) * 64)};
+    if (lower == upper) return std::nullopt;
+    return BitLayout::Columns{begin + std::max<int64_t>(lower * BRICK_SIDE - begin, 0) / WORD * WORD,
+                              std::min(end, begin + words_of_row(upper * BRICK_SIDE - begin) * WORD)};
 }
 
-void BitSlab::read_rows(int64_t lower, int64_t upper, int64_t lower_row, int64_t upper_row)
+/// `first_word`: of the part's first row in each slice. `words_of_rows`: from one row to the next.
+void BitSlab::read_part(const VoxelBox& part, int64_t first_word, int64_t words_of_rows)
 {
-    const auto [left, right] = columns_above({{0, lower_row, lower}, {size_.x, upper_row, upper}});
-    const int64_t rows = upper_row - lower_row;
-    const auto row_of = [&](int64_t slice, int64_t row) {
-        return std::span(words_).subspan(size_t((lower_row + row + slice * size_.y) * row_words_), size_t(row_words_));
-    };
-    const size_t row_bytes = size_t(std::max<int64_t>(right - left, 0)) * bytes_of(bits_.type());
-    if (row_bytes > 0) {
-        voxels_.resize(row_bytes * size_t(rows * (upper - lower)));
-        source_.read({{left, lower_row, lower}, {right, upper_row, upper}}, voxels_);
-    }
-    for (int64_t slice = 0; slice < upper - lower; ++slice)
-        for (int64_t row = 0; row < rows; ++row) {
-            const std::span<uint64_t> words = row_of(slice, row);
-            std::ranges::fill(words, uint64_t{0});
-            if (row_bytes == 0) continue;
-            bits_.convert(std::span(voxels_).subspan(size_t(row + rows * slice) * row_bytes, row_bytes),
-                          words.subspan(size_t(left / 64), size_t(words_of_row(right - left))));
+    const std::optional<BitLayout::Columns> columns = columns_above(part);
+    if (!columns) return;
+    const int64_t width = columns->upper - columns->lower, rows = part.size().y;
+    const size_t row_bytes = size_t(width) * bytes_of(bits_.type());
+    voxels_.resize(row_bytes * size_t(rows * part.size().z));
+    source_.read({{columns->lower, part.lower.y, part.lower.z}, {columns->upper, part.upper.y, part.upper.z}}, voxels_);
+    first_word += (columns->lower - part.lower.x) / WORD;
+    const std::byte* voxels = voxels_.data();
+    for (int64_t slice = 0; slice < part.size().z; ++slice)
+        for (int64_t row = 0; row < rows; ++row, voxels += row_bytes) {
+            const int64_t word = slice * layer_->words + first_word + row * words_of_rows;
+            bits_.convert({voxels, row_bytes}, std::span(words_).subspan(size_t(word), size_t(words_of_row(width))));
         }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
-// A slab of slices of a volume as bits: which voxels are at or above a threshold. For components.cpp.
+// A slab of slices of a volume as bits: which voxels are at or above a threshold. Only the parts of it that the source
+// stores are held; all others are below the threshold. For components.cpp.
 
+#include <optional>
 #include <vector>
 
 #include "engine/components/threshold_bits.h"
@@ -8,32 +10,88 @@
 
 namespace shvr {
 
-class BitSlab {
+/// Which rows and columns of each slice can hold voxels at or above the threshold.
+class BitLayout {
 public:
-    BitSlab(const VolumeSource& source, const ThresholdBits& bits);
+    struct Columns {
+        int64_t lower = 0, upper = 0;
+    };
+    /// Rows [lower, upper) of a layer of slices, in columns that do not touch.
+    struct Strip {
+        int64_t lower = 0, upper = 0;
+        std::vector<Columns> columns{};
+    };
+    struct Layer {
+        int64_t lower = 0, upper = 0;  ///< slices
+        std::vector<Strip> strips{};
+        int64_t words = 0;  ///< of bits in one slice
+    };
 
-    /// How many slices are read at once: enough for the source's blocks to be decoded once, unless the bits of that
-    /// many slices take more than 64 MiB.
-    int64_t slices() const { return slices_; }
-    /// Slices [lower, upper), at most `slices()`. Blocks that the source knows to be below the threshold are not read.
-    void read(int64_t lower, int64_t upper);
-    /// Row y of slice `lower` + slice.
-    std::span<const uint64_t> row(int64_t y, int64_t slice) const
-    {
-        return std::span(words_).subspan(size_t((y + slice * size_.y) * row_words_), size_t(row_words_));
-    }
-    int64_t bytes() const { return int64_t(words_.capacity() * sizeof(uint64_t) + voxels_.capacity()); }
+    /// All voxels, as one layer, or those of stored blocks.
+    BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored);
+
+    /// The layer with slice z, or else the next one; null if there is none.
+    const Layer* layer_from(int64_t z) const;
+    int64_t words() const { return words_; }  ///< in all slices together
 
 private:
-    void read_rows(int64_t lower, int64_t upper, int64_t lower_row, int64_t upper_row);
-    std::pair<int64_t, int64_t> columns_above(const VoxelBox& strip) const;
+    std::vector<Layer> layers_;
+    int64_t words_ = 0;
+};
+
+class BitSlab {
+public:
+    /// All must outlive it.
+    BitSlab(const VolumeSource& source, const ThresholdBits& bits, const BitLayout& layout);
+
+    /// Finds the next slab from slice z on, up to `end`: skips slices that hold nothing, and is as thick as the
+    /// source's blocks, so that they are decoded once, unless the bits of that many slices take more than 64 MiB. Reads
+    /// it; false if there is none. Parts that the source knows to be below the threshold are not read.
+    bool read(int64_t z, int64_t end);
+    int64_t lower() const { return lower_; }
+    int64_t upper() const { return upper_; }
+    /// Of the slab's bits, as counted by BitLayout::words.
+    int64_t words() const { return layer_->words * (upper_ - lower_); }
+
+    /// Calls `take(y, ends)` for each row with runs of slice z of the slab, in order: the first voxel of every run and
+    /// the one after its last.
+    template <class Take>
+    void for_each_row(int64_t z, const Take& take)
+    {
+        const uint64_t* words = words_.data() + (z - lower_) * layer_->words;
+        for (const BitLayout::Strip& strip : layer_->strips)
+            for (int64_t y = strip.lower; y < strip.upper; ++y) {
+                ends_.clear();
+                for (const BitLayout::Columns& columns : strip.columns) {
+                    const auto count = size_t(words_of_row(columns.upper - columns.lower));
+                    const size_t known = ends_.size();
+                    append_run_ends({words, count}, columns.upper - columns.lower, ends_);
+                    for (size_t i = known; i < ends_.size(); ++i) ends_[i] += uint32_t(columns.lower);
+                    words += count;
+                }
+                if (!ends_.empty()) take(y, std::span<const uint32_t>(ends_));
+            }
+    }
+    int64_t bytes() const
+    {
+        return int64_t(words_.capacity() * sizeof(uint64_t) + voxels_.capacity() + ends_.capacity() * sizeof(uint32_t));
+    }
+
+private:
+    int64_t thickness_of(const BitLayout::Layer& layer) const;
+    void read_strip(const BitLayout::Strip& strip, int64_t first_word);
+    void read_part(const VoxelBox& part, int64_t first_word, int64_t words_of_rows);
+    std::optional<BitLayout::Columns> columns_above(const VoxelBox& part) const;
 
     const VolumeSource& source_;
     const ThresholdBits& bits_;
-    Size3 size_;
-    int64_t row_words_, slices_, rows_;
+    const BitLayout& layout_;
+    Size3 block_;
+    const BitLayout::Layer* layer_ = nullptr;
+    int64_t lower_ = 0, upper_ = 0;
     std::vector<uint64_t> words_;
     std::vector<std::byte> voxels_;
+    std::vector<uint32_t> ends_;
 };
 
 }  // namespace shvr

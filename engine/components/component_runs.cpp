@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 
 #include "engine/base/error.h"
@@ -25,11 +26,8 @@ FileDescriptor nameless_file(const std::filesystem::path& folder)
 
 }  // namespace
 
-RunFile::RunFile(const std::filesystem::path& folder, const Size3& size)
-    : folder_(folder.empty() ? "." : folder),
-      file_(nameless_file(folder)),
-      rows_bytes_((size.y + 1) * int64_t(sizeof(uint32_t))),
-      places_(size_t(size.z), int64_t{-1})
+RunFile::RunFile(const std::filesystem::path& folder, int64_t slices)
+    : folder_(folder.empty() ? "." : folder), file_(nameless_file(folder)), places_(size_t(slices))
 {}
 
 void RunFile::write(int64_t z, const SliceRuns& slice)
@@ -51,33 +49,41 @@ void RunFile::write(int64_t z, const SliceRuns& slice)
     const int64_t place = end_.fetch_add(int64_t(rows.size() + runs.size()));
     put(rows, place);
     put(runs, place + int64_t(rows.size()));
-    places_[size_t(z)] = place;
+    places_[size_t(z)] = {place, uint32_t(slice.rows.size())};
+}
+
+void RunFile::get(std::span<std::byte> bytes, int64_t at) const
+{
+    while (!bytes.empty()) {
+        const ssize_t count = ::pread(file_.number(), bytes.data(), bytes.size(), at);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0)
+            fail(folder_.string(),
+                 ": the runs of components cannot be read from it: ", reason_of(count < 0 ? errno : EIO));
+        bytes = bytes.subspan(size_t(count));
+        at += count;
+    }
 }
 
 void RunFile::read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const
 {
-    slice.rows.assign(size_t(upper - lower + 1), 0);
-    slice.runs.clear();
-    const int64_t place = places_[size_t(z)];
-    if (place < 0) return;
-    const auto get = [&](std::span<std::byte> bytes, int64_t at) {
-        while (!bytes.empty()) {
-            const ssize_t count = ::pread(file_.number(), bytes.data(), bytes.size(), at);
-            if (count < 0 && errno == EINTR) continue;
-            if (count <= 0)
-                fail(folder_.string(),
-                     ": the runs of components cannot be read from it: ", reason_of(count < 0 ? errno : EIO));
-            bytes = bytes.subspan(size_t(count));
-            at += count;
-        }
-    };
-    constexpr auto ROW = int64_t(sizeof(uint32_t));
-    constexpr auto RUN = int64_t(sizeof(LabelledRun));
-    get(std::as_writable_bytes(std::span(slice.rows)), place + lower * ROW);
-    const uint32_t first = slice.rows.front();
-    for (uint32_t& row : slice.rows) row -= first;
-    slice.runs.resize(slice.rows.back());
-    get(std::as_writable_bytes(std::span(slice.runs)), place + rows_bytes_ + first * RUN);
+    slice.clear();
+    const Place& place = places_[size_t(z)];
+    if (place.rows == 0) return;
+    std::vector<SliceRuns::Row>& rows = slice.rows;
+    rows.resize(place.rows);
+    get(std::as_writable_bytes(std::span(rows)), place.offset);
+    const auto begin = std::ranges::lower_bound(rows, lower, {}, &SliceRuns::Row::y);
+    const auto end = std::ranges::lower_bound(rows, upper, {}, &SliceRuns::Row::y);
+    if (begin == end) return slice.clear();
+    const uint32_t first = begin == rows.begin() ? 0 : (begin - 1)->end;
+    rows.erase(end, rows.end());
+    rows.erase(rows.begin(), begin);
+    for (SliceRuns::Row& row : rows) row.end -= first;
+    slice.runs.resize(rows.back().end);
+    const int64_t rows_bytes = place.rows * int64_t(sizeof(SliceRuns::Row));
+    get(std::as_writable_bytes(std::span(slice.runs)),
+        place.offset + rows_bytes + first * int64_t(sizeof(LabelledRun)));
 }
 
 }  // namespace shvr

@@ -17,28 +17,35 @@ struct LabelledRun {
     uint32_t begin = 0, end = 0, label = 0;
 };
 
-/// Runs of consecutive rows: those of row i are [rows[i], rows[i + 1]).
+/// The runs of a slice, row by row; rows without any take nothing.
 struct SliceRuns {
-    std::vector<uint32_t> rows{};
+    struct Row {
+        uint32_t y = 0;
+        uint32_t end = 0;  ///< of its runs, which begin where those of the row before it end
+    };
+    std::vector<Row> rows{};  ///< ascending
     std::vector<LabelledRun> runs{};
 
-    std::span<LabelledRun> row(int64_t y)
+    void clear()
     {
-        const auto at = size_t(y);
-        return std::span(runs).subspan(rows[at], rows[at + 1] - rows[at]);
+        rows.clear();
+        runs.clear();
     }
-    int64_t bytes() const
+    /// Of rows[i].
+    std::span<LabelledRun> runs_of(size_t i)
     {
-        return int64_t(rows.capacity() * sizeof(uint32_t) + runs.capacity() * sizeof(LabelledRun));
+        const size_t begin = i == 0 ? 0 : rows[i - 1].end;
+        return std::span(runs).subspan(begin, rows[i].end - begin);
     }
+    int64_t bytes() const { return int64_t(rows.capacity() * sizeof(Row) + runs.capacity() * sizeof(LabelledRun)); }
 };
 
 /// An unnamed temporary file, so that nothing is left behind whatever happens. Any thread may write and read different
 /// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// In `folder`, for volumes of `size`. Fails if no file can be created there.
-    RunFile(const std::filesystem::path& folder, const Size3& size);
+    /// In `folder`, for so many slices. Fails if no file can be created there.
+    RunFile(const std::filesystem::path& folder, int64_t slices);
 
     void write(int64_t z, const SliceRuns& slice);
     /// Rows [lower, upper) of a slice.
@@ -46,10 +53,15 @@ public:
     int64_t bytes() const { return end_; }
 
 private:
+    struct Place {
+        int64_t offset = 0;
+        uint32_t rows = 0;  ///< 0: no runs
+    };
+    void get(std::span<std::byte> bytes, int64_t at) const;
+
     std::filesystem::path folder_;
     FileDescriptor file_;
-    int64_t rows_bytes_;           ///< size of the row table before the runs of a slice
-    std::vector<int64_t> places_;  ///< file offsets of slices; -1: no runs
+    std::vector<Place> places_;  ///< by slice
     std::atomic<int64_t> end_ = 0;
 };
 

@@ -22,6 +22,8 @@ namespace {
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
 /// Ranges of slices per thread, since some hold more runs than others; and the minimum thickness of a range.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
+/// Of the bits of a slice: 2^33 voxels.
+constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
 
 [[noreturn]] void refuse_labels()
 {
@@ -60,14 +62,15 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
     }
 }
 
-/// Joins two whole rows of neighbouring slices: those at the same place and, over corners, the ones beside them.
-void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, Connectivity connectivity,
+/// Joins a row with those of the slice before it: the one at the same place and, over corners, the ones beside it. `at`
+/// is 0 for the first row of a slice, and kept for the next ones.
+void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
                  LabelForest& forest)
 {
-    const auto rows = int64_t(before.rows.size()) - 1;
-    if (connectivity == Connectivity::faces) return join_rows(row, before.row(y), 0, forest);
-    for (int64_t near = std::max<int64_t>(y - 1, 0); near <= std::min(y + 1, rows - 1); ++near)
-        join_rows(row, before.row(near), 1, forest);
+    const uint32_t reach = connectivity == Connectivity::faces ? 0 : 1;
+    while (at < before.rows.size() && int64_t{before.rows[at].y} + reach < y) ++at;
+    for (size_t near = at; near < before.rows.size() && before.rows[near].y <= y + reach; ++near)
+        join_rows(row, before.runs_of(near), reach, forest);
 }
 
 /// A range of slices with labels of its own. One thread.
@@ -75,54 +78,55 @@ class LabelledRange {
 public:
     LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
 
-    /// `slices_done` counts finished slices.
-    void label(BitSlab& slab, const Size3& size, Connectivity connectivity, RunFile* file, HeldBytes& held,
-               std::atomic<int64_t>& slices_done)
+    /// `words_done` counts what BitSlab::words counts. Ends early where `is_stopped`.
+    void label(BitSlab& slab, Connectivity connectivity, RunFile* file, HeldBytes& held,
+               std::atomic<int64_t>& words_done, const std::atomic<bool>& is_stopped)
     {
-        for (int64_t z = lower_; z < upper_; z += slab.slices()) {
-            const int64_t end = std::min(upper_, z + slab.slices());
-            const int64_t slab_bytes = slab.bytes();
-            slab.read(z, end);
+        int64_t done = lower_;  // slices; those that were skipped have no runs
+        for (int64_t slab_bytes = slab.bytes(); !is_stopped && slab.read(done, upper_); slab_bytes = slab.bytes()) {
             held.change(slab.bytes() - slab_bytes);
-            for (int64_t slice = z; slice < end; ++slice) {
-                label_slice(slab, slice - z, size, connectivity);
-                if (file != nullptr) file->write(slice, last);
-                if (slice == lower_) first = last;
+            for (int64_t z = slab.lower(); z < slab.upper(); ++z) {
+                std::swap(before_, last);
+                if (z > done) before_.clear();
+                label_slice(slab, z, connectivity);
+                if (file != nullptr) file->write(z, last);
+                if (z == lower_) first = last;
                 count_held(held);
-                ++slices_done;
+                done = z + 1;
             }
+            words_done += slab.words();
         }
+        if (done < upper_) last = {};
         before_ = {};
-        ends_ = {};
         count_held(held);
     }
 
-    SliceRuns first, last;  ///< with this range's own labels
+    SliceRuns first, last;  ///< of the first slice and the last one, with this range's own labels
     LabelForest forest;
     int64_t foreground_voxels = 0;
     int64_t lower_slice() const { return lower_; }
 
 private:
-    void label_slice(const BitSlab& slab, int64_t slice, const Size3& size, Connectivity connectivity)
+    void label_slice(BitSlab& slab, int64_t z, Connectivity connectivity)
     {
-        std::swap(before_, last);
-        last.rows.assign(1, 0);
-        last.runs.clear();
-        for (int64_t y = 0; y < size.y; ++y) {
-            ends_.clear();
-            append_run_ends(slab.row(y, slice), size.x, ends_);
-            for (size_t i = 0; i < ends_.size(); i += 2) last.runs.push_back({ends_[i], ends_[i + 1], NO_LABEL});
-            last.rows.push_back(uint32_t(last.runs.size()));
-            label_row(y, connectivity);
-        }
+        last.clear();
+        size_t at = 0;
+        slab.for_each_row(z, [&](int64_t y, std::span<const uint32_t> ends) {
+            for (size_t i = 0; i < ends.size(); i += 2) last.runs.push_back({ends[i], ends[i + 1], NO_LABEL});
+            last.rows.push_back({uint32_t(y), uint32_t(last.runs.size())});
+            label_row(at, connectivity);
+        });
     }
 
-    void label_row(int64_t y, Connectivity connectivity)
+    /// The last row of `last`.
+    void label_row(size_t& at, Connectivity connectivity)
     {
-        const std::span<LabelledRun> row = last.row(y);
-        if (row.empty()) return;
-        if (y > 0) join_rows(row, last.row(y - 1), connectivity == Connectivity::faces ? 0 : 1, forest);
-        if (!before_.rows.empty()) join_slices(row, y, before_, connectivity, forest);
+        const size_t index = last.rows.size() - 1;
+        const int64_t y = last.rows[index].y;
+        const std::span<LabelledRun> row = last.runs_of(index);
+        if (index > 0 && last.rows[index - 1].y + 1 == y)
+            join_rows(row, last.runs_of(index - 1), connectivity == Connectivity::faces ? 0 : 1, forest);
+        join_slices(row, y, before_, at, connectivity, forest);
         if (forest.size() + row.size() >= LabelForest::MOST) refuse_labels();
         for (LabelledRun& run : row) {
             if (run.label == NO_LABEL) run.label = forest.add();
@@ -134,15 +138,13 @@ private:
 
     void count_held(HeldBytes& held)
     {
-        const int64_t bytes = first.bytes() + last.bytes() + before_.bytes() + forest.bytes() +
-                              int64_t(ends_.capacity() * sizeof(uint32_t));
+        const int64_t bytes = first.bytes() + last.bytes() + before_.bytes() + forest.bytes();
         held.change(bytes - held_);
         held_ = bytes;
     }
 
     int64_t lower_, upper_;
     SliceRuns before_;
-    std::vector<uint32_t> ends_;
     int64_t held_ = 0;
 };
 
@@ -150,10 +152,11 @@ private:
 
 /// The data that the volume of labels needs.
 struct LabelTable {
-    LabelForest forest;             ///< the parent of a provisional label is its final one
-    std::vector<int64_t> lower;     ///< first slice of each range
-    std::vector<uint32_t> bases;    ///< of its labels
-    std::optional<RunFile> runs{};  ///< with labels of their ranges
+    LabelForest forest;                    ///< the parent of a provisional label is its final one
+    std::vector<int64_t> lower;            ///< first slice of each range
+    std::vector<uint32_t> bases;           ///< of its labels
+    std::optional<RunFile> runs{};         ///< with labels of their ranges
+    std::optional<StoredBlocks> stored{};  ///< what can hold labels; nothing: all
 };
 
 class LabelSource final : public VolumeSource {
@@ -172,9 +175,18 @@ public:
                 table_->runs->read(z, box.lower.y, box.upper.y, slice);
                 const auto after = std::ranges::upper_bound(table_->lower, z);
                 const uint32_t base = table_->bases[size_t(after - table_->lower.begin()) - 1];
-                for (int64_t y = 0; y < box.size().y; ++y, row += box.size().x) fill_row(slice.row(y), base, box, row);
+                for (size_t i = 0; i < slice.rows.size(); ++i)
+                    fill_row(slice.runs_of(i), base, box, row + (slice.rows[i].y - box.lower.y) * box.size().x);
+                row += box.size().x * box.size().y;
             }
         });
+    }
+
+    Size3 block() const override { return table_->stored ? table_->stored->block : Size3(1); }
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        if (level != 0 || !table_->stored || int64_t(table_->stored->blocks.size()) > most) return std::nullopt;
+        return table_->stored;
     }
 
 private:
@@ -204,7 +216,8 @@ public:
         : source_info_(source.info()), options_(options), table_(std::make_shared<LabelTable>())
     {
         static_cast<void>(voxel_count(source.info()));
-        if (options.run_folder) table_->runs.emplace(*options.run_folder, source.info().size);
+        table_->stored = stored_above(source);
+        if (options.run_folder) table_->runs.emplace(*options.run_folder, source.info().size.z);
         label_ranges(source);
         join_ranges();
         resolve();
@@ -225,13 +238,34 @@ public:
     }
 
 private:
+    /// What of a sparse volume can be at or above the threshold; nothing: all of it.
+    std::optional<StoredBlocks> stored_above(const VolumeSource& source) const
+    {
+        const Size3& size = source.info().size;
+        std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
+        if (stored && !(stored->fill >= options_.threshold)) {
+            stored->fill = 0.0;  // of labels
+            return stored;
+        }
+        const int64_t bytes = words_of_row(size.x) * size.y * 8;
+        if (bytes > MAX_SLICE_BYTES && stored)
+            fail(source.info().name, ": holds ", stored->fill, " wherever nothing is stored, and the threshold is ",
+                 options_.threshold, "; expected one above that, or a volume whose slices have at most ",
+                 8 * MAX_SLICE_BYTES, " voxels");
+        if (bytes > MAX_SLICE_BYTES)
+            fail(source.info().name, ": a slice has ", size.x, " x ", size.y, " voxels; expected at most ",
+                 8 * MAX_SLICE_BYTES, " in all, or a part of the volume");
+        return std::nullopt;
+    }
+
     void label_ranges(const VolumeSource& source)
     {
         const Size3& size = source_info_.size;
         const int threads =
             options_.threads > 0 ? options_.threads : std::max(1, int(std::thread::hardware_concurrency()));
         const ThresholdBits bits(source_info_.type, options_.threshold);
-        std::vector<BitSlab> slabs(size_t(threads), BitSlab(source, bits));
+        const BitLayout layout(size, table_->stored);
+        std::vector<BitSlab> slabs(size_t(threads), BitSlab(source, bits, layout));
         // Ranges are whole blocks, so that no block is decoded twice.
         const int64_t block = std::min(source.block().z, size.z);
         const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
@@ -240,13 +274,21 @@ private:
         for (int64_t z = 0; z < size.z; z += thickness) ranges_.emplace_back(z, std::min(size.z, z + thickness));
 
         HeldBytes held;
-        std::atomic<int64_t> slices_done = 0;
+        std::atomic<int64_t> words_done = 0;
+        const auto words = double(std::max<int64_t>(layout.words(), 1));
+        std::atomic<bool> is_stopped = false;
         WorkPool pool(threads, [&] {
-            if (options_.progress) options_.progress(double(slices_done) / double(size.z));
+            try {
+                tell(options_.progress, double(words_done) / words);
+            } catch (...) {
+                is_stopped = true;  // ranges take long
+                throw;
+            }
         });
         RunFile* const file = table_->runs ? &*table_->runs : nullptr;
         pool.run(int64_t(ranges_.size()), [&](int64_t task, int worker) {
-            ranges_[size_t(task)].label(slabs[size_t(worker)], size, options_.connectivity, file, held, slices_done);
+            ranges_[size_t(task)].label(slabs[size_t(worker)], options_.connectivity, file, held, words_done,
+                                        is_stopped);
         });
         counts_.peak_bytes = held.peak();
     }
@@ -264,8 +306,9 @@ private:
             table_->bases.push_back(uint32_t(base));
             for (SliceRuns* slice : {&range.first, &range.last})
                 for (LabelledRun& run : slice->runs) run.label += uint32_t(base);
-            for (int64_t y = 0; !before.rows.empty() && y < source_info_.size.y; ++y)
-                join_slices(range.first.row(y), y, before, options_.connectivity, forest);
+            size_t at = 0;
+            for (size_t i = 0; i < range.first.rows.size(); ++i)
+                join_slices(range.first.runs_of(i), range.first.rows[i].y, before, at, options_.connectivity, forest);
             before = std::move(range.last);
         }
         counts_.provisional = int64_t(forest.size());

@@ -5,7 +5,8 @@
 // before it, or a new one, and labels that meet are joined (label_forest.h). Several threads label ranges of slices in
 // parallel; the ranges are joined where they meet. In memory are a slab and two slices of runs per range, and 12 bytes
 // per provisional label (in a noisy volume up to one per run); the labelled runs themselves go to a temporary file, and
-// only if the labels are wanted.
+// only if the labels are wanted. Of a volume that knows what it stores (VolumeSource::stored_blocks) only that is gone
+// through, unless what is missing is at or above the threshold.
 
 #include <filesystem>
 #include <functional>
@@ -26,7 +27,7 @@ struct ComponentOptions {
     int threads = 0;             ///< 0: one per core
     /// Folder of the temporary file; if unset, no labels are kept and `labels` may not be called.
     std::optional<std::filesystem::path> run_folder{};
-    std::function<void(double fraction)> progress{};  ///< called a few times per second, on the calling thread
+    Progress progress{};  ///< called a few times per second
 };
 
 class Components {
@@ -60,8 +61,8 @@ protected:
     Counts counts_;
 };
 
-/// Fails if reading the source fails, if there are more than 2^32 provisional labels, or if the temporary file cannot
-/// be written. Call from one thread at a time.
+/// Fails if a slice is too large to be held as bits, if reading the source fails, if there are more than 2^32
+/// provisional labels, or if the temporary file cannot be written. Call from one thread at a time.
 std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options);
 
 }  // namespace shvr

@@ -87,8 +87,9 @@ public:
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
     /// Forgets earlier visits: only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
-    /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks.
-    virtual std::vector<VoxelBox> advance(bool wait = false) = 0;
+    /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
+    /// tells `progress` which share of them has come.
+    virtual std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) = 0;
 
     enum class State : uint8_t {
         complete,  ///< every brick that rays visited is on the device

@@ -53,7 +53,7 @@ public:
     Feedback request_feedback(FrameGraph& graph, const VolumeBinding& volume) const override;
     void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) override;
     void forget_visits() override;
-    std::vector<VoxelBox> advance(bool wait = false) override;
+    std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) override;
     State state() const override;
     size_t missing() const override;
     std::vector<std::string> take_messages() override { return store_.take_messages(); }

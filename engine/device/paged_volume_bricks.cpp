@@ -155,9 +155,10 @@ void PagedVolume::update_wants()
     store_.want(std::move(keys));
 }
 
-std::vector<VoxelBox> PagedVolume::advance(bool wait)
+std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
 {
     update_wants();
+    const size_t wanted = std::max<size_t>(pending_, 1);
     std::vector<VoxelBox> changed;
     do {
         for (const BrickStore::Finished& finished : store_.take(BrickAtlas::BATCH)) {
@@ -174,6 +175,7 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait)
             }
             changed.push_back(voxels_of(finished.key, info().size));
         }
+        tell(progress, 1.0 - double(pending_) / double(wanted));
     } while (wait && store_.wait());
     atlas_.flush();
     return changed;

@@ -68,7 +68,7 @@ private:
 }  // namespace
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                               const IntensityWindow& window, bool filtered, int threads)
+                               const IntensityWindow& window, bool filtered, int threads, const Progress& progress)
     : DeviceVolume(source->info(), window),
       executor_(executor),
       memory_(memory),
@@ -100,7 +100,9 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
         slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
         uploader.add(glm::uvec3(brick), slots.back(), texels);
         ranges_.push_back(texels.range);
-        if (uploader.full()) uploader.flush(atlas_, cell_ranges_);
+        if (!uploader.full()) return;
+        uploader.flush(atlas_, cell_ranges_);
+        tell(progress, double(slots.size()) / double(bricks));
     });
     uploader.flush(atlas_, cell_ranges_);
 

@@ -14,7 +14,7 @@ class ResidentVolume final : public DeviceVolume {
 public:
     /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                   const IntensityWindow& window, bool filtered, int threads);
+                   const IntensityWindow& window, bool filtered, int threads, const Progress& progress = {});
 
     /// Device memory that such a volume takes, cells and leap grid included.
     static uint64_t bytes_for(const VolumeInfo& info);
@@ -38,7 +38,7 @@ public:
     Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
     void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
     void forget_visits() override {}
-    std::vector<VoxelBox> advance(bool) override { return {}; }
+    std::vector<VoxelBox> advance(bool, const Progress&) override { return {}; }
     State state() const override { return State::complete; }
     size_t missing() const override { return 0; }
     std::vector<std::string> take_messages() override { return {}; }

@@ -145,7 +145,8 @@ void Scene::load(uint64_t reserved_bytes)
     mask_.emplace(executor_, memory_, is_paged);
     if (!is_paged) {
         offsets_ = std::make_shared<OffsetSource>(source_);
-        volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads);
+        volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+                                                   options_.progress);
         return;
     }
     const PagedVolume::Options paged{
@@ -153,7 +154,7 @@ void Scene::load(uint64_t reserved_bytes)
         .threads = options_.threads,
         .host_bytes = options_.host_bytes / HOST_SHARES,
         .device_bytes = atlas_bytes(memory_, source_->info(), options_.with_occlusion, reserved_bytes)};
-    source_ = with_levels(std::move(source_), options_.host_bytes);
+    source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
     volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
 }
@@ -181,6 +182,12 @@ bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Opti
 {
     static_cast<void>(filters(memory.device().traits(), options.sampling));
     return !pages(memory, source, options) && fits_resident(memory, source, options, 0);
+}
+
+void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)
+{
+    static_cast<void>(filters(memory.device().traits(), options.sampling));
+    if (pages(memory, source, options)) check_levels(source, options.host_bytes);
 }
 
 // ---- Changes --------------------------------------------------------------------------------------------------------
@@ -275,9 +282,9 @@ bool Scene::replace_surfaces(std::span<const uint64_t> keys, std::span<const Key
     return surfaces_.replace(keys, surfaces, info());
 }
 
-void Scene::advance(bool wait)
+void Scene::advance(bool wait, const Progress& progress)
 {
-    for (const VoxelBox& voxels : volume_->advance(wait)) note_changed(voxels, Cause::bricks);
+    for (const VoxelBox& voxels : volume_->advance(wait, progress)) note_changed(voxels, Cause::bricks);
 }
 
 void Scene::note_changed(const VoxelBox& voxels, Cause cause)

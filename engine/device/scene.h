@@ -33,7 +33,8 @@ public:
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
-            0;  ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
+            0;                ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
+        Progress progress{};  ///< of loading, now and where show() loads again
     };
     /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails if the source
     /// cannot be read, the budget is too small or the device cannot do what `options` ask for.
@@ -42,6 +43,8 @@ public:
     /// Whether such a scene would be resident and fits beside everything on the device now. Fails where the device
     /// cannot do what `options` ask for.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
+    /// Fails where the sizes alone tell that such a scene cannot be made; reads no voxels.
+    static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
     const VolumeStatistics& statistics() const { return statistics_; }
@@ -85,7 +88,7 @@ public:
     bool replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces);
 
     /// Takes loaded bricks. `wait`: waits for all requested bricks.
-    void advance(bool wait = false);
+    void advance(bool wait = false, const Progress& progress = {});
 
     enum class Cause : uint8_t {
         edit,    ///< a user's command

@@ -27,6 +27,10 @@ public:
     {
         return source_->brick_range(level, brick);
     }
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        return source_->stored_blocks(level, most);
+    }
     std::optional<VolumeStatistics> statistics() const override { return source_->statistics(); }
 
 private:

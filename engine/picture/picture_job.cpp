@@ -1,6 +1,7 @@
 #include "engine/picture/picture_job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -179,22 +180,36 @@ void PictureJob::end_band()
 }
 
 /// Loads the bricks that light comes from, as far as there is room.
-void PictureJob::load_around()
+void PictureJob::load_around(const Progress& progress)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return;
     scene().want_occlusion(look_);
-    scene().advance(true);
+    scene().advance(true, progress);
 }
 
 /// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
-void PictureJob::renew_occlusion()
+void PictureJob::renew_occlusion(const Progress& progress)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
     if (pane().shot.is_slice) return;
-    load_around();
-    while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST))
+    load_around(progress);
+    while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST)) {
+        tell(progress, 0.0);
         append(picture_.passes,
                renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
+    }
+}
+
+/// Of a part that is drawn for the nth time: how often it will be is not known, so each round counts half of the rest.
+Progress PictureJob::progress_of(const PicturePart& part, int round)
+{
+    if (!options_.progress) return {};
+    const double all = double(uint64_t(size_.x) * size_.y);
+    const double area = double(area_of(part)), left = std::ldexp(area, -round);
+    return [=, this, drawn = double(drawn_pixels_)](double fraction) {
+        told_ = std::max(told_, (drawn + area - left + 0.5 * left * fraction) / all);
+        options_.progress(told_);
+    };
 }
 
 void PictureJob::step()
@@ -236,11 +251,13 @@ void PictureJob::draw_completely(const PicturePart& part)
     look_at(scene(), look_, pane().shot, part);
     if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
     std::vector<gpu::PassReport> passes;
-    for (;;) {
-        renew_occlusion();
+    for (int round = 0;; ++round) {
+        const Progress progress = progress_of(part, round);
+        tell(progress, 0.0);
+        renew_occlusion(progress);
         passes = draw(part);
-        scene().advance(true);
-        load_around();  // bricks seen again may have been lit while there was no room for those around them
+        scene().advance(true, progress);
+        load_around(progress);  // bricks seen again may have been lit while there was no room for those around them
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) break;
         if (volume.state() == State::limited) break;

@@ -43,8 +43,9 @@ private:
     std::vector<gpu::PassReport> draw(const PicturePart& part);
     void draw_completely(const PicturePart& part);
     void note_limited();
-    void load_around();
-    void renew_occlusion();
+    void load_around(const Progress& progress);
+    void renew_occlusion(const Progress& progress);
+    Progress progress_of(const PicturePart& part, int round);
     Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }
 
@@ -64,6 +65,7 @@ private:
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
     uint64_t rays_cut_short_ = 0;
+    double told_ = 0.0;  ///< share, which never falls
 };
 
 }  // namespace shvr

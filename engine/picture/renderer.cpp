@@ -28,14 +28,25 @@ Renderer::Renderer(const Options& options)
       threads_(worker_count(options.threads))
 {}
 
-void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
-                    const RenderSettings& settings, bool with_occlusion)
+Scene::Options Renderer::scene_options(const RenderSettings& settings, bool with_occlusion) const
 {
-    const Scene::Options options{.sampling = settings.sampling,
-                                 .paging = settings.paging,
-                                 .with_occlusion = with_occlusion,
-                                 .threads = threads_,
-                                 .host_bytes = host_budget_};
+    return {.sampling = settings.sampling,
+            .paging = settings.paging,
+            .with_occlusion = with_occlusion,
+            .threads = threads_,
+            .host_bytes = host_budget_};
+}
+
+void Renderer::check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion)
+{
+    Scene::check_sizes(memory_, source, scene_options(settings, with_occlusion));
+}
+
+void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
+                    const RenderSettings& settings, bool with_occlusion, const Progress& progress)
+{
+    Scene::Options options = scene_options(settings, with_occlusion);
+    options.progress = progress;
     if (!Scene::fits_now(memory_, *source, options)) scene_.reset();
     scene_ = std::make_unique<Scene>(executor_, memory_, std::move(source), statistics, options);
 }

@@ -20,6 +20,7 @@ struct RenderOptions {
     bool timestamps = true;
     /// Side in pixels of the parts that are drawn one at a time, at most: smaller where memory is short.
     uint32_t part_pixels = 1024;
+    Progress progress{};
 };
 
 struct Picture {
@@ -57,7 +58,9 @@ public:
     /// bricks. `with_occlusion`: reserves room for ambient occlusion. On failure the previous scene stays if both fit
     /// in memory together; otherwise it was destroyed first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
-              const RenderSettings& settings = {}, bool with_occlusion = false);
+              const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
+    /// Fails where the sizes alone tell that load() would; reads no voxels.
+    void check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
     bool has_scene() const { return scene_ != nullptr; }
     Scene& scene() const;
     DeviceVolume& volume() const { return scene().volume(); }
@@ -72,6 +75,8 @@ public:
                                    const glm::uvec2& pixel, const std::optional<ProbeLook>& probe = {});
 
 private:
+    Scene::Options scene_options(const RenderSettings& settings, bool with_occlusion) const;
+
     gpu::Device device_;
     uint64_t host_budget_;
     gpu::Memory memory_;

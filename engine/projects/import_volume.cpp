@@ -54,7 +54,7 @@ public:
         : origin_(fs::absolute(origin).lexically_normal()),
           options_(options),
           preparation_(make_preparation(source, options.preparation)),
-          info_(checked(preparation_->info())),
+          info_(checked(preparation_->info(), project)),
           identity_(options.label_image ? std::string() : import_identity(source, origin_, options)),
           folder_(project, options.overwrites),
           threads_(thread_count(options.threads)),
@@ -103,9 +103,11 @@ public:
     }
 
 private:
-    static const VolumeInfo& checked(const VolumeInfo& info)
+    /// Before anything is allocated or read.
+    static const VolumeInfo& checked(const VolumeInfo& info, const fs::path& project)
     {
         static_cast<void>(voxel_count(info));
+        check_tables(project, info);
         return info;
     }
 
@@ -281,7 +283,9 @@ private:
         ProjectRecord record{.info = info_, .levels = pyramid_->levels()};
         // Types with too many values to count each are measured in the written project, without the source.
         const std::optional<VolumeStatistics> counted = tally_->statistics();
-        record.statistics = counted ? *counted : measure(*open_ome_zarr(folder_.path(), {}));
+        record.statistics = counted ? *counted
+                                    : measure(*open_ome_zarr(folder_.path(), {}),
+                                              {.exact = true, .progress = [this](double) { stop_where_asked(); }});
         record.content_hash = tally_->content_hash();
         record.source = origin_.string();
         record.preparation = to_text(options_.preparation);
@@ -396,6 +400,9 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
     ImportReport report;
     try {
         report = job.run();
+    } catch (const ImportStopped&) {
+        job.abandon();
+        throw ImportStopped(target.string() + ": stopped; no file is left half written");
     } catch (...) {
         job.abandon();
         throw;

@@ -105,12 +105,14 @@ UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vecto
     return open_unmeasured(path, settings).second;
 }
 
-OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings)
+OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings,
+                           const OpeningOptions& options)
 {
     auto [document, unmeasured] = open_unmeasured(path, settings);
+    if (options.before_reading) options.before_reading(unmeasured.session, *unmeasured.source);
     OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}, unmeasured.losses};
     const HashedSource hashed(*opened.source);
-    opened.statistics = measure(hashed);
+    opened.statistics = measure(hashed, options.measure);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();
     opened.warnings = warnings_of(opened.statistics);
     for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))

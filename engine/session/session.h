@@ -90,7 +90,13 @@ struct OpenedSession {
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
     std::vector<std::string> losses;    ///< what is not there although it was saved
 };
-OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {});
+struct OpeningOptions {
+    MeasureOptions measure{};
+    /// Called before any voxel is read, to refuse what is too large.
+    std::function<void(const Session& session, const VolumeSource& source)> before_reading{};
+};
+OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {},
+                           const OpeningOptions& options = {});
 /// Skips everything that needs a pass over the voxels: the transfer function is the file's, and only projects have a
 /// hash.
 struct UnmeasuredSession {

@@ -82,14 +82,17 @@ HashedSource::HashedSource(const VolumeSource& source) : VolumeSource(source.inf
 void HashedSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
 {
     source_.read(box, voxels);
-    if (int64_t(slices_.size()) == info().size.z) return;
+    if (is_out_of_order_ || int64_t(slices_.size()) == info().size.z) return;
     const Size3 extent = box.size();
-    SHVR_CHECK(extent.x == info().size.x && box.lower.z == int64_t(slices_.size()), box.lower.z);
+    is_out_of_order_ = extent.x != info().size.x || box.lower.z != int64_t(slices_.size()) || box.lower.y != rows_ ||
+                       (rows_ > 0 && extent.z != int64_t(hashers_.size()));
+    if (is_out_of_order_) return;
     hashers_.resize(size_t(extent.z));
+    rows_ = box.upper.y % info().size.y;
     const size_t slice_bytes = voxels.size() / hashers_.size();
     for (size_t slice = 0; slice < hashers_.size(); ++slice) {
         hashers_[slice].add(voxels.subspan(slice * slice_bytes, slice_bytes));
-        if (box.upper.y == info().size.y) slices_.push_back(hashers_[slice].finish());
+        if (rows_ == 0) slices_.push_back(hashers_[slice].finish());
     }
 }
 

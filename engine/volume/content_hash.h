@@ -36,9 +36,9 @@ std::string content_hash(std::span<const SliceHash> slices);
 /// Reads all of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
 
-/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0. Reads must fetch whole
-/// rows, each once and in order, of one or more slices at a time, as `measure` and `content_hash` do. One thread at a
-/// time.
+/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0, as long as reads fetch
+/// whole rows, each once and in order, of one or more slices at a time, as `content_hash` does, and `measure` where it
+/// reads all. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -49,14 +49,20 @@ public:
     {
         source_.read_level(level, box, voxels);
     }
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        return source_.stored_blocks(level, most);
+    }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Empty until all slices have been read. Later reads do not count.
+    /// Empty unless all slices have been read. Later reads do not count.
     std::string hash() const;
 
 private:
     const VolumeSource& source_;
     mutable std::vector<SliceHasher> hashers_;  ///< of the slices being read
     mutable std::vector<SliceHash> slices_;     ///< of the slices read
+    mutable int64_t rows_ = 0;                  ///< of the slices being read
+    mutable bool is_out_of_order_ = false;      ///< the rest is not hashed
 };
 
 }  // namespace shvr

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <mutex>
+#include <set>
+#include <tuple>
 #include <unordered_set>
 
 #include "engine/base/error.h"
@@ -229,6 +232,34 @@ std::optional<ValueRange> OffsetSource::brick_range(int level, const Size3& bric
     if (offsets == ValueRange{}) return range;
     return ValueRange{raised_value(info().type, range->lower, offsets.lower),
                       raised_value(info().type, range->upper, offsets.upper)};
+}
+
+std::optional<StoredBlocks> OffsetSource::stored_blocks(int level, int64_t most) const
+{
+    std::optional<StoredBlocks> stored = base_->stored_blocks(level, most);
+    if (!stored || empty()) return stored;
+    const auto before = [](const glm::ivec3& a, const glm::ivec3& b) {
+        return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
+    };
+    std::set<glm::ivec3, decltype(before)> raised(before);
+    const Size3 size = size_of_level(info().size, level);
+    {
+        const std::shared_lock lock(mutex_);
+        for (const auto& [key, entry] : entries_) {
+            if (key.level != level || !entry.offsets) continue;
+            const Size3 corner = BRICK_SIDE * Size3(key.brick);
+            const Size3 first = corner / stored->block;
+            const Size3 last = (glm::min(corner + BRICK_SIDE, size) - int64_t{1}) / stored->block;
+            for (int64_t z = first.z; z <= last.z; ++z)
+                for (int64_t y = first.y; y <= last.y; ++y)
+                    for (int64_t x = first.x; x <= last.x; ++x) raised.emplace(x, y, z);
+        }
+    }
+    std::vector<glm::ivec3> all;
+    std::ranges::set_union(stored->blocks, raised, std::back_inserter(all), before);
+    if (int64_t(all.size()) > most) return std::nullopt;
+    stored->blocks = std::move(all);
+    return stored;
 }
 
 std::optional<VolumeStatistics> OffsetSource::statistics() const

@@ -38,6 +38,8 @@ public:
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override;
     /// The range of the other source, widened by the offsets there and in neighbouring bricks.
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override;
+    /// Those of the other source, and all that hold an offset.
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
     /// Unknown for volumes with offsets.
     std::optional<VolumeStatistics> statistics() const override;
 

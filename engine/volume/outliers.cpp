@@ -64,18 +64,18 @@ OutlierFinder::OutlierFinder(int64_t voxels)
       highest_kept_of_smallest_(std::numeric_limits<double>::infinity())
 {}
 
-void OutlierFinder::add_large(double value)
+void OutlierFinder::add_large(double value, int64_t times)
 {
-    largest_.push_back(value);
+    largest_.insert(largest_.end(), std::min(size_t(times), kept_), value);
     if (largest_.size() < 2 * kept_) return;
     std::ranges::nth_element(largest_, largest_.begin() + std::ptrdiff_t(kept_ - 1), std::greater<>());
     largest_.resize(kept_);
     lowest_kept_of_largest_ = largest_.back();
 }
 
-void OutlierFinder::add_small(double value)
+void OutlierFinder::add_small(double value, int64_t times)
 {
-    smallest_.push_back(value);
+    smallest_.insert(smallest_.end(), std::min(size_t(times), kept_), value);
     if (smallest_.size() < 2 * kept_) return;
     std::ranges::nth_element(smallest_, smallest_.begin() + std::ptrdiff_t(kept_ - 1));
     smallest_.resize(kept_);

@@ -16,12 +16,12 @@ public:
     /// `voxels`: no more values than that will be added.
     explicit OutlierFinder(int64_t voxels);
 
-    /// Finite values only.
-    void add(double value)
+    /// A finite value that occurs so many times.
+    void add(double value, int64_t times = 1)
     {
-        ++count_;
-        if (value >= lowest_kept_of_largest_) add_large(value);
-        if (value <= highest_kept_of_smallest_) add_small(value);
+        count_ += times;
+        if (value >= lowest_kept_of_largest_) add_large(value, times);
+        if (value <= highest_kept_of_smallest_) add_small(value, times);
     }
 
     struct Bulk {
@@ -32,12 +32,12 @@ public:
     std::optional<Bulk> bulk();
 
 private:
-    void add_large(double value);
-    void add_small(double value);
+    void add_large(double value, int64_t times);
+    void add_small(double value, int64_t times);
 
     size_t kept_;  ///< values, at each end
     int64_t count_ = 0;
-    // Twice as many as are kept, at most: the surplus is dropped when they are full.
+    // Three times as many as are kept, at most: the surplus is dropped at twice as many.
     std::vector<double> largest_, smallest_;
     double lowest_kept_of_largest_, highest_kept_of_smallest_;
 };

@@ -5,13 +5,17 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/grid.h"
 #include "engine/volume/halving.h"
+#include "engine/volume/sparse_levels.h"
 #include "engine/volume/voxel_dispatch.h"
-#include "shaders/bricks.h"
 
 namespace shvr {
 
 namespace {
+
+/// A file's coarsest level may have at most so many bricks, 512^3 voxels, before coarser ones are made.
+constexpr int64_t MAX_COARSEST = 4096;
 
 /// A level in the layout of a file.
 struct Level {
@@ -20,7 +24,7 @@ struct Level {
 };
 
 template <class T>
-Level halved(const VolumeSource& source, int level)
+Level halved(const VolumeSource& source, int level, const Progress& progress)
 {
     const Size3 size = size_of_level(source.info().size, level), half = size_of_level(source.info().size, level + 1);
     Level result{half, {}};
@@ -39,6 +43,7 @@ Level halved(const VolumeSource& source, int level)
                     rows.first[size_t(rows.count++)] = read.data() + extent.x * (row + extent.y * slice);
             halve_rows(rows, extent.x, to);
         }
+        tell(progress, double(z) / double(size.z));
     }
     return result;
 }
@@ -50,17 +55,29 @@ public:
     {}
 
     template <class T>
-    void build(int levels)
+    void build(int levels, const Progress& progress)
     {
-        while (int(coarse_.size()) + 1 < levels) coarse_.push_back(halved<T>(*this, int(coarse_.size())));
+        double begun = 0.0;
+        // Each level has an eighth of the voxels of the one before.
+        for (double share = 0.875; this->levels() < levels; share /= 8.0) {
+            coarse_.push_back(halved<T>(*this, this->levels() - 1, part_of(progress, begun, begun + share)));
+            begun += share;
+        }
+    }
+    void build(SparseLevels levels, int count, const Progress& progress)
+    {
+        levels.build(*base_, progress);
+        sparse_ = std::move(levels);
+        levels_ = count;
     }
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override { base_->read(box, voxels); }
-    int levels() const override { return int(coarse_.size()) + 1; }
+    int levels() const override { return sparse_ ? levels_ : base_->levels() + int(coarse_.size()); }
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
     {
-        if (level == 0) return read(box, voxels);
-        const Level& coarse = coarse_.at(size_t(level - 1));
+        if (level < base_->levels()) return base_->read_level(level, box, voxels);
+        if (sparse_) return sparse_->read(level, box, voxels);
+        const Level& coarse = coarse_.at(size_t(level - base_->levels()));
         const Size3 extent = box.size();
         const auto voxel_bytes = int64_t(bytes_of(info().type));
         std::byte* to = voxels.data();
@@ -73,38 +90,84 @@ public:
     Size3 block() const override { return base_->block(); }
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
     {
+        if (level < base_->levels()) return base_->brick_range(level, brick);
         // Means lie within the range of their voxels, but only the source knows that range.
-        return level == 0 ? base_->brick_range(level, brick) : std::nullopt;
+        if (!sparse_ || !sparse_->is_gap(level, brick)) return std::nullopt;
+        return sparse_->fills();
+    }
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        return level < base_->levels() ? base_->stored_blocks(level, most) : std::nullopt;
     }
     std::optional<VolumeStatistics> statistics() const override { return base_->statistics(); }
 
 private:
     std::shared_ptr<const VolumeSource> base_;
     std::vector<Level> coarse_;
+    std::optional<SparseLevels> sparse_;
+    int levels_ = 0;  ///< with sparse ones
 };
+
+/// What is to be made of a source.
+struct Plan {
+    int levels = 0;  ///< 0: nothing
+    std::optional<SparseLevels> sparse{};
+    uint64_t bytes = 0;
+};
+
+Plan plan_of(const VolumeSource& source)
+{
+    const VolumeInfo& info = source.info();
+    const auto bytes_in = [&](const Size3& size) { return uint64_t(size.x * size.y * size.z) * bytes_of(info.type); };
+    const auto longest = [](const Size3& size) { return std::max({size.x, size.y, size.z}); };
+    const int own = source.levels();
+    Size3 size = size_of_level(info.size, own - 1);
+    const Size3 bricks = brick_grid(size);
+    const bool is_enough = longest(size) <= BRICK_SIDE || (own > 1 && bricks.x * bricks.y * bricks.z <= MAX_COARSEST);
+    if (is_enough) return {};
+    Plan plan{.levels = own};
+    plan.bytes = bytes_in({size.x, size.y, std::min<int64_t>(size.z, 2)});
+    for (; longest(size) > BRICK_SIDE; ++plan.levels) {
+        size = size_of_level(size, 1);
+        plan.bytes += bytes_in(size);
+    }
+    plan.sparse = SparseLevels::plan(source, plan.levels);
+    if (plan.sparse) plan.bytes = plan.sparse->bytes();
+    return plan;
+}
+
+Plan checked_plan_of(const VolumeSource& source, uint64_t host_budget_bytes)
+{
+    constexpr int MEBIBYTE = 20;  // as a shift
+    Plan plan = plan_of(source);
+    if (plan.bytes > host_budget_bytes / LEVELS_SHARE_OF_HOST) {
+        fail(source.info().name, ": is drawn in pieces, and making its coarser levels takes ",
+             (plan.bytes >> MEBIBYTE) + 1, " MiB; expected at most ",
+             (host_budget_bytes / LEVELS_SHARE_OF_HOST) >> MEBIBYTE,
+             " MiB, a quarter of --budget-host: use --budget-host ",
+             (LEVELS_SHARE_OF_HOST * plan.bytes >> MEBIBYTE) + 1,
+             ", or make a project with `shvr import FILE PROJECT` and open that");
+    }
+    return plan;
+}
 
 }  // namespace
 
-std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes)
+void check_levels(const VolumeSource& source, uint64_t host_budget_bytes)
 {
-    constexpr int MEBIBYTE = 20;  // as a shift
-    const VolumeInfo& info = source->info();
-    const auto bytes_in = [&](const Size3& size) { return uint64_t(size.x * size.y * size.z) * bytes_of(info.type); };
-    int levels = 1;
-    uint64_t bytes = bytes_in({info.size.x, info.size.y, std::min<int64_t>(info.size.z, 2)});
-    for (Size3 size = info.size; std::max({size.x, size.y, size.z}) > int64_t{gpu::BRICK_SIZE}; ++levels) {
-        size = size_of_level(size, 1);
-        bytes += bytes_in(size);
-    }
-    if (source->levels() > 1 || levels == 1) return source;
-    if (bytes > host_budget_bytes / LEVELS_SHARE_OF_HOST) {
-        fail(info.name, ": is drawn in pieces, and making its coarser levels takes ", (bytes >> MEBIBYTE) + 1,
-             " MiB; expected at most ", (host_budget_bytes / LEVELS_SHARE_OF_HOST) >> MEBIBYTE,
-             " MiB, a quarter of --budget-host: use --budget-host ", (LEVELS_SHARE_OF_HOST * bytes >> MEBIBYTE) + 1,
-             ", or make a project with `shvr import FILE PROJECT` and open that");
-    }
+    static_cast<void>(checked_plan_of(source, host_budget_bytes));
+}
+
+std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
+                                                const Progress& progress)
+{
+    Plan plan = checked_plan_of(*source, host_budget_bytes);
+    if (plan.levels == 0) return source;
     auto pyramid = std::make_shared<PyramidSource>(std::move(source));
-    with_voxel_type(pyramid->info().type, [&]<class T>(T) { pyramid->build<T>(levels); });
+    if (plan.sparse)
+        pyramid->build(*std::move(plan.sparse), plan.levels, progress);
+    else
+        with_voxel_type(pyramid->info().type, [&]<class T>(T) { pyramid->build<T>(plan.levels, progress); });
     return pyramid;
 }
 

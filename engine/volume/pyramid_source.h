@@ -1,6 +1,7 @@
 #pragma once
-// Coarser levels, kept in memory, for a volume whose file has none: they take a seventh of the volume's own bytes.
-// Level 0 is still read from the file.
+// Coarser levels, kept in memory, for a volume whose file has none, or none that is coarse enough to begin with: they
+// take a seventh of the bytes of its coarsest level, or of what that stores (sparse_levels.h). The levels of the file
+// are still read from it.
 
 #include <memory>
 
@@ -11,8 +12,11 @@ namespace shvr {
 /// The levels' share of the host budget; the rest is for bricks and transfers.
 inline constexpr uint64_t LEVELS_SHARE_OF_HOST = 4;
 
-/// Returns the source itself if it has levels or is no larger than a brick. Reads the volume once. Fails before reading
-/// if the levels, plus two slices while they are made, need more than a quarter of `host_budget_bytes`.
-std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes);
+/// Returns the source itself if it has coarse levels or is no larger than a brick. Reads the volume once. Fails before
+/// reading if the levels, plus two slices while they are made, need more than a quarter of `host_budget_bytes`.
+std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
+                                                const Progress& progress = {});
+/// Fails where with_levels would, from sizes alone.
+void check_levels(const VolumeSource& source, uint64_t host_budget_bytes);
 
 }  // namespace shvr

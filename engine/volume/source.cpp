@@ -9,37 +9,37 @@
 
 #include "engine/base/error.h"
 #include "engine/volume/outliers.h"
+#include "engine/volume/voxel_walk.h"
 
 namespace shvr {
 namespace {
 
-constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr size_t BINS = 256;
 
-/// Calls `take(span<const T>)` for every slab. Slabs are whole slices, or rows of one slice if a slice is too large. If
-/// the file stores blocks, slabs are as thick as a block and have rows of whole blocks.
+/// What is measured, and who is told how far it is. Several passes may go over the same walk.
+struct Measured {
+    const VolumeSource& source;
+    const VoxelWalk& walk;
+    const Progress& progress;
+};
+
+/// Calls `take(span<const T>, times)` for every box of the walk: each voxel of the span occurs so many times.
 template <class T, class Take>
-void for_each_slab(const VolumeSource& source, const Take& take)
+void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
-    const Size3 size = source.info().size;
-    const Size3 block = glm::min(source.block(), size);
-    const int64_t row_bytes = size.x * int64_t(sizeof(T));
-    int64_t rows = std::min(size.y, std::max<int64_t>(1, SLAB_BYTES / (row_bytes * block.z)));
-    if (rows < size.y) rows = std::max(rows / block.y, int64_t{1}) * block.y;
-    int64_t slices = block.z;
-    if (rows >= size.y) slices *= std::max<int64_t>(1, SLAB_BYTES / (row_bytes * size.y * block.z));
-    rows = std::min(rows, size.y);
-    slices = std::min(slices, size.z);
-    std::vector<T> slab(size_t(size.x * rows * slices));
-    for (int64_t z = 0; z < size.z; z += slices) {
-        for (int64_t y = 0; y < size.y; y += rows) {
-            const VoxelBox box{{0, y, z}, {size.x, std::min(y + rows, size.y), std::min(z + slices, size.z)}};
-            const Size3 extent = box.size();
-            const std::span<T> voxels(slab.data(), size_t(extent.x * extent.y * extent.z));
-            source.read(box, std::as_writable_bytes(voxels));
-            take(std::span<const T>(voxels));
-        }
+    std::vector<T> slab;
+    int64_t done = 0;
+    for (int64_t i = 0; i < measured.walk.boxes(); ++i) {
+        const VoxelBox box = measured.walk.box(i);
+        const Size3 extent = box.size();
+        slab.resize(size_t(extent.x * extent.y * extent.z));
+        measured.source.read(box, std::as_writable_bytes(std::span(slab)));
+        take(std::span<const T>(slab), int64_t{1});
+        done += int64_t(slab.size());
+        tell(measured.progress, lower + (upper - lower) * double(done) / double(measured.walk.voxels()));
     }
+    const auto fill = static_cast<T>(measured.walk.fill());
+    if (measured.walk.rest() > 0) take(std::span(&fill, 1), measured.walk.rest());
 }
 
 size_t bin_of(const ValueRange& range, double value)
@@ -53,7 +53,7 @@ size_t bin_of(const ValueRange& range, double value)
 
 /// Integers of 8 and 16 bits have few enough values to count each; everything else follows from the counts.
 template <class T>
-VolumeStatistics measure_integers(const VolumeSource& source)
+VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
@@ -61,8 +61,9 @@ VolumeStatistics measure_integers(const VolumeSource& source)
     // the previous one.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
-    for_each_slab<T>(source, [&](std::span<const T> voxels) {
-        for (size_t i = 0; i < voxels.size(); ++i) ++counts[(i % TABLES) * VALUES + static_cast<Unsigned>(voxels[i])];
+    for_each_slab<T>(measured, 0.0, 1.0, [&](std::span<const T> voxels, int64_t times) {
+        for (size_t i = 0; i < voxels.size(); ++i)
+            counts[(i % TABLES) * VALUES + static_cast<Unsigned>(voxels[i])] += times;
     });
 
     std::vector<int64_t> ascending;
@@ -79,16 +80,16 @@ VolumeStatistics measure_integers(const VolumeSource& source)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(double)` for every finite voxel.
+/// Calls `take(double, times)` for every finite voxel.
 template <class T, class Take>
-void for_each_finite(const VolumeSource& source, const Take& take)
+void for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
-    for_each_slab<T>(source, [&](std::span<const T> voxels) {
+    for_each_slab<T>(measured, lower, upper, [&](std::span<const T> voxels, int64_t times) {
         for (const T voxel : voxels) {
             if constexpr (std::is_floating_point_v<T>) {
                 if (!std::isfinite(voxel)) continue;
             }
-            take(double(voxel));
+            take(double(voxel), times);
         }
     });
 }
@@ -106,29 +107,30 @@ void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
 }
 
 template <class T>
-VolumeStatistics measure_wide(const VolumeSource& source)
+VolumeStatistics measure_wide(const Measured& measured)
 {
     VolumeStatistics statistics;
     statistics.histogram.assign(BINS, 0);
     ValueRange all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     long double sum = 0.0L;
     int64_t finite = 0;
-    OutlierFinder outliers(voxel_count(source.info()));
-    for_each_finite<T>(source, [&](double value) {
+    OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest());
+    for_each_finite<T>(measured, 0.0, 0.5, [&](double value, int64_t times) {
         all.lower = std::min(all.lower, value);
         all.upper = std::max(all.upper, value);
-        sum += static_cast<long double>(value);
-        outliers.add(value);
-        ++finite;
+        sum += static_cast<long double>(value) * static_cast<long double>(times);
+        outliers.add(value, times);
+        finite += times;
     });
-    statistics.not_finite = voxel_count(source.info()) - finite;
+    statistics.not_finite = measured.walk.voxels() + measured.walk.rest() - finite;
     if (finite == 0) return statistics;
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
     statistics.mean = double(sum / static_cast<long double>(finite));
     find_bulk<T>(outliers, statistics);
     const ValueRange range = statistics.range();
-    for_each_finite<T>(source, [&](double value) { ++statistics.histogram[bin_of(range, value)]; });
+    for_each_finite<T>(measured, 0.5, 1.0,
+                       [&](double value, int64_t times) { statistics.histogram[bin_of(range, value)] += times; });
     return statistics;
 }
 
@@ -145,6 +147,11 @@ std::optional<ValueRange> VolumeSource::brick_range(int /*level*/, const Size3& 
     return std::nullopt;
 }
 
+std::optional<StoredBlocks> VolumeSource::stored_blocks(int /*level*/, int64_t /*most*/) const
+{
+    return std::nullopt;
+}
+
 namespace {
 
 /// Presents one level as a whole volume.
@@ -156,6 +163,10 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         source_.read_level(level_, box, voxels);
+    }
+    std::optional<StoredBlocks> stored_blocks(int /*level*/, int64_t most) const override
+    {
+        return source_.stored_blocks(level_, most);
     }
 
 private:
@@ -169,22 +180,52 @@ private:
     int level_;
 };
 
-int level_to_measure(const VolumeSource& source)
+VolumeStatistics measure_walk(const VolumeSource& source, const VoxelWalk& walk, const Progress& progress)
 {
-    int level = 0;
-    const auto voxels = [&] {
-        const Size3 size = size_of_level(source.info().size, level);
-        return double(size.x) * double(size.y) * double(size.z);
-    };
-    while (level + 1 < source.levels() && voxels() > double(MAX_VOXELS_MEASURED)) ++level;
-    return level;
+    const Measured measured{source, walk, progress};
+    switch (source.info().type) {
+        case VoxelType::uint8: return measure_integers<uint8_t>(measured);
+        case VoxelType::int8: return measure_integers<int8_t>(measured);
+        case VoxelType::uint16: return measure_integers<uint16_t>(measured);
+        case VoxelType::int16: return measure_integers<int16_t>(measured);
+        case VoxelType::uint32: return measure_wide<uint32_t>(measured);
+        case VoxelType::int32: return measure_wide<int32_t>(measured);
+        case VoxelType::float32: return measure_wide<float>(measured);
+        case VoxelType::float64: return measure_wide<double>(measured);
+    }
+    SHVR_CHECK(false, "voxel type ", int(source.info().type));
+    return {};
+}
+
+double voxels_of_level(const VolumeSource& source, int level)
+{
+    const Size3 size = size_of_level(source.info().size, level);
+    return double(size.x) * double(size.y) * double(size.z);
+}
+
+/// What a level of a large volume stores; nothing if it is all read anyway, or if that is more than `most_voxels`.
+std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
+{
+    if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;
+    const Size3 block = source.block();
+    const double most = double(most_voxels) / (double(block.x) * double(block.y) * double(block.z));
+    return source.stored_blocks(level, int64_t(std::clamp(most, 64.0, double(MAX_STORED_BLOCKS))));
+}
+
+/// One level, whole or what it stores.
+VolumeStatistics measure_exactly(const VolumeSource& source, std::optional<StoredBlocks> stored,
+                                 const Progress& progress)
+{
+    return measure_walk(source, stored ? VoxelWalk::stored(source, *std::move(stored)) : VoxelWalk::all(source),
+                        progress);
 }
 
 }  // namespace
 
-VolumeStatistics measure_level(const VolumeSource& source, int level)
+VolumeStatistics measure_level(const VolumeSource& source, int level, const Progress& progress)
 {
-    return measure(OneLevel(source, level));
+    const OneLevel one(source, level);
+    return measure_exactly(one, stored_in(one, 0, std::numeric_limits<int64_t>::max()), progress);
 }
 
 Size3 size_of_level(const Size3& size, int level)
@@ -212,27 +253,35 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
     return statistics;
 }
 
-VolumeStatistics measure(const VolumeSource& source)
+VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options)
 {
     if (std::optional<VolumeStatistics> known = source.statistics()) return *std::move(known);
-    if (const int level = level_to_measure(source); level > 0) {
-        VolumeStatistics statistics = measure_level(source, level);
+    static_cast<void>(voxel_count(source.info()));
+    if (options.exact) {
+        constexpr int64_t ANY = std::numeric_limits<int64_t>::max();
+        return measure_exactly(source, stored_in(source, 0, ANY), options.progress);
+    }
+    for (int level = 0; level < source.levels(); ++level) {
+        std::optional<StoredBlocks> stored = stored_in(source, level, MAX_VOXELS_MEASURED);
+        if (!stored && voxels_of_level(source, level) > double(MAX_VOXELS_MEASURED)) continue;
+        if (level == 0) return measure_exactly(source, std::move(stored), options.progress);
+        VolumeStatistics statistics = measure_exactly(OneLevel(source, level), std::move(stored), options.progress);
         statistics.measured_level = level;
         return statistics;
     }
-    static_cast<void>(voxel_count(source.info()));
-    switch (source.info().type) {
-        case VoxelType::uint8: return measure_integers<uint8_t>(source);
-        case VoxelType::int8: return measure_integers<int8_t>(source);
-        case VoxelType::uint16: return measure_integers<uint16_t>(source);
-        case VoxelType::int16: return measure_integers<int16_t>(source);
-        case VoxelType::uint32: return measure_wide<uint32_t>(source);
-        case VoxelType::int32: return measure_wide<int32_t>(source);
-        case VoxelType::float32: return measure_wide<float>(source);
-        case VoxelType::float64: return measure_wide<double>(source);
+    const int coarsest = source.levels() - 1;
+    if (voxels_of_level(source, coarsest) <= double(MAX_VOXELS_EXACT)) {
+        if (coarsest == 0) return measure_exactly(source, std::nullopt, options.progress);
+        VolumeStatistics statistics = measure_level(source, coarsest, options.progress);
+        statistics.measured_level = coarsest;
+        return statistics;
     }
-    SHVR_CHECK(false, "voxel type ", int(source.info().type));
-    return {};
+    if (std::optional<StoredBlocks> stored = stored_in(source, 0, MAX_VOXELS_EXACT))
+        return measure_exactly(source, std::move(stored), options.progress);
+    const VoxelWalk walk = VoxelWalk::sample(source);
+    VolumeStatistics statistics = measure_walk(source, walk, options.progress);
+    statistics.sampled_voxels = walk.voxels();
+    return statistics;
 }
 
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
@@ -250,6 +299,12 @@ std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
             " to ", statistics.bulk->upper, ", where all others are (with ", is_one ? "it" : "them", " the range is ",
             statistics.minimum, " to ", statistics.maximum, "), and ",
             is_one ? "is shown as if it were" : "are shown as if they were", " at the nearer end of that range"));
+    }
+    if (statistics.sampled_voxels > 0) {
+        warnings.push_back(sentence("intensities were estimated from a sample of ", statistics.sampled_voxels,
+                                    " voxels; others may lie beyond ", statistics.range().lower, " to ",
+                                    statistics.range().upper,
+                                    ": `shvr info --exact` goes through all, and so does `shvr import`"));
     }
     if (statistics.measured_level > 0) {
         warnings.push_back(sentence("intensities were measured on level ", statistics.measured_level,

@@ -13,9 +13,18 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/progress.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {
+
+/// Which parts of a level are stored where most of it may not be, as in a sparse file: work on it then costs what is
+/// stored.
+struct StoredBlocks {
+    Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
+    double fill = 0.0;                 ///< of every voxel outside all blocks; may be infinite or NaN
+    std::vector<glm::ivec3> blocks{};  ///< each once, by z, then y, then x
+};
 
 /// The user's choice for files that hold several volumes. Without a choice, a reader refuses such a file with a message
 /// that lists the choices; readers of formats with one volume ignore this.
@@ -50,6 +59,9 @@ public:
     /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it.
     /// Nothing if the source does not know.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
+    /// Where the level stores anything, without reading voxels. Nothing if the source does not know, or if more than
+    /// `most` blocks are stored.
+    virtual std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const;
     /// The statistics of level 0 if the source knows them; `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
 
@@ -60,21 +72,32 @@ private:
     VolumeInfo info_;
 };
 
-/// One pass over the whole volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits
-/// need a second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume
-/// without a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured. If the
-/// volume has coarser levels and more than MAX_VOXELS_MEASURED voxels, the finest level with no more than that is
-/// measured instead, or else the coarsest (VolumeStatistics::measured_level).
-VolumeStatistics measure(const VolumeSource& source);
+struct MeasureOptions {
+    bool exact = false;  ///< level 0 and all of its voxels, whatever it takes
+    Progress progress{};
+};
+/// Passes over the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
+/// second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume without a
+/// finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
+///
+/// Large volumes. Of a source that knows what it stores only that is read, and the rest counts as fill values. The
+/// finest level is measured that has, or stores, no more than MAX_VOXELS_MEASURED (VolumeStatistics::measured_level).
+/// Without such a level the coarsest is, or what level 0 stores, up to MAX_VOXELS_EXACT; beyond that, all is estimated
+/// from a sample (VolumeStatistics::sampled_voxels): 256 pieces of about 2^18 voxels, or as much of the stored blocks,
+/// spread evenly and always the same.
+VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
+inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
+/// More stored blocks than anybody lists: 2^42 voxels in blocks of 64^3, and 192 MiB.
+inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
-/// Like `measure`, for one level, always by reading its voxels.
-VolumeStatistics measure_level(const VolumeSource& source, int level);
+/// Like an exact `measure`, for one level, always by reading its voxels.
+VolumeStatistics measure_level(const VolumeSource& source, int level, const Progress& progress = {});
 /// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
 /// What the user should know about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
-/// level was measured.
+/// level or a sample was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

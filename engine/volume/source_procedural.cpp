@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine/base/error.h"
-#include "engine/volume/procedural_kind.h"
+#include "engine/volume/procedural/procedural_kind.h"
 #include "engine/volume/voxel_numbers.h"
 #include "shaders/bricks.h"
 

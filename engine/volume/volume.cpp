@@ -183,8 +183,9 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
 
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
 {
-    if (statistics.measured_level > 0 && type == VoxelType::uint16) return window_for(type, 0.0, 65535.0);
-    if (statistics.measured_level > 0 && type == VoxelType::int16) return window_for(type, -32768.0, 32767.0);
+    const bool is_partial = statistics.measured_level > 0 || statistics.sampled_voxels > 0;
+    if (is_partial && type == VoxelType::uint16) return window_for(type, 0.0, 65535.0);
+    if (is_partial && type == VoxelType::int16) return window_for(type, -32768.0, 32767.0);
     return window_for(type, statistics.range().lower, statistics.range().upper);
 }
 

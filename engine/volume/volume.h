@@ -90,8 +90,9 @@ struct VolumeStatistics {
     /// The extremes without a few outliers, if those would leave too few codes for all other voxels. Unused if every
     /// integer has its own code.
     std::optional<ValueRange> bulk{};
-    int64_t beyond_bulk = 0;  ///< outliers
-    int measured_level = 0;   ///< the level that was measured; above 0, voxels are means
+    int64_t beyond_bulk = 0;     ///< outliers
+    int measured_level = 0;      ///< the level that was measured; above 0, voxels are means
+    int64_t sampled_voxels = 0;  ///< above 0: all of this was estimated from so many voxels
 
     /// The range used for pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
@@ -112,8 +113,8 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// The window over VolumeStatistics::range(). For 16-bit integers of which only a coarser level was measured: over all
-/// values of the type, since level 0 may exceed its means.
+/// The window over VolumeStatistics::range(). For 16-bit integers of which only a coarser level or a sample was
+/// measured: over all values of the type, since other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import re
 import struct
 import subprocess
 import tempfile
@@ -13,6 +14,9 @@ from pathlib import Path
 
 SHVR = os.environ.get("SHVR", "build/dev/shvr")
 TIMEOUT_S = 120
+
+# A line of progress on standard error, which any command has that takes longer than a second.
+PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
 
 # Any message of the Vulkan validation layer makes a command fail.
 ENVIRONMENT = {**os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C"}
@@ -48,7 +52,8 @@ class CliTest(unittest.TestCase):
         """Expects a failure: one sentence with all of `says` on standard error, nothing on standard output."""
         result = self.check(*arguments, status=status)
         self.assertEqual(result.stdout, "")
-        lines = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+        lines = [line for line in result.stderr.splitlines()
+                 if not line.startswith("warning: ") and not PROGRESS.search(line)]
         self.assertEqual(len(lines), 1, result.stderr)
         self.assertTrue(lines[0].startswith("shvr: "), result.stderr)
         for word in says:

@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from harness import ENVIRONMENT, SHVR, CliTest, Volume
+from harness import ENVIRONMENT, PROGRESS, SHVR, CliTest, Volume
 from test_annotate import paint
 
 PATIENCE_S = 60
@@ -49,7 +49,8 @@ class Script(CliTest):
 
     def test_a_line_a_command_only_where_it_is_asked_for(self):
         operations = [self.dab(1), {"op": "node", "at": [1, 1, 1]}, {"op": "save"}]
-        said = [line for line in self.annotate(operations).stderr.splitlines() if not line.startswith("warning: ")]
+        said = [line for line in self.annotate(operations).stderr.splitlines()
+                if not line.startswith("warning: ") and not PROGRESS.search(line)]
         self.assertEqual([line.split(": ", 1)[1] for line in said],
                          [f"saved {self.folder / 'paint.mask'}", f"saved {self.folder / 'paint.graphml'}",
                           "3 commands, 1 voxels changed, 0 steps not saved"])
@@ -134,7 +135,7 @@ class Stopped(CliTest):
                     time.sleep(0.5)
                     self.assertIsNone(program.poll())
                     status = self.check_stopped(program, number, f"shvr: stopped by {name}; no file is left half")
-                    self.assertEqual(status, -number)
+                    self.assertIn(status, (1, -number))  # by the signal where the work had not begun
         self.assertEqual(sorted(os.listdir(self.folder)), ["session.json"])
 
     def test_annotate_ends_between_two_commands_and_says_where(self):

@@ -231,11 +231,11 @@ class Import(CliTest):
         header.unlink()
         self.assertEqual(self.check_json("info", self.folder / "elsewhere")["size"], [9, 8, 7])
 
-    def test_progress_is_told_in_tenths(self):
+    def test_what_is_said_is_progress_and_the_result(self):
         header = Volume.noise((64, 64, 640), seed=7).write(self.folder)
         lines = self.check("import", header, self.project()).stderr.splitlines()
         for line in lines:
-            self.assertRegex(line, r"^(\d+ %, [\d.]+ MB/s, .* left|warning: .*|.*: 64 x 64 x 640 voxels in 6 levels, .*)$")
+            self.assertRegex(line, r"^(importing .*: (\d+ %, [\d.]+ MB/s, .* left|\d+ s so far)|warning: .*|.*: 64 x 64 x 640 voxels in 6 levels, .*)$")
         self.assertEqual(self.check("import", header, self.project(), "--overwrite", "--quiet").stderr, "")
 
     def test_on_a_terminal_one_line_shows_share_rate_and_time_left_and_goes_away(self):
@@ -255,10 +255,10 @@ class Import(CliTest):
         os.close(ours)
         self.assertEqual(process.wait(timeout=60), 0)
         lines = shown.decode().split("\r\x1b[K")
-        self.assertGreater(len(lines), 2)
-        for line in lines[1:-1]:
-            self.assertRegex(line, r"^\d+ %, [\d.]+ MB/s, (\d+ min )?\d+ s left$")
-        shares = [int(line.split()[0]) for line in lines[1:-1]]
+        told = [line for line in lines[1:-1] if "%" in line]  # on a fast machine it takes less than a second
+        for line in told:
+            self.assertRegex(line, r"^importing .*: \d+ %, [\d.]+ MB/s, (\d+ min )?\d+ s left$")
+        shares = [int(line.rsplit(": ", 1)[1].split()[0]) for line in told]
         self.assertEqual(shares, sorted(shares))
         self.assertNotIn("%", lines[-1])
 

@@ -150,7 +150,7 @@ void add_device_options(CLI::App& command, Common& common)
 
 void say(const Common& common, const std::string& line)
 {
-    if (!common.quiet) std::cerr << line << '\n';
+    if (!common.quiet) print_beside_progress(line);
 }
 
 void warn(const std::vector<std::string>& warnings, const Common& common)
@@ -169,7 +169,7 @@ void warn(const std::vector<Notice>& notices, const Common& common)
 
 void warn_of_losses(const std::vector<std::string>& losses)
 {
-    for (const std::string& loss : losses) std::cerr << "warning: " << loss << '\n';
+    for (const std::string& loss : losses) print_beside_progress("warning: " + loss);
 }
 
 void warn_of_holder(const std::filesystem::path& journal, const Common& common)
@@ -181,6 +181,7 @@ void warn_of_holder(const std::filesystem::path& journal, const Common& common)
 
 void print(const Json& result)
 {
+    clear_progress();
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");
 }
@@ -238,22 +239,28 @@ glm::dvec3 parse_spacing(const std::string& text)
     return spacing;
 }
 
-Opened open(const std::string& path, const Common& common, Work::Opening opening)
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening)
 {
-    OpenedSession session = open_session(path, common.settings);
-    Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings), nullptr, nullptr};
+    std::unique_ptr<Renderer> renderer;
+    OpeningOptions options{.measure = {.progress = work.begin("opening " + path)}};
+    options.before_reading = [&](const Session& session, const VolumeSource& source) {
+        const char* validation = std::getenv("SHVR_VALIDATION");
+        renderer = std::make_unique<Renderer>(
+            Renderer::Options{.device = {common.device, validation && *validation == '1'},
+                              .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
+                              .threads = common.threads});
+        renderer->check_sizes(source, session.render, shows_occlusion(session.light));
+        static_cast<void>(work.begin("measuring " + path));
+    };
+    OpenedSession session = open_session(path, common.settings, options);
+    Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings),
+                  std::move(renderer), nullptr};
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
     warn_of_losses(session.losses);
     if (opening.only_look) warn_of_holder(opened.session.journal_path, common);
-
-    const char* validation = std::getenv("SHVR_VALIDATION");
-    opened.renderer = std::make_unique<Renderer>(
-        Renderer::Options{.device = {common.device, validation && *validation == '1'},
-                          .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
-                          .threads = common.threads});
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
-                          shows_occlusion(opened.session.light));
+                          shows_occlusion(opened.session.light), work.begin("loading " + path));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     opening.belief = common.belief;
     warn(opened.annotator->open(work_files(opened.session, opened.source->info(), common.settings), opening), common);

@@ -14,6 +14,7 @@
 #include "engine/live/annotator.h"
 #include "engine/projects/import_volume.h"
 #include "engine/session/session.h"
+#include "tools/cli/long_work.h"
 
 namespace shvr::cli {
 
@@ -72,7 +73,8 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
 };
-Opened open(const std::string& path, const Common& common, Work::Opening opening = {.only_look = true});
+/// Refuses what is too large for the budgets before it reads voxels.
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true});
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);

@@ -7,7 +7,6 @@
 #include "engine/annotation/work/script.h"
 #include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
-#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -149,18 +148,20 @@ void run_annotate(const AnnotateCommandOptions& options)
     const std::shared_ptr<Hold> hold = hold_of(options.project);  // refused before any work
     const std::string name = name_of_script(options.script);
     const std::vector<ScriptLine> script = read_script(options.script);
+    LongWork work(options.common.quiet);
     Opened opened = open(
-        options.project, options.common,
+        options.project, options.common, work,
         {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"});
     check_radii(script, name, opened.source->info());
     Replay replay{opened, options};
-    const StopRequest stop;
+    static_cast<void>(work.begin("replaying " + name));
     for (size_t done = 0; done < script.size(); ++done) {
         replay.at = sentence(name, ":", script[done].number);
-        if (stop.is_made()) {
+        if (work.is_asked_to_stop()) {
             opened.annotator->work().flush();
             fail(replay.at, ": stopped before this line; the ", done, " commands before it are kept");
         }
+        work.show(double(done) / double(script.size()), {}, -1.0);
         std::visit(replay, script[done].op);
     }
     opened.annotator->work().flush();

@@ -12,6 +12,7 @@
 #include "engine/annotation/measures/trace_score.h"
 #include "engine/base/text.h"
 #include "engine/volume/unit.h"
+#include "engine/volume/voxel_walk.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -56,8 +57,10 @@ bool is_bare_mask(const std::filesystem::path& path)
     return path.extension() == ".mask";
 }
 
-Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space, const GroupMap& groups = {})
+Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space, LongWork& work,
+               const GroupMap& groups = {})
 {
+    const Progress progress = work.begin("reading " + path);
     const auto mask_of = [&](const Size3& size, std::vector<MaskBrickChange> changes) {
         Mask mask(size);
         for (MaskBrickChange& change : changes) {
@@ -73,7 +76,7 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space, 
             fail(path, ": size is ", in_words(size), " voxels; expected ", in_words(space->size));
         const std::string elsewhere = space ? why_elsewhere(space_of(source->info()), *space) : std::string();
         if (!elsewhere.empty()) fail(path, ": is a mask of a volume with ", elsewhere, ", where the others lie");
-        return mask_of(size, mask_changes(*source, path));
+        return mask_of(size, mask_changes(ToldSource(*source, progress), path));
     }
     if (!space)
         throw UsageError(
@@ -84,7 +87,8 @@ Mask read_mask(const std::string& path, const std::optional<TraceSpace>& space, 
 /// The space of --volume; else of the first trace or mask that states one.
 std::optional<TraceSpace> find_space(const EvaluateCommandOptions& options)
 {
-    if (!options.volume.empty()) return space_of(open_session(options.volume, options.common.settings).source->info());
+    if (!options.volume.empty())
+        return space_of(open_unmeasured_session(options.volume, options.common.settings).source->info());
     for (const std::string& path : {options.truth_trace, options.trace}) {
         if (path.empty()) continue;
         if (std::optional<TraceSpace> space = load_trace(path, {}).space) return space;
@@ -101,7 +105,7 @@ Json number_or_null(const std::optional<double>& value)
 }
 
 /// Dice of two bare masks, whose shape may be unknown.
-Dice dice_of_files(const std::string& a, const std::string& b, const GroupMap& groups_of_a)
+Dice dice_of_files(const std::string& a, const std::string& b, const GroupMap& groups_of_a, const Progress& progress)
 {
     std::ifstream files[2];
     std::uintmax_t sizes[2];
@@ -122,6 +126,7 @@ Dice dice_of_files(const std::string& a, const std::string& b, const GroupMap& g
         }
         for (uint8_t& group : bytes[0]) group = groups_of_a[group];
         counter.add(bytes[0], bytes[1]);
+        tell(progress, double(done) / double(sizes[0]));
     }
     return counter.result();
 }
@@ -159,10 +164,11 @@ void add_dice(const EvaluateCommandOptions& options, const Dice& dice, Json& res
 }
 
 void add_mask_scores(const EvaluateCommandOptions& options, const Mask& truth, const std::optional<TraceSpace>& space,
-                     Json& result)
+                     Json& result, LongWork& work)
 {
     if (options.mask.empty()) return;
-    const Mask mask = read_mask(options.mask, space);
+    const Mask mask = read_mask(options.mask, space, work);
+    static_cast<void>(work.begin("comparing masks"));
     if (mask.size() != truth.size())
         fail(options.mask, ": size is ", in_words(mask.size()), " voxels; expected ", in_words(truth.size()),
              ", the size of ", options.truth_mask);
@@ -209,6 +215,7 @@ void run_evaluate(const EvaluateCommandOptions& options)
         throw UsageError("neither --mask nor --trace is given; expected at least one of them");
     if (!options.truth_trace.empty() && options.trace.empty())
         throw UsageError("--truth-trace is given without --trace; expected both");
+    LongWork work(options.common.quiet);
     const std::optional<TraceSpace> space = find_space(options);
     Json result = {{"dice", nullptr},
                    {"dice_by_group", Json::object()},
@@ -224,12 +231,15 @@ void run_evaluate(const EvaluateCommandOptions& options)
                    {"warnings", Json::array()}};
     const GroupMap truth_groups = truth_groups_of(options);
     if (!space && options.trace.empty() && is_bare_mask(options.truth_mask) && is_bare_mask(options.mask)) {
-        add_dice(options, dice_of_files(options.truth_mask, options.mask, truth_groups), result);
+        add_dice(options, dice_of_files(options.truth_mask, options.mask, truth_groups, work.begin("comparing masks")),
+                 result);
     } else {
-        const Mask truth = read_mask(options.truth_mask, space, truth_groups);
-        add_mask_scores(options, truth, space, result);
+        const Mask truth = read_mask(options.truth_mask, space, work, truth_groups);
+        add_mask_scores(options, truth, space, result, work);
+        static_cast<void>(work.begin("comparing traces"));
         if (!options.trace.empty()) add_trace_scores(options, truth, space.value(), result);
     }
+    clear_progress();
     warn(result["warnings"].get<std::vector<std::string>>(), options.common);
     if (options.common.json)
         print(result);

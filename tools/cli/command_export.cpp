@@ -91,13 +91,17 @@ void run_export(const ExportCommandOptions& options)
     check_output("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output("--mesh", options.mesh, {".obj", ".ply"});
     check_output("--metrics", options.metrics, {".csv"});
-    const OpenedSession opened = open_session(options.project, options.common.settings);
+    LongWork long_work(options.common.quiet);
+    const OpenedSession opened =
+        open_session(options.project, options.common.settings,
+                     {.measure = {.progress = long_work.begin("measuring " + options.project)}});
     warn(opened.source->info().warnings, options.common);
     warn_of_losses(opened.losses);
     warn_of_holder(opened.session.journal_path, options.common);
     const VolumeInfo& volume = opened.source->info();
     const TraceSpace space = space_of(volume);
     Work work(volume.size, volume.type);
+    static_cast<void>(long_work.begin("reading annotations"));
     warn(work.open(work_files(opened.session, volume), {.belief = options.common.belief, .only_look = true}),
          options.common);
     work.expect_choice();
@@ -112,6 +116,7 @@ void run_export(const ExportCommandOptions& options)
         say(options.common, "wrote " + path);
     };
     if (!options.trace.empty()) {
+        static_cast<void>(long_work.begin("writing " + options.trace));
         left_out =
             save_trace(options.trace, trace, space, options.break_loops ? Loops::break_open : Loops::refuse, positions);
         warn(left_out, options.common);
@@ -121,18 +126,20 @@ void run_export(const ExportCommandOptions& options)
         if (path.empty()) continue;
         export_mask(path, mask, volume,
                     {.colors = label_looks(opened.session.groups, mask), .painted_on = opened.session.volume_hash},
-                    options.version);
+                    options.version, long_work.begin("writing " + path));
         wrote(path);
     }
     if (!options.offset.empty()) {
-        export_offsets(options.offset, work.document().density, volume);
+        export_offsets(options.offset, work.document().density, volume, long_work.begin("writing " + options.offset));
         wrote(options.offset);
     }
     if (!options.mesh.empty()) {
+        static_cast<void>(long_work.begin("writing " + options.mesh));
         save_trace_mesh(options.mesh, trace, space, positions);
         wrote(options.mesh);
     }
     if (!options.metrics.empty()) {
+        static_cast<void>(long_work.begin("measuring what is painted"));
         const std::string text = metrics_csv(measure(trace), mask.voxels_by_group(), topology_by_group(mask), space);
         write_file_atomically(options.metrics, std::as_bytes(std::span(text)));
         wrote(options.metrics);

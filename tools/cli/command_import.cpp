@@ -1,19 +1,15 @@
 // shvr import: makes a project of a volume. Needs no Vulkan device.
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <iomanip>
-#include <iostream>
 
 #include "engine/annotation/work/hold.h"
 #include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
-#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -92,51 +88,12 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
 
 // ---- While it runs --------------------------------------------------------------------------------------------------
 
-std::string time_text(double seconds)
+void show(LongWork& work, const ImportProgress& progress, size_t voxel_bytes)
 {
-    const auto whole = int64_t(std::ceil(seconds));
-    if (whole < 60) return sentence(whole, " s");
-    if (whole < 3600) return sentence(whole / 60, " min ", whole % 60, " s");
-    return sentence(whole / 3600, " h ", whole / 60 % 60, " min");
+    const double rate = progress.voxels_per_second * double(voxel_bytes) / 1e6;
+    work.show(progress.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
+              progress.seconds_left);
 }
-
-/// On a terminal one line, updated in place; elsewhere a line every 10 %.
-class ProgressLine {
-public:
-    ProgressLine(const Common& common, size_t voxel_bytes)
-        : is_quiet_(common.quiet), is_terminal_(::isatty(STDERR_FILENO) == 1), voxel_bytes_(double(voxel_bytes))
-    {}
-    ~ProgressLine() { clear(); }
-
-    void show(const ImportProgress& progress)
-    {
-        if (is_quiet_) return;
-        const auto tenth = int(progress.fraction * 10.0);
-        if (!is_terminal_ && tenth <= last_tenth_) return;
-        last_tenth_ = tenth;
-        const double rate = progress.voxels_per_second * voxel_bytes_ / 1e6;
-        const std::string line =
-            sentence(int(progress.fraction * 100.0), " %, ", std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate,
-                     " MB/s, ", time_text(progress.seconds_left), " left");
-        if (is_terminal_) {
-            std::cerr << "\r\x1b[K" << line << std::flush;
-            is_shown_ = true;
-        } else {
-            std::cerr << line << '\n';
-        }
-    }
-    void clear()
-    {
-        if (is_shown_) std::cerr << "\r\x1b[K" << std::flush;
-        is_shown_ = false;
-    }
-
-private:
-    bool is_quiet_, is_terminal_;
-    double voxel_bytes_;
-    int last_tenth_ = 0;
-    bool is_shown_ = false;
-};
 
 double peak_rss_mib()
 {
@@ -161,14 +118,13 @@ void run_import(const ImportCommandOptions& options)
     const std::shared_ptr<Hold> hold = options.overwrite ? Hold::take(journal_beside(session), "shvr import") : nullptr;
     const auto begin = std::chrono::steady_clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(options);
-    ProgressLine line(options.common, bytes_of(source->info().type));
-    wanted.progress = [&](const ImportProgress& progress) { line.show(progress); };
-    const StopRequest stop;
-    wanted.cancel = &stop.flag();
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
+    LongWork work(options.common.quiet);
+    static_cast<void>(work.begin("importing " + options.volume));
+    wanted.progress = [&](const ImportProgress& progress) { show(work, progress, bytes_of(source->info().type)); };
+    wanted.cancel = &LongWork::stop_requested();
     const ImportReport report = import_volume(*source, options.volume, options.project, wanted);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    line.clear();
+    clear_progress();
     warn(report.warnings, options.common);
 
     const VolumeInfo& info = report.info;

@@ -12,6 +12,7 @@ namespace {
 struct InfoCommandOptions {
     Common common;
     std::string input;
+    bool exact = false;
 };
 
 struct Described {
@@ -22,21 +23,23 @@ struct Described {
     int levels = 1;
 };
 
-Described describe(const InfoCommandOptions& options)
+Described describe(const InfoCommandOptions& options, LongWork& work)
 {
     const std::filesystem::path path = options.input;
     std::error_code ignored;
     const bool is_there = std::filesystem::exists(path, ignored) || leads_into_archive(path);
     const bool is_bare = is_there && session_file_of(path).empty();
     OpenedSession opened;
+    const OpeningOptions opening{
+        .measure = {.exact = options.exact, .progress = work.begin("measuring " + options.input)}};
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare) {
         const std::vector<std::string>& settings = options.common.settings;
         opened.source = settings.empty() ? open_volume(path) : open_unmeasured_session(path, settings).source;
-        opened.statistics = measure(*opened.source);
+        opened.statistics = measure(*opened.source, opening.measure);
         opened.warnings = warnings_of(opened.statistics);
     } else {
-        opened = open_session(path, options.common.settings);
+        opened = open_session(path, options.common.settings, opening);
     }
     warn_of_losses(opened.losses);
     Described described{.info = opened.source->info(),
@@ -46,6 +49,13 @@ Described describe(const InfoCommandOptions& options)
                         .levels = opened.source->levels()};
     for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
     return described;
+}
+
+/// How the statistics came about.
+std::string measured_text(const VolumeStatistics& statistics)
+{
+    if (statistics.sampled_voxels > 0) return sentence("sample of ", statistics.sampled_voxels, " voxels");
+    return statistics.measured_level > 0 ? sentence("level ", statistics.measured_level) : "exact";
 }
 
 Json to_json(const Described& described, const std::string& input)
@@ -74,10 +84,11 @@ Json to_json(const Described& described, const std::string& input)
             {"min", statistics.minimum},
             {"max", statistics.maximum},
             {"mean", statistics.mean},
+            {"statistics", measured_text(statistics)},
             {"measured_level", statistics.measured_level},
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
-            {"bytes", voxels * int64_t(bytes_of(info.type))},
+            {"bytes", uint64_t(voxels) * bytes_of(info.type)},
             {"levels", described.levels},
             {"histogram", statistics.histogram},
             {"window", {{"lower", window.lower}, {"upper", window.upper()}, {"codes_per_unit", window.codes_per_unit}}},
@@ -93,7 +104,7 @@ std::string grouped(int64_t number)
     return digits;
 }
 
-std::string bytes_text(int64_t bytes)
+std::string bytes_text(uint64_t bytes)
 {
     const double mebibytes = double(bytes) / double(1 << 20);
     return sentence(std::fixed, std::setprecision(mebibytes < 10 ? 1 : 0), mebibytes, " MiB");
@@ -125,8 +136,10 @@ void print_text(const Described& described)
     print_line("one voxel",
                sentence(info.spacing.x, " x ", info.spacing.y, " x ", info.spacing.z, " ", info.unit, from));
     print_line("whole volume", sentence(extent.x, " x ", extent.y, " x ", extent.z, " ", plural(info.unit)));
-    print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(voxels * int64_t(bytes_of(info.type)))));
-    print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean));
+    print_line("voxel type", sentence(name_of(info.type), ", ", bytes_text(uint64_t(voxels) * bytes_of(info.type))));
+    const std::string how = measured_text(statistics);
+    print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean,
+                                       how == "exact" ? "" : " (" + how + ")"));
     if (described.levels > 1) print_line("levels", sentence(described.levels, ", each half as fine as the one before"));
     if (!described.mask.empty()) print_line("mask", described.mask);
     std::cout.flush();
@@ -135,7 +148,9 @@ void print_text(const Described& described)
 
 void run_info(const InfoCommandOptions& options)
 {
-    const Described described = describe(options);
+    LongWork work(options.common.quiet);
+    const Described described = describe(options, work);
+    clear_progress();
     warn(described.warnings, options.common);
     if (options.common.json)
         print(to_json(described, options.input));
@@ -150,6 +165,8 @@ void add_info(CLI::App& program)
     auto options = std::make_shared<InfoCommandOptions>();
     CLI::App* command = program.add_subcommand("info", "Describes a volume, a session or a project");
     command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
+    command->add_flag("--exact", options->exact,
+                      "Go through all voxels, also of volumes so large that a sample or a coarser level would do");
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr info scan.nhdr --json");

@@ -10,7 +10,6 @@
 #include "engine/formats/export/volume_export.h"
 #include "engine/projects/import_volume.h"
 #include "tools/cli/cli.h"
-#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -59,8 +58,17 @@ void check_usage(const LabelCommandOptions& options)
                                   "PROJECT/labels/NAME"));
 }
 
+/// Of a sparse volume more can be labelled than anybody can write.
+void check_output_size(const LabelCommandOptions& options, const VolumeInfo& info)
+{
+    constexpr int64_t MAX_VOXELS_WRITTEN = int64_t{1} << 44;
+    if (options.output.empty() || voxel_count(info) <= MAX_VOXELS_WRITTEN) return;
+    fail(options.output, ": would hold the labels of ", voxel_count(info), " voxels; expected at most ",
+         MAX_VOXELS_WRITTEN, ": leave out --output, or label a part of the volume");
+}
+
 /// One byte per voxel, as in masks.
-void write_mask(const std::string& path, const VolumeSource& labels)
+void write_mask(const std::string& path, const VolumeSource& labels, const Progress& progress)
 {
     const VolumeInfo& info = labels.info();
     if (info.type != VoxelType::uint8)
@@ -71,6 +79,7 @@ void write_mask(const std::string& path, const VolumeSource& labels)
     const int64_t step = export_rows(info);
     for (int64_t z = 0; z < info.size.z; ++z)
         for (int64_t y = 0; y < info.size.y; y += step) {
+            tell(progress, (double(z) + double(y) / double(info.size.y)) / double(info.size.z));
             const VoxelBox box{{0, y, z}, {info.size.x, std::min(y + step, info.size.y), z + 1}};
             rows.resize(size_t(box.size().x * box.size().y));
             labels.read(box, rows);
@@ -79,36 +88,25 @@ void write_mask(const std::string& path, const VolumeSource& labels)
     writer.commit();
 }
 
-void write_labels(const LabelCommandOptions& options, const VolumeSource& labels,
-                  const std::function<void(double)>& progress)
+void write_labels(const LabelCommandOptions& options, const VolumeSource& labels, const Progress& progress)
 {
     const std::string form = form_of(options.output);
-    if (form == ".mask") return write_mask(options.output, labels);
-    if (form != ".zarr") return export_volume(options.output, labels);
-    const StopRequest stop;
+    if (form == ".mask") return write_mask(options.output, labels, progress);
+    if (form != ".zarr") return export_volume(options.output, labels, progress);
     const ImportOptions wanted{.threads = options.common.threads,
                                .version = options.version,
                                .progress = [&](const ImportProgress& done) { progress(done.fraction); },
-                               .cancel = &stop.flag()};
+                               .cancel = &LongWork::stop_requested()};
     static_cast<void>(export_label_image(labels, options.output, {}, wanted));
-}
-
-/// Prints a line every 10 %.
-std::function<void(double)> progress_of(const Common& common, const char* what)
-{
-    return [&common, what, last = 0](double fraction) mutable {
-        const int tenth = int(10.0 * fraction);
-        if (tenth <= last) return;
-        last = tenth;
-        say(common, sentence(what, " ", 10 * tenth, " %"));
-    };
 }
 
 void run_label(const LabelCommandOptions& options)
 {
     check_usage(options);
+    LongWork work(options.common.quiet);
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
     const VolumeInfo info = opened.source->info();
+    check_output_size(options, info);
     warn(info.warnings, options.common);
     warn_of_losses(opened.losses);
     warn_of_holder(opened.session.journal_path, options.common);
@@ -123,7 +121,7 @@ void run_label(const LabelCommandOptions& options)
         .fewest_voxels = options.fewest_voxels,
         .max_components = options.largest,
         .threads = options.common.threads,
-        .progress = progress_of(options.common, "labelled"),
+        .progress = work.begin("labelling " + options.volume),
     };
     if (!options.output.empty()) wanted.run_folder = folder_of(options.output);
     const std::unique_ptr<Components> components = find_components(*source, wanted);
@@ -133,7 +131,7 @@ void run_label(const LabelCommandOptions& options)
     if (!options.output.empty()) {
         const std::unique_ptr<VolumeSource> labels = components->labels();
         type = name_of(labels->info().type);
-        write_labels(options, *labels, progress_of(options.common, "written"));
+        write_labels(options, *labels, work.begin("writing " + options.output));
     }
     const double seconds = seconds_since(begin);
     const auto voxels = double(voxel_count(info));

@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/source_procedural.h"
+#include "engine/volume/voxel_walk.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -51,8 +52,9 @@ std::string nrrd_header(const VolumeInfo& info, const std::string& voxels)
                     "\ndata file: ", voxels, "\n");
 }
 
-void write_voxels(const std::filesystem::path& path, const VolumeSource& source)
+void write_voxels(const std::filesystem::path& path, const VolumeSource& volume, const Progress& progress)
 {
+    const ToldSource source(volume, progress);
     const Size3 size = source.info().size;
     const int64_t row_bytes = size.x * int64_t(bytes_of(source.info().type));
     const int64_t rows = std::clamp<int64_t>(SLAB_BYTES / row_bytes, 1, size.y);
@@ -77,6 +79,7 @@ void run_phantom(const PhantomCommandOptions& options)
     const std::unique_ptr<VolumeSource> source = open_procedural(
         {.kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type});
 
+    LongWork work(options.common.quiet);
     const std::filesystem::path folder = options.folder;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -88,7 +91,7 @@ void run_phantom(const PhantomCommandOptions& options)
     // voxels not yet written.
     AtomicWriter header_writer(header);
     header_writer.append(std::as_bytes(std::span(text)));
-    write_voxels(voxels, *source);
+    write_voxels(voxels, *source, work.begin("writing " + voxels.string()));
     header_writer.commit();
 
     if (!options.common.json) return say(options.common, header.string());

@@ -25,11 +25,12 @@ struct ProfileCommandOptions {
 
 void print_text(const std::string& text)
 {
+    clear_progress();
     std::cout << text << std::flush;
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-Profile measure_frames(const ProfileCommandOptions& options, Opened& opened)
+Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, LongWork& work)
 {
     Renderer& renderer = *opened.renderer;
     const std::string& camera_name = options.camera.empty() ? opened.session.camera_name : options.camera;
@@ -52,7 +53,10 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened)
     const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
     double measured_from = 0.0;
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
-    for (int i = 0; i < options.warmup + options.frames; ++i) {
+    const int frames = options.warmup + options.frames;
+    const Progress progress = work.begin("drawing frames");
+    for (int i = 0; i < frames; ++i) {
+        tell(progress, double(i) / double(frames));
         const double begin = now();
         Picture picture = renderer.render(opened.session, camera, {.probe = probe, .serialize = options.serialize});
         const double end = now();
@@ -83,8 +87,9 @@ void run_profile(ProfileCommandOptions options)
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
     }
-    Opened opened = open(options.input, options.common);
-    const Profile profile = measure_frames(options, opened);
+    LongWork work(options.common.quiet);
+    Opened opened = open(options.input, options.common, work);
+    const Profile profile = measure_frames(options, opened, work);
     check_validation(opened);
 
     Json written = Json::array();

@@ -1,13 +1,11 @@
 // shvr render: a picture of a session, a project or a bare volume.
 
 #include <cmath>
-#include <csignal>
 
 #include "engine/base/file.h"
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
 #include "tools/cli/cli.h"
-#include "tools/cli/stop.h"
 
 namespace shvr::cli {
 
@@ -37,16 +35,22 @@ Json detail_of(const Renderer& renderer, const RenderSettings& render)
 }
 
 /// Draws all parts. Fails, and leaves the old file as it was, where the picture lacks something or is stopped.
-Picture draw(PictureFile& file, const RenderCommandOptions& options, const StopRequest& stop)
+Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& work)
 {
-    while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
-        if (stop.is_made()) fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
-        file.step();
+    try {
+        while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
+            work.stop_if_asked();
+            file.step();
+        }
+        work.stop_if_asked();
+    } catch (const Stopped&) {
+        fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
     }
     Picture picture = file.take();
     if (!picture.complete && !options.allows_incomplete)
         fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
              "; --allow-incomplete writes it nevertheless");
+    static_cast<void>(work.begin("writing " + options.output));
     file.commit();
     return picture;
 }
@@ -64,16 +68,15 @@ void run_render(RenderCommandOptions options)
                                           (is_file ? read_text(options.transfer_function, 1 << 20)
                                                    : Json{{"preset", options.transfer_function}}.dump()));
     }
-    Opened opened = open(options.input, options.common);
+    LongWork work(options.common.quiet);
+    Opened opened = open(options.input, options.common, work);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
-    // From here on there is a file to take away.
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
-    const StopRequest stop;
+    const Progress progress = work.begin("drawing " + options.output);
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
-                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json});
-    const Picture picture = draw(file, options, stop);
+                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json, .progress = progress});
+    const Picture picture = draw(file, options, work);
     check_validation(opened);
     warn(picture.warnings, options.common);
     for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);

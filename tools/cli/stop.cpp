@@ -12,11 +12,14 @@ namespace shvr::cli {
 namespace {
 
 std::atomic<bool> command_listens = false, is_requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<int> first_signal = 0;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 /// Calls only what a signal handler may call.
 extern "C" void stop(int signal_number)
 {
+    int none = 0;
+    first_signal.compare_exchange_strong(none, signal_number);
     if (command_listens && !is_requested.exchange(true)) return;
     remove_temporary_files();
     const char* const text = signal_number == SIGINT ? "shvr: stopped by Ctrl-C; no file is left half written\n"
@@ -55,6 +58,11 @@ StopRequest::~StopRequest()
 const std::atomic<bool>& StopRequest::flag()
 {
     return is_requested;
+}
+
+const char* StopRequest::in_words()
+{
+    return first_signal == SIGTERM ? "stopped by SIGTERM" : "stopped by Ctrl-C";
 }
 
 }  // namespace shvr::cli

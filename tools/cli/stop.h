@@ -1,6 +1,7 @@
 #pragma once
-// Ctrl-C and SIGTERM end every command with a sentence, and no file is left half written. Most commands end at once,
-// which loses nothing, since what they write appears whole or not at all; the others end at their next step.
+// Ctrl-C and SIGTERM end every command with a sentence, and no file is left half written. While long work goes on
+// (long_work.h) a command ends at its next step, with exit status 1; otherwise at once and by the signal, which loses
+// nothing, since what is written appears whole or not at all.
 
 #include <atomic>
 
@@ -18,6 +19,8 @@ public:
 
     bool is_made() const { return flag(); }
     static const std::atomic<bool>& flag();
+    /// "stopped by Ctrl-C" or "stopped by SIGTERM".
+    static const char* in_words();
 };
 
 }  // namespace shvr::cli

@@ -25,16 +25,18 @@ bool is_mask_export(const std::filesystem::path& path)
 }
 
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume, const LabelImage& image,
-                 std::optional<OmeZarrVersion> version)
+                 std::optional<OmeZarrVersion> version, const Progress& progress)
 {
     if (!is_mask_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .mask, .nrrd, .tif or .zarr");
     const MaskSource groups(mask, volume);
     if (is_label_image(path))
-        static_cast<void>(export_label_image(groups, path, image, {.version = version}));
+        static_cast<void>(export_label_image(
+            groups, path, image,
+            {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }}));
     else if (is_volume_export(path))
-        export_volume(path, groups);
+        export_volume(path, groups, progress);
     else
         save_mask(path, mask);
 }

@@ -18,6 +18,7 @@ bool is_mask_export(const std::filesystem::path& path);
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
 /// holds the further metadata of a label image; `version` as in `ImportOptions`.
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                 const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {});
+                 const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {},
+                 const Progress& progress = {});
 
 }  // namespace shvr

@@ -65,13 +65,14 @@ bool is_offset_export(const std::filesystem::path& path)
     return is_bare(path) || is_volume_export(path);
 }
 
-void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume)
+void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
+                    const Progress& progress)
 {
     if (!is_offset_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .offset, .nrrd or .tif");
     if (is_bare(path)) return save_offsets(path, field);
-    export_volume(path, FieldSource(field, volume));
+    export_volume(path, FieldSource(field, volume), progress);
 }
 
 }  // namespace shvr

@@ -8,12 +8,14 @@
 #include <filesystem>
 
 #include "engine/annotation/density.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
 bool is_offset_export(const std::filesystem::path& path);
 
 /// Replaces an old file atomically. `volume`, of the field's size, gives the voxels' positions.
-void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume);
+void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
+                    const Progress& progress = {});
 
 }  // namespace shvr

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/volume/unit.h"
+#include "engine/volume/voxel_walk.h"
 
 namespace shvr {
 namespace {
@@ -80,13 +81,14 @@ bool is_volume_export(const std::filesystem::path& path)
     return form == ".nrrd" || form == ".tif" || form == ".tiff";
 }
 
-void export_volume(const std::filesystem::path& path, const VolumeSource& source)
+void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress)
 {
     static_cast<void>(voxel_count(source.info()));
     if (!is_volume_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected .nrrd or .tif");
-    if (form_of(path) == ".nrrd") return export_nrrd(path, source);
-    export_tiff(path, source);
+    const ToldSource told(source, progress);
+    if (form_of(path) == ".nrrd") return export_nrrd(path, told);
+    export_tiff(path, told);
 }
 
 }  // namespace shvr

@@ -17,7 +17,7 @@ namespace shvr {
 bool is_volume_export(const std::filesystem::path& path);
 
 /// Replaces an existing file atomically. Fails for any other extension.
-void export_volume(const std::filesystem::path& path, const VolumeSource& source);
+void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {});
 
 /// One format each; for volume_export.cpp.
 void export_nrrd(const std::filesystem::path& path, const VolumeSource& source);

@@ -188,6 +188,15 @@ Path checksums_path(const Path& project, int level)
     return project / sentence("shvr/checksums-", level);
 }
 
+void check_tables(const Path& project, const VolumeInfo& info)
+{
+    constexpr int64_t CHUNK = 64;
+    static_cast<void>(bytes_of_table(ranges_path(project, 0),
+                                     {.element_bytes = 2 * bytes_of(info.type), .counts = brick_grid(info.size)}));
+    static_cast<void>(bytes_of_table(checksums_path(project, 0),
+                                     {.element_bytes = sizeof(uint64_t), .counts = (info.size + (CHUNK - 1)) / CHUNK}));
+}
+
 std::vector<std::byte> to_bytes(const ProjectTable& table)
 {
     SHVR_CHECK(table.elements.size() == size_t(bytes_of_table(table.kind, table)), table.elements.size());

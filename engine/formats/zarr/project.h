@@ -46,6 +46,9 @@ struct ProjectTable {
 std::filesystem::path ranges_path(const std::filesystem::path& project, int level);
 std::filesystem::path checksums_path(const std::filesystem::path& project, int level);
 
+/// Fails if a table of such a volume would be too large, naming its file: call it before the work.
+void check_tables(const std::filesystem::path& project, const VolumeInfo& info);
+
 std::vector<std::byte> to_bytes(const ProjectTable& table);
 /// The table in `file`, which must have the kind, level, counts and element size of `expected`.
 ProjectTable read_project_table(const std::filesystem::path& file, const ProjectTable& expected);

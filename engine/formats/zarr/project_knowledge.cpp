@@ -3,7 +3,9 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/volume/source.h"
+#include "engine/volume/voxel_numbers.h"
 #include "shaders/bricks.h"
 
 namespace shvr {
@@ -29,6 +31,48 @@ void try_to(const Read& read, std::vector<std::string>& warnings)
     }
 }
 
+/// What an import writes of every level.
+constexpr int64_t PROJECT_CHUNK = 64;
+
+std::string list_of(const std::vector<int64_t>& numbers)
+{
+    std::string list;
+    for (const int64_t number : numbers) list += sentence(list.empty() ? "[" : ",", number);
+    return list + "]";
+}
+
+/// A sentence for each array that is not as the import wrote it.
+void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vector<std::string>& warnings)
+{
+    for (int level = 0; level < record.levels; ++level) {
+        const ZarrPlace array = zarr_folder(folder / std::to_string(level));
+        const bool is_3 = array.has("zarr.json");
+        if (!is_3 && !array.has(".zarray")) continue;  // the image says so
+        const auto warn = [&](const char* key, const auto& found, const auto& expected) {
+            warnings.push_back(sentence(
+                array.path_of(is_3 ? "zarr.json" : ".zarray").string(), ": key ", key, " is ", found, "; expected ",
+                expected, ", as the import wrote it: another program changed it, and what it says is used"));
+        };
+        ZarrMetadata found;
+        try {
+            found = read_zarr_metadata(array, is_3 ? 3 : 2);
+        } catch (const Error&) {
+            continue;  // likewise
+        }
+        const Size3 size = size_of_level(record.info.size, level);
+        const std::vector<int64_t> shape{size.z, size.y, size.x}, chunks(3, PROJECT_CHUNK);
+        double fill = 0.0;
+        load_voxels(found.type, found.fill.data(), std::span(&fill, 1));
+        if (found.shape != shape) warn("shape", list_of(found.shape), list_of(shape));
+        if (found.chunks != chunks) warn(is_3 ? "chunk_shape" : "chunks", list_of(found.chunks), list_of(chunks));
+        if (found.type != record.info.type)
+            warn(is_3 ? "data_type" : "dtype", name_of(found.type), name_of(record.info.type));
+        if (fill != 0.0) warn("fill_value", fill, 0);
+        if (found.separator != '/')
+            warn(is_3 ? "separator" : "dimension_separator", in_quotes(std::string(1, found.separator)), "\"/\"");
+    }
+}
+
 }  // namespace
 
 ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info, std::vector<ZarrVolume>& volumes)
@@ -41,6 +85,7 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
     try_to(
         [&] {
             ProjectRecord record = read_project_record(file);
+            check_arrays(folder, record, damage);
             const bool fits =
                 record.info.size == info.size && record.info.type == info.type && record.levels >= int(volumes.size());
             if (!fits) fail(file.string(), ": describes another volume; expected that of this folder");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "engine/base/error.h"
 #include "engine/formats/header_fields.h"
@@ -67,6 +68,16 @@ public:
                                    glm::min((brick + int64_t{1}) * BRICK_SIDE + int64_t{1}, size)});
     }
 
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        SHVR_CHECK(level >= 0 && level < levels(), level);
+        const ZarrVolume& volume = volumes_[size_t(level)];
+        std::optional<std::vector<glm::ivec3>> chunks = gaps_.stored(level, most);
+        if (!chunks || !volume.is_there()) return std::nullopt;
+        add_beyond(level, *chunks);
+        return StoredBlocks{.block = volume.chunk(), .fill = volume.fill(), .blocks = *std::move(chunks)};
+    }
+
     std::optional<VolumeStatistics> statistics() const override
     {
         if (!knowledge_.record) return std::nullopt;
@@ -79,6 +90,24 @@ private:
         const ZarrVolume& volume = volumes_[size_t(level)];
         volume.read(box, voxels, [&](const Size3& chunk) {
             return cache_.get({level, volume.index_of(chunk)}, [&] { return volume.load(chunk); });
+        });
+    }
+
+    /// A level whose size was rounded down lacks its last voxel, which may be alone in its block.
+    void add_beyond(int level, std::vector<glm::ivec3>& chunks) const
+    {
+        const ZarrVolume& volume = volumes_[size_t(level)];
+        const Size3 lacking = size_of_level(info().size, level) - volume.size();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (lacking[axis] == 0 || volume.size()[axis] % volume.chunk()[axis] != 0) continue;
+            for (size_t i = 0, count = chunks.size(); i < count; ++i) {
+                if (int64_t{chunks[i][axis]} + 1 != volume.counts()[axis]) continue;
+                chunks.push_back(chunks[i]);
+                ++chunks.back()[axis];
+            }
+        }
+        std::ranges::sort(chunks, [](const glm::ivec3& a, const glm::ivec3& b) {
+            return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
         });
     }
 
@@ -242,6 +271,12 @@ std::vector<ZarrVolume> open_levels(const ZarrPlace& folder, int version, const 
         if (left_out.empty()) reason = sentence("level ", in_quotes(path), " ", why);
         left_out.push_back(path);
     }
+    for (const ZarrVolume& volume : volumes)
+        if (const std::string stray = volume.stray_chunk(); !stray.empty())
+            warnings.push_back(
+                sentence(stray, " is named like a chunk, but is none of the array's, which would be ",
+                         volume.path_of(volume.counts() - int64_t{1}).lexically_relative(folder.path_of("")).string(),
+                         " at most; its ", volume.metadata().key(), " does not fit it"));
     if (!left_out.empty()) {
         std::string names;
         for (const std::string& path : left_out) names += (names.empty() ? "" : ", ") + in_quotes(path);

@@ -12,6 +12,20 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
+/// Names that are looked at for one that is no chunk's.
+constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
+
+/// Numbers between separators of any kind, with or without a leading "c", as in "0.1.2" or "c/0/1/2".
+bool is_like_chunk(std::string_view key)
+{
+    if (key.starts_with("c/") || key.starts_with("c.")) key.remove_prefix(2);
+    for (;;) {
+        const size_t end = std::min(key.size(), key.find_first_of("./"));
+        const bool is_number = end > 0 && key.substr(0, end).find_first_not_of("0123456789") == std::string_view::npos;
+        if (!is_number || end == key.size()) return is_number;
+        key.remove_prefix(end + 1);
+    }
+}
 
 /// A chunk's place in a shard, as the index has it.
 struct IndexEntry {
@@ -163,12 +177,36 @@ bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
         take(chunk);
         return true;
     };
-    const bool is_in_folder = metadata_.has_prefix && metadata_.separator == '/';
-    return array_.store->list(array_.key(is_in_folder ? "c/" : ""), [&](std::string_view name) {
-        const std::vector<int64_t> numbers = numbers_of(is_in_folder ? "c/" + std::string(name) : std::string(name));
+    std::string folder;  // the innermost that holds them all
+    if (metadata_.separator == '/') {
+        folder = metadata_.has_prefix ? "c/" : "";
+        for (size_t axis = 0; axis + 1 < at.size() && at[axis]; ++axis) {
+            const int64_t along = metadata_.sharding ? metadata_.sharding->shape[axis] / metadata_.chunks[axis] : 1;
+            folder += sentence(*at[axis] / along, "/");
+        }
+    }
+    int64_t names_left = 8 * std::min(most, int64_t{1} << 48) + (1 << 16);
+    return array_.store->list(array_.key(folder), [&](std::string_view name) {
+        if (--names_left < 0) return false;
+        const std::vector<int64_t> numbers = numbers_of(folder + std::string(name));
         if (numbers.empty()) return true;
         return metadata_.sharding ? list_shard(numbers, counted) : counted(numbers);
     });
+}
+
+std::string ZarrChunks::stray() const
+{
+    std::string found;
+    int64_t left = MAX_NAMES_LOOKED_AT;
+    try {
+        array_.store->list(array_.key(""), [&](std::string_view key) {
+            if (is_like_chunk(key) && numbers_of(key).empty()) found = array_.path_of(std::string(key)).string();
+            return found.empty() && --left > 0;
+        });
+    } catch (const Error&) {
+        return {};  // reading says why
+    }
+    return found;
 }
 
 Block ZarrChunks::decoded(std::span<const std::byte> stored, const std::string& name) const

@@ -34,10 +34,14 @@ public:
     /// True if the chunk is not stored. False where that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the numbers of every stored chunk that has those of `at` (nothing: any), in no order. False,
-    /// and stops, as soon as there are more than `most`. Reads names and the indices of shards, and never looks for
-    /// what is missing. Fails if those cannot be read.
+    /// and stops, as soon as there are more than `most`, or so many other names that going on would take much longer
+    /// than `most` chunks should. Reads names and the indices of shards, and never looks for what is missing. Fails if
+    /// those cannot be read.
     bool list(std::span<const std::optional<int64_t>> at, int64_t most,
               const std::function<void(std::span<const int64_t> chunk)>& take) const;
+    /// The path of a value among the first few that is named like a chunk and is none of the array's: its numbers lie
+    /// beyond the array, or are not as many, or are spelled in another way. Empty if none is seen.
+    std::string stray() const;
     /// The voxels of a stored chunk, native byte order, axes in `metadata().order`.
     Block decoded(std::span<const std::byte> stored, const std::string& name) const;
 

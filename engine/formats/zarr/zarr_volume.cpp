@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
 namespace {
@@ -101,6 +102,33 @@ bool ZarrVolume::is_missing(const Size3& chunk) const
 {
     if (!checksums_.empty()) return checksums_[size_t(index_of(chunk))] == 0;
     return chunks_->is_missing(numbers_of(chunk));
+}
+
+bool ZarrVolume::list_stored(int64_t most, const std::function<void(const Size3&)>& take) const
+{
+    if (checksums_.empty()) {
+        std::vector<std::optional<int64_t>> at(view_.at.size());
+        for (size_t axis = 0; axis < at.size(); ++axis) {
+            const bool is_of_volume = std::ranges::find(view_.xyz, axis) != view_.xyz.end();
+            if (!is_of_volume) at[axis] = view_.at[axis] / metadata().chunks[axis];
+        }
+        return chunks_->list(at, most, [&](std::span<const int64_t> numbers) {
+            take({numbers[view_.xyz[0]], numbers[view_.xyz[1]], numbers[view_.xyz[2]]});
+        });
+    }
+    for (size_t i = 0; i < checksums_.size(); ++i) {
+        if (checksums_[i] == 0) continue;
+        if (--most < 0) return false;
+        take(position_of(int64_t(i), counts_));
+    }
+    return true;
+}
+
+double ZarrVolume::fill() const
+{
+    double fill = 0.0;
+    load_voxels(metadata().type, metadata().fill.data(), std::span(&fill, 1));
+    return fill;
 }
 
 Block ZarrVolume::arranged(Block chunk) const

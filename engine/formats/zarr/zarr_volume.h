@@ -47,6 +47,13 @@ public:
 
     /// True if the chunk is not stored, and should not be: it holds the fill value. Reads at most the index of a shard.
     bool is_missing(const Size3& chunk) const;
+    /// Calls `take` for each chunk that is stored, or should be, in no order; false, and stops, if there are more than
+    /// `most`. Reads names and the indices of shards at most, and never looks for what is missing.
+    bool list_stored(int64_t most, const std::function<void(const Size3& chunk)>& take) const;
+    /// As ZarrChunks::stray.
+    std::string stray_chunk() const { return chunks_->stray(); }
+    /// The value of voxels in missing chunks.
+    double fill() const;
     /// Whether the array still exists where it was opened.
     bool is_there() const { return chunks_->is_there(); }
 

@@ -278,7 +278,7 @@ TEST_CASE("what is held while labelling depends on a slice and on the labels, no
     // Four slices of runs (a range's first, the last two, and how vectors grow), and a strip of voxels with its bits.
     CHECK(deep.peak_bytes <= deep.forest_bytes + 2 * (4 * 128 * 32 * 12) + (1 << 20) + (1 << 20) / 8 + (1 << 14));
     CHECK(deep.forest_bytes <= 16384 * 12 + 64);
-    CHECK(deep.run_file_bytes == 1024 * (128 * 32 * 12 + 65 * 4));
+    CHECK(deep.run_file_bytes == 1024 * (128 * 32 * 12 + 32 * 8));
     // Two threads take eight ranges, of which each has a forest and some slices of its own.
     CHECK(held(1024, 2).peak_bytes <= 8 * (16384 * 12 + 64 + 2 * (4 * 128 * 32 * 12)) + 2 * ((1 << 20) + (1 << 18)));
 }

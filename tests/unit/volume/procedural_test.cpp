@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/volume/procedural_hash.h"
+#include "engine/volume/procedural/procedural_hash.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;

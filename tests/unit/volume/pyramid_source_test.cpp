@@ -129,3 +129,15 @@ TEST_CASE("levels that would take too much memory are refused before anything is
     CHECK(contains(error_of([&] { with_levels(std::make_shared<Flat>(), uint64_t{24} << 30); }),
                    "takes 9558 MiB; expected at most 6144 MiB, a quarter of --budget-host: use --budget-host 38230,"));
 }
+
+TEST_CASE("what levels would take is checked from sizes alone")
+{
+    class Unread final : public VolumeSource {
+    public:
+        Unread() : VolumeSource({.name = "flat", .size = Size3(2714), .type = VoxelType::uint8}) {}
+        void read(const VoxelBox& /*box*/, std::span<std::byte> /*voxels*/) const override { fail("was read"); }
+    };
+    CHECK(
+        contains(error_of([&] { check_levels(Unread(), uint64_t{2} << 30); }), "takes 2739 MiB; expected at most 512"));
+    CHECK(error_of([&] { check_levels(Unread(), uint64_t{12} << 30); }).empty());
+}

@@ -1,5 +1,6 @@
 #include "engine/volume/volume.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -307,4 +308,76 @@ TEST_CASE("of a volume too large to go through, a coarser level is measured and 
     const IntensityWindow window = window_for(VoxelType::uint16, large);
     CHECK(window.lower == 0.0);
     CHECK(window.upper() == 65535.0);
+}
+
+namespace {
+
+/// 1100 x 1000 x 1000 voxels of 16 bits: x, but 60000 in one voxel that no sample meets.
+class Plain : public VolumeSource {
+public:
+    Plain() : VolumeSource(plain_info()) {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        auto* to = reinterpret_cast<uint16_t*>(voxels.data());
+        boxes.push_back(box);
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                for (int64_t x = box.lower.x; x < box.upper.x; ++x)
+                    *to++ = Size3(x, y, z) == Size3(1099, 999, 999) ? uint16_t{60000} : uint16_t(x);
+    }
+    static VolumeInfo plain_info()
+    {
+        VolumeInfo info;
+        info.size = {1100, 1000, 1000};
+        info.type = VoxelType::uint16;
+        return info;
+    }
+    mutable std::vector<VoxelBox> boxes;
+};
+
+}  // namespace
+
+TEST_CASE("a huge volume without levels is estimated from a sample that is spread evenly, and said; exactly on demand")
+{
+    const Plain plain;
+    const VolumeStatistics sample = measure(plain);
+    CHECK(sample.sampled_voxels == 256 * 238 * 1100);  // 256 pieces of as many whole rows as 2^18 voxels have
+    CHECK(sample.minimum == 0.0);
+    CHECK(sample.maximum == 1099.0);
+    CHECK(sample.mean == doctest::Approx(549.5));
+    CHECK(sample.measured_level == 0);
+    std::vector<int64_t> slices, rows;
+    for (const VoxelBox& box : plain.boxes) {
+        slices.push_back(box.lower.z);
+        rows.push_back(box.lower.y);
+    }
+    CHECK(std::ranges::is_sorted(slices));  // forwards through the file
+    for (size_t i = 1; i < slices.size(); ++i) CHECK(slices[i] - slices[i - 1] <= 4);
+    std::ranges::sort(rows);
+    CHECK(rows.front() <= 5);
+    CHECK(rows.back() >= 755);
+    for (size_t i = 1; i < rows.size(); ++i) CHECK(rows[i] - rows[i - 1] <= 12);
+    REQUIRE(warnings_of(sample).size() == 1);
+    CHECK(contains(warnings_of(sample)[0],
+                   "estimated from a sample of 67020800 voxels; others may lie beyond 0 to 1099: "
+                   "`shvr info --exact` goes through all, and so does `shvr import`"));
+    CHECK(window_for(VoxelType::uint16, sample).upper() == 65535.0);
+
+    double told = 0.0;
+    const VolumeStatistics exact = measure(plain, {.exact = true, .progress = [&](double fraction) {
+                                                       CHECK(fraction >= told);
+                                                       told = fraction;
+                                                   }});
+    CHECK(told == 1.0);
+    CHECK(exact.maximum == 60000.0);
+    CHECK(exact.sampled_voxels == 0);
+    CHECK(warnings_of(exact).empty());
+}
+
+TEST_CASE("what progress throws ends measuring")
+{
+    CHECK(error_of([] {
+              measure(memory_source<uint16_t>({3, 1, 1}, VoxelType::uint16, {9, 9, 9}),
+                      {.progress = [](double) { throw Stopped("stopped"); }});
+          }) == "stopped");
 }

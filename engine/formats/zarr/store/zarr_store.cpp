@@ -59,24 +59,27 @@ public:
 
     bool list(const std::string& prefix, const std::function<bool(std::string_view)>& take) const override
     {
-        return list_folder(path_of(prefix), "", take);
+        return list_folder(path_of(prefix), "", MAX_FOLDERS, take);
     }
 
 private:
+    /// One in another: an array of many axes has a folder for each, and a link may lead in circles.
+    static constexpr int MAX_FOLDERS = 20;
+
     /// Hidden names are no keys: temporary files, or version 2's own.
-    static bool list_folder(const fs::path& folder, const std::string& before,
+    static bool list_folder(const fs::path& folder, const std::string& before, int folders,
                             const std::function<bool(std::string_view)>& take)
     {
         std::error_code error;
         fs::directory_iterator entries(folder, error);
-        if (error == std::errc::no_such_file_or_directory) return true;
+        if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory) return true;
         for (const fs::directory_iterator end; !error && entries != end; entries.increment(error)) {
             const std::string name = entries->path().filename().string();
             if (name.starts_with('.')) continue;
             std::error_code ignored;
-            const bool is_folder = entries->is_directory(ignored) && !entries->is_symlink(ignored);
+            const bool is_folder = folders > 0 && entries->is_directory(ignored);
             const bool goes_on =
-                is_folder ? list_folder(entries->path(), before + name + "/", take) : take(before + name);
+                is_folder ? list_folder(entries->path(), before + name + "/", folders - 1, take) : take(before + name);
             if (!goes_on) return false;
         }
         if (error) fail(folder.string(), ": its chunks cannot be listed: ", error.message());

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/volume/procedural_hash.h"
-#include "engine/volume/procedural_kind.h"
+#include "engine/volume/procedural/procedural_hash.h"
+#include "engine/volume/procedural/procedural_kind.h"
 
 namespace shvr {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/volume/procedural_kind.h"
+#include "engine/volume/procedural/procedural_kind.h"
 
 namespace shvr {
 namespace {

@@ -1,0 +1,57 @@
+#pragma once
+// Coarser levels of a sparse volume, in memory: only where something is stored below, so that they take a seventh of
+// that. For pyramid_source.cpp.
+
+#include <limits>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/volume/brick_key.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// The source's own levels are left as they are; those above are made of its coarsest.
+class SparseLevels {
+public:
+    /// Plans levels up to a number of them, which may be the source's own; reads nothing. Nothing if the source does
+    /// not know what it stores, or if that is so much that levels without gaps are smaller.
+    static std::optional<SparseLevels> plan(const VolumeSource& source, int levels);
+
+    uint64_t bytes() const;
+    /// Reads what is stored of the source's coarsest level, which must be that of `plan`.
+    void build(const VolumeSource& source, const Progress& progress);
+
+    /// Of a level that is not the source's own.
+    void read(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
+    /// Whether nothing is stored in a brick and one voxel around it, nor in any finer level below.
+    bool is_gap(int level, const Size3& brick) const;
+    /// Of voxels in a gap, and of those below it; lower > upper if none is finite.
+    ValueRange fills() const { return fills_; }
+
+private:
+    /// Tiles of TILE^3 voxels.
+    struct Level {
+        std::vector<Size3> tiles{};
+        std::unordered_map<uint64_t, size_t> index{};  ///< of tiles, by position
+        std::unordered_set<BrickKey, BrickKeyHash> bricks{};
+        std::vector<std::byte> voxels{};
+
+        void add(const Size3& tile);
+        /// All that a box of voxels meets.
+        void add_all_in(const VoxelBox& box);
+    };
+    const Level& at(int level) const { return levels_[size_t(level - first_)]; }
+    template <class T>
+    void build_tile(const VolumeSource& source, int level, size_t tile);
+
+    Size3 size_{0};
+    VoxelType type_ = VoxelType::uint8;
+    double fill_ = 0.0;
+    ValueRange fills_{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+    int first_ = 1;              ///< the finest level in memory
+    std::vector<Level> levels_;  ///< from `first_` on
+};
+
+}  // namespace shvr

@@ -1,0 +1,139 @@
+#include "engine/volume/voxel_walk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace shvr {
+namespace {
+
+constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
+constexpr int64_t PIECES = 256, PIECE_VOXELS = int64_t{1} << 18;
+/// Listing more blocks takes longer than a sample should.
+constexpr int64_t MAX_BLOCKS_SAMPLED = int64_t{1} << 20;
+
+int64_t count_of(const Size3& extent)
+{
+    return extent.x * extent.y * extent.z;
+}
+
+/// Slabs are whole slices, or rows of one slice if a slice is too large. If the file stores blocks, slabs are as thick
+/// as a block and have rows of whole blocks.
+Size3 slab_of(const VolumeSource& source)
+{
+    const Size3 size = source.info().size;
+    const Size3 block = glm::min(source.block(), size);
+    const int64_t row_bytes = size.x * int64_t(bytes_of(source.info().type));
+    int64_t rows = std::min(size.y, std::max<int64_t>(1, SLAB_BYTES / (row_bytes * block.z)));
+    if (rows < size.y) rows = std::max(rows / block.y, int64_t{1}) * block.y;
+    int64_t slices = block.z;
+    if (rows >= size.y) slices *= std::max<int64_t>(1, SLAB_BYTES / (row_bytes * size.y * block.z));
+    return {size.x, std::min(rows, size.y), std::min(slices, size.z)};
+}
+
+/// A multiple of `block` that is at least `wanted`, within `size`.
+int64_t whole_blocks(int64_t wanted, int64_t block, int64_t size)
+{
+    return std::clamp((wanted + block - 1) / block * block, int64_t{1}, size);
+}
+
+}  // namespace
+
+VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const Size3& size)
+{
+    const Size3 lower = Size3(block) * stored.block;
+    return {lower, glm::min(lower + stored.block, size)};
+}
+
+int64_t voxels_stored(const StoredBlocks& stored, const Size3& size)
+{
+    int64_t voxels = 0;
+    for (const glm::ivec3& block : stored.blocks) voxels += count_of(box_of_block(stored, block, size).size());
+    return voxels;
+}
+
+VoxelWalk VoxelWalk::all(const VolumeSource& source)
+{
+    VoxelWalk walk;
+    walk.size_ = source.info().size;
+    walk.step_ = slab_of(source);
+    walk.voxels_ = voxel_count(source.info());
+    return walk;
+}
+
+VoxelWalk VoxelWalk::stored(const VolumeSource& source, StoredBlocks blocks)
+{
+    VoxelWalk walk;
+    walk.size_ = source.info().size;
+    walk.voxels_ = voxels_stored(blocks, walk.size_);
+    walk.rest_ = voxel_count(source.info()) - walk.voxels_;
+    walk.fill_ = blocks.fill;
+    walk.boxes_.emplace();
+    walk.boxes_->reserve(blocks.blocks.size());
+    for (const glm::ivec3& block : blocks.blocks) walk.boxes_->push_back(box_of_block(blocks, block, walk.size_));
+    return walk;
+}
+
+namespace {
+
+/// About as many voxels as other samples have: every nth block.
+void thin_out(std::vector<glm::ivec3>& blocks, int64_t voxels)
+{
+    const auto count = int64_t(blocks.size());
+    const int64_t wanted =
+        std::clamp<int64_t>(count * (PIECES * PIECE_VOXELS) / std::max<int64_t>(voxels, 1), 1, count);
+    for (int64_t i = 0; i < wanted; ++i) blocks[size_t(i)] = blocks[size_t(i * count / wanted)];
+    blocks.resize(size_t(wanted));
+}
+
+}  // namespace
+
+VoxelWalk VoxelWalk::sample(const VolumeSource& source)
+{
+    VoxelWalk walk;
+    if (std::optional<StoredBlocks> blocks = source.stored_blocks(0, MAX_BLOCKS_SAMPLED);
+        blocks && !blocks->blocks.empty()) {
+        const int64_t all = voxels_stored(*blocks, source.info().size);
+        thin_out(blocks->blocks, all);
+        walk = stored(source, *std::move(blocks));
+        walk.rest_ = int64_t(double(voxel_count(source.info()) - all) * (double(walk.voxels_) / double(all)));
+        return walk;
+    }
+    const Size3 size = walk.size_ = source.info().size;
+    const Size3 block = glm::min(source.block(), size);
+    Size3 piece(0, block.y, block.z);
+    piece.x = whole_blocks(PIECE_VOXELS / (block.y * block.z), block.x, size.x);
+    piece.y = whole_blocks(PIECE_VOXELS / (piece.x * block.z), block.y, size.y);
+    // Evenly along z; along y and x the fractions of Roberts' sequence R2, which leave no gaps whatever their number.
+    const Size3 places = (size - piece) / block + int64_t{1};
+    walk.boxes_.emplace();
+    for (int64_t i = 0; i < PIECES; ++i) {
+        const auto share = [](double fraction) { return fraction - std::floor(fraction); };
+        const glm::dvec3 at(share(0.5 + 0.5698402909980532 * double(i)), share(0.5 + 0.7548776662466927 * double(i)),
+                            (double(i) + 0.5) / double(PIECES));
+        const Size3 lower = glm::min(Size3(at * glm::dvec3(places)), places - int64_t{1}) * block;
+        walk.boxes_->push_back({lower, glm::min(lower + piece, size)});
+        walk.voxels_ += count_of(walk.boxes_->back().size());
+    }
+    // Forwards through the file, where a slice has several.
+    std::ranges::sort(*walk.boxes_, {}, [](const VoxelBox& box) {
+        return std::array{box.lower.z, box.lower.y, box.lower.x};
+    });
+    return walk;
+}
+
+int64_t VoxelWalk::boxes() const
+{
+    if (boxes_) return int64_t(boxes_->size());
+    return ((size_.y - 1) / step_.y + 1) * ((size_.z - 1) / step_.z + 1);
+}
+
+VoxelBox VoxelWalk::box(int64_t index) const
+{
+    if (boxes_) return (*boxes_)[size_t(index)];
+    const int64_t bands = (size_.y - 1) / step_.y + 1;
+    const Size3 lower(0, index % bands * step_.y, index / bands * step_.z);
+    return {lower, glm::min(lower + step_, size_)};
+}
+
+}  // namespace shvr

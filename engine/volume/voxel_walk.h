@@ -1,0 +1,64 @@
+#pragma once
+// How a volume is gone through: which voxels statistics are made of (all of it, those that a sparse one stores, or a
+// sample), and a source that tells how far a reader has come.
+
+#include <optional>
+#include <vector>
+
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// Boxes of level 0 of a source, in the order in which they are read.
+class VoxelWalk {
+public:
+    /// All voxels, in whole rows and in order, at most 32 MiB at a time but at least one row of blocks.
+    static VoxelWalk all(const VolumeSource& source);
+    /// Those of stored blocks; `rest` are not among them.
+    static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
+    /// Pieces spread evenly, or so many of the stored blocks, with their share of the rest.
+    static VoxelWalk sample(const VolumeSource& source);
+
+    int64_t voxels() const { return voxels_; }  ///< in all boxes
+    int64_t boxes() const;
+    VoxelBox box(int64_t index) const;
+    /// Voxels in no box that count too; they are all `fill`.
+    int64_t rest() const { return rest_; }
+    double fill() const { return fill_; }
+
+private:
+    Size3 size_{0};
+    Size3 step_{0};                                 ///< of all voxels; x is the whole row
+    std::optional<std::vector<VoxelBox>> boxes_{};  ///< unless all voxels are read
+    int64_t voxels_ = 0, rest_ = 0;
+    double fill_ = 0.0;
+};
+
+/// The number of voxels that a stored block has inside a volume of `size`.
+int64_t voxels_stored(const StoredBlocks& stored, const Size3& size);
+/// A block clipped to a volume of `size`.
+VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const Size3& size);
+
+/// Another source, which must outlive it, as must `progress`, that tells how much of level 0 has been read, for work
+/// that reads every voxel once. One thread at a time.
+class ToldSource final : public VolumeSource {
+public:
+    ToldSource(const VolumeSource& source, const Progress& progress)
+        : VolumeSource(source.info()), source_(source), progress_(progress)
+    {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        source_.read(box, voxels);
+        const Size3 size = info().size, extent = box.size();
+        read_ += double(extent.x) * double(extent.y) * double(extent.z);
+        tell(progress_, read_ / (double(size.x) * double(size.y) * double(size.z)));
+    }
+    Size3 block() const override { return source_.block(); }
+
+private:
+    const VolumeSource& source_;
+    const Progress& progress_;
+    mutable double read_ = 0.0;
+};
+
+}  // namespace shvr

@@ -1,0 +1,164 @@
+"""Sparse and huge volumes: work costs what is stored, sizes decide before voxels are read, and estimates are stated."""
+import json
+import os
+import unittest
+
+from harness import CliTest
+from test_large import read_png
+
+HUGE = 2 ** 20
+CHUNK = 32
+
+
+def write_sparse(folder, side, chunks, levels=1, separator="/", fill=0, value=200):
+    """An OME-Zarr image of `side`^3 voxels of uint8 in which only `chunks` (x, y, z of level 0) are stored."""
+    folder.mkdir()
+    (folder / ".zgroup").write_text('{"zarr_format": 2}')
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": [{
+        "version": "0.4", "axes": [{"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"],
+        "datasets": [{"path": str(level), "coordinateTransformations": [
+            {"type": "scale", "scale": [2.0 ** level] * 3},
+            {"type": "translation", "translation": [0.5 * (2 ** level - 1)] * 3}]} for level in range(levels)]}]}))
+    for level in range(levels):
+        array = folder / str(level)
+        array.mkdir()
+        (array / ".zarray").write_text(json.dumps({
+            "zarr_format": 2, "shape": [-(-side // 2 ** level)] * 3, "chunks": [CHUNK] * 3, "dtype": "|u1",
+            "compressor": None, "fill_value": fill, "order": "C", "filters": None, "dimension_separator": separator}))
+        for chunk in chunks:
+            file = array / separator.join(str(place >> level) for place in chunk[::-1])
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(bytes([value]) * CHUNK ** 3)
+    return folder
+
+
+class Sparse(CliTest):
+    def picture_of(self, volume, target, height):
+        """Red where something is, seen from the front."""
+        session = self.write_json("session.json", {
+            "shvr_session": 1, "volume": {"path": str(volume)},
+            "transfer_function": {"points": [{"intensity": 60, "color": "#ff0000", "opacity": 0.0},
+                                             {"intensity": 100, "color": "#ff0000", "opacity": 1.0},
+                                             {"intensity": 255, "color": "#ff0000", "opacity": 1.0}]},
+            "cameras": {"here": {"projection": "orthographic", "eye": [target[0], -100, target[2]], "target": target,
+                                 "up": [0, 0, 1], "height": height}},
+            "light": {"shaded": False}, "render": {"size": [32, 32], "background": "#ffffff"}})
+        picture = self.folder / "a.png"
+        result = self.check_json("render", session, "-o", picture, "--camera", "here", "--budget-device", "128")
+        self.assertIs(result["complete"], True)
+        return read_png(picture)
+
+    def test_one_chunk_of_any_side_is_described_labelled_and_drawn(self):
+        for side, levels, separator in ((10 ** 4, 1, "."), (10 ** 6, 1, "/"), (HUGE, 3, "/"), (HUGE, 1, ".")):
+            with self.subTest(side=side, levels=levels, separator=separator):
+                chunk = (side // 2 // CHUNK, 1, side // CHUNK - 2)
+                volume = write_sparse(self.folder / f"{side}-{levels}{separator == '/'}", side, [chunk], levels,
+                                      separator)
+                info = self.check_json("info", volume)
+                self.assertEqual((info["statistics"], info["min"], info["max"]), ("exact", 0, 200))
+                self.assertEqual((info["voxels"], info["bytes"]), (side ** 3, side ** 3))
+                self.assertEqual(info["mean"], 200 * CHUNK ** 3 / side ** 3)
+                self.assertEqual(info["histogram"][255], CHUNK ** 3)
+                label = self.check_json("label", volume, "--threshold", "100")
+                self.assertEqual((label["components"], label["foreground_voxels"]), (1, CHUNK ** 3))
+                self.assertLess(label["peak_bytes"], 16 << 20)
+                middle = [(place + 0.5) * CHUNK for place in chunk]
+                rows = self.picture_of(volume, middle, 2 * CHUNK)
+                self.assertEqual(rows[16][16], (255, 0, 0))
+                self.assertEqual(rows[2][2], (255, 255, 255))
+                (self.folder / "session.json").unlink()
+
+    def test_the_whole_of_2_to_the_20_a_side_is_drawn_from_coarse_levels_made_of_what_is_stored(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(0, 0, 0), (HUGE // CHUNK - 1,) * 3])
+        middle = HUGE / 2
+        rows = self.picture_of(volume, [middle] * 3, HUGE)
+        self.assertEqual(len(rows), 32)
+
+    def test_labels_of_many_chunks_are_written_where_their_number_allows(self):
+        # A diagonal of touching corners: one component over corners, as many as chunks over faces.
+        chunks = [(i, i, i) for i in range(0, 8)]
+        volume = write_sparse(self.folder / "sparse", 4096, chunks)
+        self.assertEqual(self.check_json("label", volume, "--threshold", "1")["components"], 8)
+        self.assertEqual(self.check_json("label", volume, "--threshold", "1", "--connectivity", "26")["components"], 1)
+
+    def test_a_background_at_or_above_the_threshold_is_refused_in_a_sentence(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(1, 1, 1)], fill=7)
+        self.check_refused("label", volume, "--threshold", "7",
+                           says=["holds 7 wherever nothing is stored, and the threshold is 7; expected one above"])
+        self.assertEqual(self.check_json("label", volume, "--threshold", "8")["components"], 1)
+
+    def test_a_background_at_or_above_the_threshold_is_labelled_where_it_can_be(self):
+        volume = write_sparse(self.folder / "sparse", 128, [(1, 1, 1)], fill=7, value=3)
+        label = self.check_json("label", volume, "--threshold", "7")
+        self.assertEqual((label["components"], label["foreground_voxels"]), (1, 128 ** 3 - CHUNK ** 3))
+
+
+class Contradictions(CliTest):
+    def change(self, array, **values):
+        path = array / ".zarray"
+        path.write_text(json.dumps({**json.loads(path.read_text()), **values}))
+
+    def warnings(self, volume):
+        warnings = self.check_json("info", volume)["warnings"]
+        return " | ".join(warning for warning in warnings if not warning.startswith("no transfer function given"))
+
+    def test_chunks_that_the_metadata_cannot_mean_are_told(self):
+        for key, value, said in (("dimension_separator", ".", "named like a chunk"),
+                                 ("shape", [64, 64, 64], "named like a chunk"),
+                                 ("chunks", [64, 64, 64], "named like a chunk")):
+            with self.subTest(key=key):
+                volume = write_sparse(self.folder / key, 128, [(1, 1, 3)])
+                self.assertNotIn("chunk", self.warnings(volume))
+                self.change(volume / "0", **{key: value})
+                self.assertIn(said, self.warnings(volume))
+
+    def test_a_project_whose_arrays_contradict_each_other_is_told(self):
+        source = write_sparse(self.folder / "source", 128, [(0, 0, 0), (1, 1, 1)])
+        for level, key, value in (("0", "chunks", [32, 32, 32]), ("1", "chunks", [32, 32, 32]), ("0", "dtype", "|i1"),
+                                  ("1", "dtype", "|i1"), ("0", "shape", [127, 128, 128]), ("1", "shape", [63, 64, 64]),
+                                  ("0", "fill_value", 9), ("1", "fill_value", 9), ("0", "dimension_separator", "."),
+                                  ("2", "shape", [31, 32, 32])):
+            with self.subTest(level=level, key=key):
+                project = self.folder / f"{level}-{key}"
+                self.check("import", source, project, "--quiet")
+                self.assertEqual(self.warnings(project), "")
+                self.change(project / level, **{key: value})
+                said = self.check("info", project, "--json").stdout
+                self.assertIn(f"/{level}/.zarray", said)
+                self.assertIn(f"key {key} is", said)
+
+
+class Huge(CliTest):
+    """Files of bare voxels, most of them holes."""
+
+    def write_raw(self, gigavoxels, marks=()):
+        raw = self.folder / "huge.raw"
+        depth = gigavoxels * 1024
+        with open(raw, "wb") as file:
+            os.truncate(raw, depth * 1024 * 1024)
+            for place, value in marks:
+                file.seek(place)
+                file.write(bytes([value]))
+        return ["--raw", f"1024x1024x{depth}:uint8"], raw
+
+    def test_statistics_are_a_stated_sample_or_exact(self):
+        layout, raw = self.write_raw(2, [(2 ** 31 - 1, 250)])
+        sample = self.check_json("info", raw, *layout)
+        self.assertEqual(sample["statistics"], f"sample of {2 ** 26} voxels")
+        self.assertEqual((sample["min"], sample["max"]), (0, 0))
+        self.assertIn("estimated from a sample", " ".join(sample["warnings"]))
+        self.assertIn(f"(sample of {2 ** 26} voxels)", self.check("info", raw, *layout).stdout)
+        exact = self.check_json("info", raw, *layout, "--exact")
+        self.assertEqual((exact["statistics"], exact["max"]), ("exact", 250))
+        self.assertNotIn("sample", " ".join(exact["warnings"]))
+
+    def test_20_gigavoxels_are_described_at_once_and_refused_by_their_size(self):
+        layout, raw = self.write_raw(20)
+        self.assertEqual(self.check_json("info", raw, *layout)["voxels"], 20 * 2 ** 30)
+        self.check_refused("render", raw, *layout, "-o", self.folder / "a.png", "--budget-device", "256", "--budget-host",
+                           "256", says=["huge.raw: is drawn in pieces, and making its coarser levels takes",
+                                        "or make a project"])
+
+
+if __name__ == "__main__":
+    unittest.main()

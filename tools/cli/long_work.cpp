@@ -1,0 +1,137 @@
+#include "tools/cli/long_work.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace shvr::cli {
+
+namespace {
+
+/// How often the line is renewed where work says nothing.
+constexpr std::chrono::milliseconds TICK{250};
+
+double seconds_now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// The line, and a thread that keeps its time.
+class Shown {
+public:
+    Shown()
+        : line_({::isatty(STDERR_FILENO) == 1, [](const std::string& text) { std::cerr << text << std::flush; },
+                 seconds_now}),
+          ticker_([this](const std::stop_token& stop) { tick(stop); })
+    {}
+    ~Shown()
+    {
+        ticker_.request_stop();
+        ticker_.join();
+        clear();
+    }
+
+    void begin(const std::string& what)
+    {
+        const std::scoped_lock lock(mutex_);
+        line_.begin(what);
+        is_busy_ = true;
+        fraction_ = seconds_left_ = -1.0;
+        detail_.clear();
+    }
+    void show(double fraction, const std::string& detail, double seconds_left)
+    {
+        const std::scoped_lock lock(mutex_);
+        is_busy_ = true;
+        fraction_ = fraction;
+        detail_ = detail;
+        seconds_left_ = seconds_left;
+        line_.show(fraction, detail, seconds_left);
+    }
+    void clear()
+    {
+        const std::scoped_lock lock(mutex_);
+        is_busy_ = false;
+        line_.clear();
+    }
+    void print(const std::string& text)
+    {
+        const std::scoped_lock lock(mutex_);
+        line_.clear();
+        std::cerr << text << '\n';
+    }
+
+private:
+    void tick(const std::stop_token& stop)
+    {
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested()) {
+            if (is_busy_) line_.show(fraction_, detail_, seconds_left_);
+            stopped_.wait_for(lock, stop, TICK, [] { return false; });
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any stopped_;
+    ProgressLine line_;
+    bool is_busy_ = false;
+    double fraction_ = -1.0, seconds_left_ = -1.0;  ///< below 0: not known
+    std::string detail_;
+    std::jthread ticker_;  ///< last, since it uses all above
+};
+
+std::unique_ptr<Shown> shown;  ///< of the LongWork that lives; null if it is quiet
+
+}  // namespace
+
+LongWork::LongWork(bool quiet)
+{
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
+    if (!quiet) shown = std::make_unique<Shown>();
+}
+
+LongWork::~LongWork()
+{
+    shown.reset();
+}
+
+Progress LongWork::begin(const std::string& what)
+{
+    stop_if_asked();
+    if (shown) shown->begin(what);
+    return [this](double fraction) {
+        stop_if_asked();
+        if (shown) shown->show(fraction, {}, -1.0);
+    };
+}
+
+void LongWork::show(double fraction, const std::string& detail, double seconds_left)
+{
+    if (shown) shown->show(fraction, detail, seconds_left);
+}
+
+void LongWork::stop_if_asked() const
+{
+    if (is_asked_to_stop()) throw Stopped(sentence(StopRequest::in_words(), "; no file is left half written"));
+}
+
+void clear_progress()
+{
+    if (shown) shown->clear();
+}
+
+void print_beside_progress(const std::string& line)
+{
+    if (shown)
+        shown->print(line);
+    else
+        std::cerr << line << '\n';
+}
+
+}  // namespace shvr::cli
