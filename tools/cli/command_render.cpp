@@ -42,7 +42,7 @@ Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& w
             work.stop_if_asked();
             file.step();
         }
-        work.stop_if_asked();
+        static_cast<void>(work.begin("writing " + options.output));
     } catch (const Stopped&) {
         fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
     }
@@ -50,7 +50,6 @@ Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& w
     if (!picture.complete && !options.allows_incomplete)
         fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
              "; --allow-incomplete writes it nevertheless");
-    static_cast<void>(work.begin("writing " + options.output));
     file.commit();
     return picture;
 }

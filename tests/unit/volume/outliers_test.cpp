@@ -135,6 +135,33 @@ TEST_CASE("the range without stray values is exact in any order, and of any size
     CHECK_FALSE(bulk_of({1.0, 2.0, 3.0, 1e30}).has_value());  // of four, nobody can say which is usual
 }
 
+TEST_CASE("a value that occurs many times counts as often")
+{
+    for (const int strays : {3, 5000}) {
+        CAPTURE(strays);
+        std::vector<double> values = tissue(2000);
+        OutlierFinder counted(300 * 2000 + strays);
+        std::vector<double> all(size_t(strays), 1e30);
+        for (size_t i = 0; i < values.size(); ++i) {
+            const size_t times = i % 2 == 0 ? 1 : 599;
+            counted.add(values[i], int64_t(times));
+            all.insert(all.end(), times, values[i]);
+            if (i == 1000) counted.add(1e30, strays);
+        }
+        const std::optional<OutlierFinder::Bulk> found = counted.bulk(), expected = bulk_of(all);
+        REQUIRE(found.has_value() == expected.has_value());
+        CHECK(found.has_value() == (strays == 3));
+        if (!found) continue;
+        CHECK(found->range == range_of(values));
+        CHECK(found->outliers == strays);
+    }
+    // What little a sparse volume stores is not left out.
+    OutlierFinder sparse(int64_t{1} << 60);
+    for (const double value : tissue(1000)) sparse.add(value);
+    sparse.add(0.0, (int64_t{1} << 60) - 1000);
+    CHECK_FALSE(sparse.bulk().has_value());
+}
+
 TEST_CASE("a small float volume says what it leaves out, in one number or several")
 {
     for (const int count : {1, 3}) {
