@@ -124,7 +124,8 @@ class Stopped(CliTest):
 
     def test_commands_that_write_at_the_end(self):
         session = self.write_session(volume={"procedural": "tubes", "size": [512, 512, 512]})
-        commands = [["info", session], ["label", session, "--threshold", "1", "-o", self.folder / "a.nrrd"],
+        large = self.write_session("large.json", volume={"procedural": "tubes", "size": [2048, 2048, 2048]})
+        commands = [["info", session], ["label", large, "--threshold", "1", "-o", self.folder / "a.nrrd"],
                     ["render", session, "-o", self.folder / "a.png", "--size", "4000x4000"],
                     ["export", session, "--mask", self.folder / "a.mask"],
                     ["profile", session, "--frames", "100000"]]
@@ -136,7 +137,7 @@ class Stopped(CliTest):
                     self.assertIsNone(program.poll())
                     status = self.check_stopped(program, number, f"shvr: stopped by {name}; no file is left half")
                     self.assertIn(status, (1, -number))  # by the signal where the work had not begun
-        self.assertEqual(sorted(os.listdir(self.folder)), ["session.json"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["large.json", "session.json"])
 
     def test_annotate_ends_between_two_commands_and_says_where(self):
         session = self.write_session(volume={"procedural": "constant", "size": [48] * 3})
