@@ -35,6 +35,8 @@ template <class... Cases>
 struct ByKind : Cases... {
     using Cases::operator()...;
 };
+template <class... Cases>
+ByKind(Cases...) -> ByKind<Cases...>;  // clang 16 does not deduce aggregates by itself
 
 /// Records of one kind, as a command takes them.
 template <class Record>
