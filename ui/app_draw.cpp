@@ -22,41 +22,38 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
 void App::draw_ui()
 {
     const double begun = window_.now_s();
-    const bool moves = something_moves();
+    const bool moves = something_moves(), is_open = bench_->is_open();
     // A software device presents after all earlier submissions, so this wait only moves forward one that would happen
     // below; and the view's measured cost then excludes the interface.
-    if (document_ && renderer_->device().traits().is_cpu) document_->screen.wait();
+    if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
     window_.begin_ui();
-    if (document_) {
-        layout = draw_panels(model(), window_.pixels(), actions_);
+    layout = draw_panels(model(), window_.pixels(), actions_);
+    if (is_open) {
+        const Document& document = bench_->document();
         draw_strokes();
-        layers = document_->screen.layers();
-        drawn_revision_ = document_->screen.revision();
-        drawn_probe_voxel_ = document_->probe_voxel();
-    } else {
-        ImGui::GetForegroundDrawList()->AddText(ImVec2(24, 24), IM_COL32(220, 220, 220, 255), status_.c_str());
+        layers = document.screen.layers();
+        drawn_revision_ = document.screen.revision();
+        drawn_probe_voxel_ = document.probe_voxel();
     }
-    if (layout.begin != viewport_.layout().begin || layout.end != viewport_.layout().end) {
-        viewport_.set_layout(layout);
-        look_again();
-    }
+    viewport_.set_layout(layout);
     if (!window_.present(layers, viewport_.layout().begin)) return;
-    if (document_ && !layers.empty())
-        window_.set_title(document_->volume().name + " - SHVR" + (document_->only_looks() ? " (read only)" : ""));
+    if (is_open && !layers.empty())
+        window_.set_title(bench_->document().volume().name + " - SHVR" +
+                          (bench_->document().only_looks() ? " (read only)" : ""));
     report_.presented({.number = window_.frames_presented(),
                        .begun_s = begun,
                        .moves = moves,
                        .shows_picture = !layers.empty(),
-                       .shows_sharp_picture = !layers.empty() && document_->screen.complete()});
+                       .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
 }
 
 /// The lines over each pane: the probe's outline, visible even if the probe is hidden; in maps the camera's direction;
 /// and a line towards the point where assistance pulls the probe.
 void App::draw_strokes() const
 {
-    const Document& document = *document_;
+    const Document& document = bench_->document();
     if (!document.screen.shows_anything()) return;
     const ProbeLook look = document.probe_look();
     const TraceMarks marks = document.trace_marks();
@@ -92,60 +89,30 @@ void App::draw_strokes() const
     }
 }
 
-Model App::model()
+Model App::model() const
 {
-    Document& document = *document_;
-    return {.session = document.session,
-            .volume = document.volume(),
-            .statistics = document.statistics,
-            .cameras = document.cameras(),
-            .panes = document.screen.parts(),
-            .presets = presets_,
-            .probe_voxel = document.probe_voxel(),
-            .is_painting = document.annotator.stroke_is_running(),
-            .assistance = document.assistance,
-            .law = document.law,
-            .servo = document.touch.servo(),
-            .device_name = document.touch.device_name(),
-            .tool = document.tool,
-            .trace = document.annotator.document().trace,
-            .nearby_node = document.nearby_node(),
-            .previewed_voxels = document.previewer.shown() && document.previewer.is_current()
-                                    ? std::optional(document.previewer.shown()->voxels)
-                                    : std::nullopt,
-            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
-            .undoable = document.annotator.history().undoable(),
-            .redoable = document.annotator.history().redoable(),
-            .is_saved = document.is_saved(),
-            .holder = document.holder,
-            .session_path = document.session_path,
-            .disputes = document.annotator.work().disputes(),
-            .status = status_,
-            .shows_help = shows_help_,
-            .gpu_name = renderer_->device().traits().name,
-            .pass_times = document.screen.pass_times(),
-            .view_is_complete = document.screen.complete(),
-            .view_is_limited = renderer_->volume().state() == DeviceVolume::State::limited,
-            .relevance_age_ms = document.touch.relevance_age_ms(),
-            .ui_frame_ms = report_.recent_frame_ms(),
-            .device_bytes = renderer_->memory().device_bytes(),
-            .device_budget = renderer_->memory().device_budget()};
+    Model model = bench_->model();
+    model.ui_frame_ms = report_.recent_frame_ms();
+    return model;
 }
 
 AppReport App::report()
 {
     AppReport report = report_.measured();
     report.gpu_name = renderer_->device().traits().name;
-    report.status = status_;
-    if (document_) {
-        report.relevance_ms = document_->touch.mirror_ms();
-        report.view_submissions = document_->screen.submissions();
-        report.view_complete = document_->screen.complete();
-        report.servo = document_->touch.last_state();
-        report.probe_voxel = document_->probe_voxel();
-        report.voxels_by_group = document_->annotator.document().mask.voxels_by_group();
-        report.undoable = document_->annotator.history().undoable();
-        report.redoable = document_->annotator.history().redoable();
+    report.status = bench_->messages().last();
+    for (const Message& message : bench_->messages().all()) report.messages.push_back(message.text);
+    report.previewed_voxels = bench_->previewed_at_stroke();
+    if (bench_->is_open()) {
+        const Document& document = bench_->document();
+        report.relevance_ms = document.touch.mirror_ms();
+        report.view_submissions = document.screen.submissions();
+        report.view_complete = document.screen.complete();
+        report.servo = document.touch.last_state();
+        report.probe_voxel = document.probe_voxel();
+        report.voxels_by_group = document.annotator.document().mask.voxels_by_group();
+        report.undoable = document.annotator.history().undoable();
+        report.redoable = document.annotator.history().redoable();
     }
     report.validation_messages = renderer_->device().take_validation_messages();
     return report;

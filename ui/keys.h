@@ -1,33 +1,33 @@
 #pragma once
-// Keys: one table of keys, modifiers, actions and their names; keyboard, menus and help window all use it. Codes are
-// GLFW's. The letters are those of the thesis's appendix C.
+// Turns the keyboard into actions, by the keymap (ui/workbench/keymap.h). Letters and signs are those of the person's
+// layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
 
-#include <span>
-#include <string>
+#include <vector>
 
-#include "ui/action.h"
-#include "ui/model.h"
 #include "ui/window.h"
+#include "ui/workbench/keymap.h"
 
 namespace shvr::ui {
 
-struct KeyBinding {
-    int key = 0;
-    int mods = 0;            ///< GLFW_MOD_CONTROL, _ALT, _SHIFT, must match exactly; shift is free if `is_slowed`
-    bool is_slowed = false;  ///< shift reduces the amount to a fifth
-    bool repeats = false;    ///< continues while the key is held
-    const char* group = "";  ///< heading in the help window
-    const char* name = "";   ///< "Undo"
-    Action (*action)(const Model& model, double amount) = nullptr;  ///< amount: 1 for a tap; seconds * 5 while held
+class Keyboard {
+public:
+    /// A press or a release. `ui_has_keys`: a text is being typed, so presses mean nothing here.
+    void handle(const KeyEvent& event, const Model& model, bool ui_has_keys, Actions& actions);
+    /// The actions of keys held down, `seconds` after the last call. Keys that `is_down` does not know any more are let
+    /// go.
+    void hold(double seconds, int mods, const std::function<bool(int key)>& is_down, const Model& model,
+              Actions& actions);
+
+private:
+    struct Held {
+        KeyEvent pressed;
+        const Shortcut* lasting = nullptr;  ///< that ends when the key is released
+    };
+    static void release(const Held& held, const Model& model, Actions& actions);
+    std::vector<Held> held_;
 };
 
-std::span<const KeyBinding> key_bindings();
-/// "Ctrl + Shift + Z"
-std::string name_of(const KeyBinding& binding);
-
-/// Adds the actions of a key press.
-void key_pressed(const KeyEvent& event, const Model& model, Actions& actions);
-/// Adds the actions of the keys held down, `seconds` after the last call.
-void keys_held(const Window& window, double seconds, const Model& model, Actions& actions);
+/// GLFW_MOD_* of the modifiers that are down.
+int mods_held(const Window& window);
 
 }  // namespace shvr::ui

@@ -32,19 +32,17 @@ struct AppReport {
     size_t undoable = 0, redoable = 0;
     std::optional<int64_t> previewed_voxels;  ///< at the start of the last stroke, if it had a preview
     std::string status;
-    std::vector<std::string> messages;  ///< every status so far
+    std::vector<std::string> messages;  ///< the last ones, as said
     std::vector<std::string> validation_messages;
 };
 
 class RunReport {
 public:
-    void said(const std::string& status) { report_.messages.push_back(status); }
     /// Another scan was opened: its first pictures are measured from here.
     void opened(double time_s);
     /// Reports a key or button; the next frame shows its effect.
     void asked(double time_s) { unanswered_s_.push_back(time_s); }
     bool has_unanswered() const { return !unanswered_s_.empty(); }
-    void previewed(int64_t voxels) { report_.previewed_voxels = voxels; }
 
     /// A frame of the interface that was submitted to the device.
     struct Frame {

@@ -12,7 +12,6 @@ constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turn
 constexpr double DOUBLE_CLICK_S = 0.35;
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
-constexpr int PAINT_KEY = GLFW_KEY_F, DRAG_KEY = GLFW_KEY_M;
 
 }  // namespace
 
@@ -105,8 +104,7 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
         actions.emplace_back(Zoom{pane_, in_pane(event.at, model), std::pow(ZOOM_PER_STEP, event.steps)});
 }
 
-void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_mouse, bool ui_has_keys,
-                      Actions& actions)
+void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions)
 {
     if (const auto* button = std::get_if<ButtonEvent>(&event.what)) {
         if (!button->pressed)
@@ -117,13 +115,6 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
         follow(*move, ui_has_mouse, model, actions);
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event.what)) {
         if (!ui_has_mouse && contains(scroll->at)) this->scroll(*scroll, model, actions);
-    } else if (const auto* key = std::get_if<KeyEvent>(&event.what)) {
-        if (key->key == PAINT_KEY && key->mods == 0 && !key->repeated && (!ui_has_keys || !key->pressed))
-            actions.emplace_back(Paint{key->pressed});
-        else if (key->key == DRAG_KEY && key->mods == 0 && !key->repeated && (!ui_has_keys || !key->pressed))
-            actions.emplace_back(DragNode{key->pressed});
-        else if (key->pressed && !ui_has_keys)
-            key_pressed(*key, model, actions);
     } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
         if (!drop->paths.empty()) actions.emplace_back(Open{drop->paths.front()});
     }

@@ -1,18 +1,18 @@
 #pragma once
-// Turns mouse and keys in the graphics window into actions. Its only state is the layout of that window and the gesture
+// Turns the mouse in the graphics window into actions. Its only state is the layout of that window and the gesture
 // in progress. Main thread.
 //
 //   no button          the probe follows in its plane          wheel          zoom
 //   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
 //   middle drag        move (also Shift + left drag)           double click   put the probe onto the surface there
-//   right held, or F   paint, or add a node            M held         the selected node goes with the probe
+//   right held         paint, or add a node
 //
 // In a map, left and middle drag move the camera and the wheel takes it forward; in a slice the wheel moves the slice.
 
 #include <optional>
 
-#include "ui/keys.h"
 #include "ui/panels/panels.h"
+#include "ui/window.h"
 
 namespace shvr::ui {
 
@@ -22,8 +22,8 @@ public:
     const Layout& layout() const { return layout_; }
     glm::uvec2 pixels() const { return layout_.end - layout_.begin; }
 
-    /// `ui_has_mouse`, `ui_has_keys`: Dear ImGui uses them.
-    void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, bool ui_has_keys, Actions& actions);
+    /// All events but keys. `ui_has_mouse`: Dear ImGui uses it.
+    void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions);
 
 private:
     enum class Gesture { none, turn, move, move_in_map, paint };

@@ -1,7 +1,6 @@
 #include "ui/window.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -21,13 +20,29 @@ std::string glfw_error()
     return description ? description : "no reason given";
 }
 
+/// The screen that shows this point, or else the main one.
+GLFWmonitor* monitor_of(const glm::ivec2& point)
+{
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i) {
+        glm::ivec2 at(0);
+        glfwGetMonitorPos(monitors[i], &at.x, &at.y);
+        const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]);
+        if (mode && point.x >= at.x && point.y >= at.y && point.x < at.x + mode->width && point.y < at.y + mode->height)
+            return monitors[i];
+    }
+    return glfwGetPrimaryMonitor();
+}
+
 }  // namespace
 
 /// GLFW's window and the input received in it.
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
-    bool frame_is_open = false;  ///< an interface frame was begun and not yet rendered
+    glm::ivec2 place{0}, size{0};  ///< of the window before it took the whole screen
+    bool frame_is_open = false;    ///< an interface frame was begun and not yet rendered
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
     template <class Event>
@@ -38,7 +53,6 @@ struct Window::Input {
     /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one turn of
     /// the loop receives a whole gesture.
     std::optional<glm::dvec2> last_cursor;
-    std::map<int, int> mods_of_press;  ///< by key: the modifiers that were down
     static glm::dvec2 cursor(GLFWwindow* window)
     {
         std::optional<glm::dvec2>& last = of(window).last_cursor;
@@ -69,9 +83,9 @@ struct Window::Input {
     /// Call before Dear ImGui installs its own callbacks, which call these.
     void listen() const
     {
-        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
-            if (action == GLFW_PRESS) of(w).mods_of_press[key] = mods;
-            add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT});
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+            const char* const character = glfwGetKeyName(key, scancode);
+            add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT, character ? character : ""});
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
             add(w, ButtonEvent{button, mods, action == GLFW_PRESS, cursor(w)});
@@ -173,6 +187,20 @@ double Window::content_scale() const
     return double(x);
 }
 
+void Window::set_full_screen(bool is_full)
+{
+    GLFWwindow* const window = input_->window;
+    if (is_full == (glfwGetWindowMonitor(window) != nullptr)) return;
+    glm::ivec2 &at = input_->place, &size = input_->size;
+    if (!is_full) return glfwSetWindowMonitor(window, nullptr, at.x, at.y, size.x, size.y, GLFW_DONT_CARE);
+    glfwGetWindowPos(window, &at.x, &at.y);
+    glfwGetWindowSize(window, &size.x, &size.y);
+    GLFWmonitor* const monitor = monitor_of(at + size / 2);
+    const GLFWvidmode* const mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+    if (!mode) fail("there is no screen to fill; expected one");
+    glfwSetWindowMonitor(window, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
 double Window::now_s() const
 {
     return glfwGetTime();
@@ -190,12 +218,6 @@ std::vector<InputEvent> Window::wait_events(double timeout_s)
 bool Window::is_down(int key) const
 {
     return glfwGetKey(input_->window, key) == GLFW_PRESS;
-}
-
-int Window::mods_of_press(int key) const
-{
-    const auto found = input_->mods_of_press.find(key);
-    return found == input_->mods_of_press.end() ? 0 : found->second;
 }
 
 void Window::begin_ui()

@@ -27,6 +27,7 @@ struct KeyEvent {
     int mods = 0;  ///< GLFW_MOD_*
     bool pressed = false;
     bool repeated = false;
+    std::string character{};  ///< that it stands for in the person's layout, without modifiers; empty: none, or unknown
 };
 struct ButtonEvent {
     int button = 0;  ///< GLFW_MOUSE_BUTTON_*
@@ -75,13 +76,13 @@ public:
     glm::uvec2 pixels() const;
     double content_scale() const;  ///< 2 on a HiDPI screen
     double now_s() const;
+    /// Takes the whole of the screen that the window is on, or gives it back.
+    void set_full_screen(bool is_full);
 
     /// Waits for events, at most that long (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
     /// Whether a key is held down.
     bool is_down(int key) const;
-    /// The modifiers (GLFW_MOD_...) that were down when this key was last pressed.
-    int mods_of_press(int key) const;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;

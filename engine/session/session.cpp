@@ -154,4 +154,13 @@ Camera camera_named(const Session& session, const std::string& name_or_json, con
     fail("camera is \"", name, "\"; expected one of ", known, "or a JSON object");
 }
 
+std::vector<std::string> camera_names(const Session& session)
+{
+    std::vector<std::string> names;
+    for (const auto& [name, camera] : session.cameras) names.push_back(name);
+    for (const std::string& side : camera_sides())
+        if (!session.cameras.contains(side)) names.push_back(side);
+    return names;
+}
+
 }  // namespace shvr

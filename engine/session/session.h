@@ -28,6 +28,22 @@ struct InteractionSettings {
     bool operator==(const InteractionSettings&) const = default;
 };
 
+/// What the right mouse button, F and the stylus do in the window, and which preview is shown.
+enum class Tool { paint, trace };
+inline constexpr Spelling<Tool> TOOLS[] = {{Tool::paint, "paint"}, {Tool::trace, "trace"}};
+constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
+{
+    return TOOLS;
+}
+
+/// How the probe is pulled to what is relevant: haptics/proxy.h.
+enum class Guidance { potential, mean };
+inline constexpr Spelling<Guidance> GUIDANCES[] = {{Guidance::potential, "potential"}, {Guidance::mean, "mean"}};
+constexpr std::span<const Spelling<Guidance>> spellings_of(Guidance)
+{
+    return GUIDANCES;
+}
+
 /// The probe and the brush. Values not given here are chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's middle
@@ -39,6 +55,9 @@ struct ProbeSettings {
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
     bool preview = false;        ///< the brush's effect at the probe is drawn
+    Tool tool = Tool::paint;
+    bool guided = false;
+    Guidance guidance = Guidance::potential;
     bool operator==(const ProbeSettings&) const = default;
 };
 
@@ -136,6 +155,9 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the one
 /// that the session names "front", or else that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
+
+/// The names that `camera_named` takes: cameras of the session, then sides.
+std::vector<std::string> camera_names(const Session& session);
 
 /// Writes every key in the form that `parse_session` reads. Paths inside `folder` (if that is a project's shvr: inside
 /// the project) are relative to it, others absolute. Colours are rounded to the 8 bits of their spelling.

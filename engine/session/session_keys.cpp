@@ -286,6 +286,9 @@ void fields(Fields& f, ProbeSettings& probe)
     f.number("shell_opacity", probe.shell_opacity, SHARE, {"of one crossing of it"});
     f.flag("preview", probe.preview,
            {"the voxels that painting would change now, in pictures and slices; striped where it would erase"});
+    f.choice("tool", probe.tool, {"what the right mouse button, F and the stylus do in the window"});
+    f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
+    f.choice("guidance", probe.guidance, {"the law that pulls it"});
     const About density{
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",
@@ -352,6 +355,15 @@ void lasting_fields(Fields& f, Session& session)
 {
     look_fields(f, session);
     f.section("cut", session.cut);
+}
+
+void setting_fields(Fields& f, Session& session)
+{
+    lasting_fields(f, session);
+    f.section("render", session.render);
+    f.section("view", session.view);
+    f.section("interaction", session.interaction);
+    f.section("probe", session.probe);
 }
 
 void fields(Fields& f, Session& session)

@@ -216,6 +216,11 @@ glm::dvec3 read_color(const JsonNode& node)
     return glm::dvec3(node.parsed(parse, "a colour, \"#rrggbb\""));
 }
 
+void read_fields(const JsonNode& node, const std::filesystem::path& folder, const Fields::Visit& visit)
+{
+    Reader::read(node, folder, visit);
+}
+
 CameraSpec read_camera(const JsonNode& node)
 {
     CameraSpec camera;
@@ -239,6 +244,13 @@ Session read_lasting(const JsonDocument& document)
 {
     Session session;
     Reader::read(document.root(), {}, [&](Fields& f) { lasting_fields(f, session); });
+    return session;
+}
+
+Session read_settings(const JsonDocument& document)
+{
+    Session session;
+    Reader::read(document.root(), {}, [&](Fields& f) { setting_fields(f, session); });
     return session;
 }
 

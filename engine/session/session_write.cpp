@@ -128,11 +128,13 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// Whether `value` says more than where to look further.
+/// In words a number has as many digits as a person reads.
 std::string leaf_text(const OrderedJson& leaves, const std::string& path)
 {
     const auto found = leaves.find(path);
-    return found == leaves.end() ? std::string() : found->is_string() ? found->get<std::string>() : found->dump();
+    if (found == leaves.end()) return {};
+    if (found->is_number_float()) return sentence(found->get<double>());
+    return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
 /// One section's difference: its name and, where few values differ, which.
@@ -156,6 +158,15 @@ std::string difference_of(std::string name, const std::string& before, const std
 }
 
 }  // namespace
+
+std::string write_fields(const std::filesystem::path& folder, const Fields::Visit& visit)
+{
+    try {
+        return Writer::write(folder, visit).dump();
+    } catch (const OrderedJson::type_error&) {
+        fail("a name or path is not valid UTF-8, so JSON cannot hold it; expected UTF-8");
+    }
+}
 
 SettingValues lasting_settings(const Session& session)
 {

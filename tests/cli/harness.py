@@ -18,8 +18,11 @@ TIMEOUT_S = 120
 # A line of progress on standard error, which any command has that takes longer than a second.
 PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
 
+# A person's own preferences are neither read nor changed by tests.
+CONFIGURATION = tempfile.TemporaryDirectory(prefix="shvr-config-")
+
 # Any message of the Vulkan validation layer makes a command fail.
-ENVIRONMENT = {**os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C"}
+ENVIRONMENT = {**os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C", "XDG_CONFIG_HOME": CONFIGURATION.name}
 
 
 def run(*arguments, environment=None):

@@ -129,7 +129,7 @@ class View(Window):
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
         right, below = x + 140, y + 120   # well inside the quarters beside and below the first
-        for number, key in enumerate(["F9", "F11", "F6"], 1):
+        for number, key in enumerate(["F9", "shift+F11", "F6"], 1):
             self.do("mousemove", x - 100, y - 100, "key", key, pause_s=1)
             if key == "F9":   # a map: drag and wheel move the camera
                 self.do("mousemove", right, y - 100, "mousedown", 1, "mousemove", right + 20, y - 90,

@@ -6,6 +6,7 @@
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
 #include "ui/app.h"
+#include "ui/workbench/preferences.h"
 
 namespace shvr::cli {
 
@@ -13,7 +14,7 @@ namespace {
 
 struct ViewCommandOptions {
     Common common;
-    std::string input, size;
+    std::string input, size, log;
     bool allow_force = false;
 };
 
@@ -81,7 +82,9 @@ void run_view(const ViewCommandOptions& options)
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads,
                           .validation = validation && *validation == '1',
-                          .allow_force = options.allow_force};
+                          .allow_force = options.allow_force,
+                          .preferences = ui::preferences_file(),
+                          .log = options.log};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
     const StopRequest stop;
     wanted.stop = &stop.flag();
@@ -104,6 +107,7 @@ void add_view(CLI::App& program)
     command->add_option("--size", options->size, "Size of the window, as in 1280x800");
     command->add_flag("--allow-force", options->allow_force,
                       "Let a haptic device with a verified profile put force on the hand");
+    command->add_option("--log", options->log, "Write each action as a line that shvr annotate replays");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -9,6 +9,7 @@
 
 #include "engine/base/image.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -94,7 +95,8 @@ bool name_cell(const Row& row, const Model& model, const ColorGroup& look, Group
     if (indent > 0.0f) ImGui::Indent(indent);
     const std::string label = group == 0 ? "0  eraser" : std::to_string(group) + "  " + look.name;
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
-    if (ImGui::Selectable(label.c_str(), group == model.brush().group)) actions.push_back(ChooseGroup{group});
+    if (ImGui::Selectable(label.c_str(), group == model.brush().group))
+        set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     ImGui::PopStyleColor();
     if (indent > 0.0f) ImGui::Unindent(indent);
     if (group == 0) {
@@ -167,7 +169,7 @@ void show_row(const Row& row, const Model& model, Actions& actions)
         changed |= name_cell(row, model, look, settings, actions);
         changed |= opacity_cell(look, settings);
         count_cell(model.voxels_by_group[row.group]);
-        if (changed) actions.push_back(SetGroup{row.group, settings});
+        if (changed) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
     }
     ImGui::PopID();
 }
@@ -180,7 +182,8 @@ void other_group(const Model& model, Actions& actions)
     ImGui::TextUnformatted("Paint with group");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
-    if (ImGui::InputInt("##group", &group, 1, 10)) actions.push_back(ChooseGroup{uint8_t(std::clamp(group, 0, 255))});
+    if (ImGui::InputInt("##group", &group, 1, 10))
+        set(actions, model, [&](Session& s) { s.probe.brush.group = uint8_t(std::clamp(group, 0, 255)); });
     hint("There are 255 groups; 0 erases. Groups in use are listed.");
 }
 

@@ -6,7 +6,7 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/keys.h"
+#include "ui/workbench/keymap.h"
 
 namespace shvr::ui {
 
@@ -53,13 +53,13 @@ bool begin_list(const char* id)
     return true;
 }
 
-/// The bindings under headings; the table is ordered by group.
-void key_list(std::span<const KeyBinding> bindings)
+/// The shortcuts under headings; the table is ordered by group.
+void key_list(std::span<const Shortcut> listed, const Keymap& keymap)
 {
     const char* group = "";
-    for (const KeyBinding& binding : bindings) {
-        if (std::strcmp(group, binding.group) != 0) heading(group = binding.group);
-        row(name_of(binding).c_str(), binding.name);
+    for (const Shortcut& shortcut : listed) {
+        if (std::strcmp(group, shortcut.group) != 0) heading(group = shortcut.group);
+        row(keymap.text_of(shortcut).c_str(), shortcut.name);
     }
 }
 
@@ -69,27 +69,27 @@ void mouse_list()
     for (const Gesture& gesture : GESTURES) row(gesture.what, gesture.meaning);
 }
 
-/// The first binding of a group near the middle, so that both columns are about equally long.
-size_t middle(std::span<const KeyBinding> bindings)
+/// The first shortcut of a group near the middle, so that both columns are about equally long.
+size_t middle(std::span<const Shortcut> listed)
 {
-    size_t at = bindings.size() / 2 + std::size(GESTURES) / 2;
-    while (at < bindings.size() && std::strcmp(bindings[at - 1].group, bindings[at].group) == 0) ++at;
-    return std::min(at, bindings.size());
+    size_t at = listed.size() / 2 + std::size(GESTURES) / 2;
+    while (at < listed.size() && std::strcmp(listed[at - 1].group, listed[at].group) == 0) ++at;
+    return std::min(at, listed.size());
 }
 
-void both_columns()
+void both_columns(const Keymap& keymap)
 {
-    const auto bindings = key_bindings();
-    const size_t split = middle(bindings);
+    const std::span<const Shortcut> listed = shortcuts();
+    const size_t split = middle(listed);
     ImGui::TableNextColumn();
     if (begin_list("left")) {
-        key_list(bindings.first(split));
+        key_list(listed.first(split), keymap);
         ImGui::EndTable();
     }
     ImGui::TableNextColumn();
     if (begin_list("right")) {
         mouse_list();
-        key_list(bindings.subspan(split));
+        key_list(listed.subspan(split), keymap);
         ImGui::EndTable();
     }
 }
@@ -109,7 +109,7 @@ void help_window(const Model& model, Actions& actions)
         if (ImGui::BeginTable("columns", 2)) {
             ImGui::TableSetupColumn("left", ImGuiTableColumnFlags_WidthStretch, 0.42f);
             ImGui::TableSetupColumn("right", ImGuiTableColumnFlags_WidthStretch, 0.58f);
-            both_columns();
+            both_columns(model.keymap);
             ImGui::EndTable();
         }
     }

@@ -7,6 +7,7 @@
 
 #include "engine/base/image.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -29,7 +30,7 @@ void light_controls(const Model& model, Actions& actions)
     changed |= explained_slider("Highlight", light.specular, 1.0, "Strength of the highlight.");
     changed |= explained_slider("Shininess", light.shininess, 256.0, "How small and sharp the highlight is.",
                                 ImGuiSliderFlags_Logarithmic);
-    if (changed) actions.push_back(SetLight{light});
+    if (changed) set(actions, model, [&](Session& s) { s.light = light; });
 }
 
 void blend_controls(const Model& model, Actions& actions)
@@ -57,7 +58,7 @@ void blend_controls(const Model& model, Actions& actions)
         blend.color.reset();
         changed = true;
     }
-    if (changed) actions.push_back(SetBlend{blend});
+    if (changed) set(actions, model, [&](Session& s) { s.blend = blend; });
 }
 
 }  // namespace

@@ -8,51 +8,41 @@
 #include <utility>
 
 #include <imgui/imgui.h>
-#include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
-#include "ui/keys.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/keymap.h"
+#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
 namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
-constexpr const char* OPEN_TITLE = "Open a volume or a session";
 
-const KeyBinding& binding_named(const char* name)
+/// The menu item of a shortcut. Where it would do nothing now it is grey and says why.
+void item(const char* id, const Model& model, Actions& actions, bool is_checked = false)
 {
-    const auto bindings = key_bindings();
-    const auto found = std::find_if(bindings.begin(), bindings.end(),
-                                    [&](const KeyBinding& binding) { return std::strcmp(binding.name, name) == 0; });
-    SHVR_CHECK(found != bindings.end(), name);
-    return *found;
-}
-
-struct ItemState {
-    bool is_checked = false;
-    bool is_enabled = true;
-};
-
-/// The menu item of a key binding.
-void key_item(const char* name, const Model& model, Actions& actions, const ItemState& state = {})
-{
-    const KeyBinding& binding = binding_named(name);
-    if (ImGui::MenuItem(name, name_of(binding).c_str(), state.is_checked, state.is_enabled))
-        actions.push_back(binding.action(model, 1.0));
+    const Shortcut* const shortcut = shortcut_named(id);
+    SHVR_CHECK(shortcut, id);
+    const std::string why = why_not(model, *shortcut);
+    if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
+        actions.push_back(shortcut->action(model, 1.0));
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
 }
 
 /// Keys that act while held are buttons here, since an item would close the menu at every step.
-void key_buttons(const char* group, const Model& model, Actions& actions)
+void held_items(const char* group, const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu(group)) return;
+    if (!ImGui::BeginMenu(group, model.is_open)) return;
     ImGui::PushButtonRepeat(true);
     const float width = 11.0f * ImGui::GetFontSize();
-    for (const KeyBinding& binding : key_bindings()) {
-        if (std::strcmp(binding.group, group) != 0) continue;
-        if (ImGui::Button(binding.name, {width, 0.0f})) actions.push_back(binding.action(model, 1.0));
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (std::strcmp(shortcut.group, group) != 0) continue;
+        if (ImGui::Button(shortcut.name, {width, 0.0f})) actions.push_back(shortcut.action(model, 1.0));
         ImGui::SameLine();
-        ImGui::TextDisabled("%s", name_of(binding).c_str());
+        ImGui::TextDisabled("%s", model.keymap.text_of(shortcut).c_str());
     }
     ImGui::PopButtonRepeat();
     ImGui::EndMenu();
@@ -60,52 +50,28 @@ void key_buttons(const char* group, const Model& model, Actions& actions)
 
 // ---- File and Edit
 
-struct OpenDialog {
-    bool is_asked_for = false;
-    std::string path;
-};
-
-void file_menu(OpenDialog& dialog, const Model& model, Actions& actions)
+void file_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("File")) return;
-    if (ImGui::MenuItem("Open...")) dialog.is_asked_for = true;
-    key_item("Save", model, actions);
-    key_item("Screenshot", model, actions);
-    key_item("Large screenshot", model, actions);
+    if (ImGui::MenuItem("Open...")) ask_for_file();
+    if (ImGui::BeginMenu("Open recent", !model.preferences.recent.empty())) {
+        for (const std::filesystem::path& path : model.preferences.recent)
+            if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
+        ImGui::EndMenu();
+    }
+    item("save", model, actions);
+    item("screenshot", model, actions);
+    item("large_screenshot", model, actions);
     ImGui::Separator();
-    key_item("Quit", model, actions);
+    item("quit", model, actions);
     ImGui::EndMenu();
-}
-
-/// Call outside the menu, which is closed while this is open.
-void open_dialog(OpenDialog& dialog, Actions& actions)
-{
-    if (dialog.is_asked_for) ImGui::OpenPopup(OPEN_TITLE);
-    const bool appears = std::exchange(dialog.is_asked_for, false);
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(OPEN_TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::TextUnformatted("Path of a volume, a session (.json) or a project folder:");
-    ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
-    if (appears) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##path", &dialog.path,
-                                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    ImGui::TextDisabled("A file can also be dropped onto the window.");
-    const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
-    ImGui::BeginDisabled(dialog.path.empty());
-    const bool accepted = (ImGui::Button("Open", button) || entered) && !dialog.path.empty();
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    const bool cancelled = ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-    if (accepted) actions.push_back(Open{dialog.path});
-    if (accepted || cancelled) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
 }
 
 void edit_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Edit")) return;
-    key_item("Undo", model, actions, {.is_enabled = model.undoable > 0});
-    key_item("Redo", model, actions, {.is_enabled = model.redoable > 0});
+    item("undo", model, actions);
+    item("redo", model, actions);
     ImGui::EndMenu();
 }
 
@@ -128,7 +94,7 @@ void cut_range(int axis, const Model& model, Actions& actions)
 
 void cut_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Cutting planes")) return;
+    if (!ImGui::BeginMenu("Cutting planes", model.is_open)) return;
     ImGui::TextDisabled("What is drawn, in voxels (drag)");
     for (int axis = 0; axis < 3; ++axis) cut_range(axis, model, actions);
     ImGui::Separator();
@@ -139,28 +105,28 @@ void cut_menu(const Model& model, Actions& actions)
 void view_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("View")) return;
-    if (ImGui::BeginMenu("Look from", !model.cameras.empty())) {
-        for (const std::string& camera : model.cameras)
+    if (ImGui::BeginMenu("Look from", model.is_open)) {
+        for (const std::string& camera : camera_names(model.session))
             if (ImGui::MenuItem(camera.c_str())) actions.push_back(LookFrom{camera});
         ImGui::EndMenu();
     }
     const Arrangement arrangement = model.session.view.arrangement;
-    key_item("Full screen", model, actions, {.is_checked = arrangement == Arrangement::single});
-    key_item("Two eyes", model, actions, {.is_checked = arrangement == Arrangement::stereo});
-    key_item("Overview", model, actions, {.is_checked = arrangement == Arrangement::overview});
-    key_item("Slices", model, actions, {.is_checked = arrangement == Arrangement::slices});
+    item("single_view", model, actions, arrangement == Arrangement::single);
+    item("stereo", model, actions, arrangement == Arrangement::stereo);
+    item("overview", model, actions, arrangement == Arrangement::overview);
+    item("slices", model, actions, arrangement == Arrangement::slices);
+    item("full_screen", model, actions, model.is_full_screen);
     ImGui::Separator();
-    key_buttons("Turn the view", model, actions);
-    key_buttons("Move the view", model, actions);
+    held_items("Turn the view", model, actions);
+    held_items("Move the view", model, actions);
     ImGui::Separator();
     Light light = model.session.light;
-    if (ImGui::MenuItem("Shading", nullptr, &light.shaded)) actions.push_back(SetLight{light});
-    const OcclusionSettings& occlusion = model.session.light.occlusion;
-    key_item("Update ambient occlusion", model, actions,
-             {.is_enabled = light.shaded && occlusion.strength > 0.0 && !occlusion.automatic});
-    key_buttons("Distance blending", model, actions);
+    if (ImGui::MenuItem("Shading", nullptr, &light.shaded, model.is_open))
+        set(actions, model, [&](Session& s) { s.light = light; });
+    item("update_occlusion", model, actions);
+    held_items("Distance blending", model, actions);
     cut_menu(model, actions);
-    key_buttons("Clip planes", model, actions);
+    held_items("Clip planes", model, actions);
     ImGui::EndMenu();
 }
 
@@ -171,52 +137,51 @@ void brush_item(const BrushRow& row, const Model& model, Actions& actions)
     if (!ImGui::MenuItem(row.title, nullptr, model.brush().brush == row.brush)) return;
     BrushSettings changed = model.brush();
     changed.brush = row.brush;
-    actions.push_back(SetBrush{changed});
+    set(actions, model, [&](Session& s) { s.probe.brush = changed; });
 }
 
 void paint_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Paint")) return;
+    if (!ImGui::BeginMenu("Paint", model.is_open)) return;
     for (const BrushRow& row : BRUSHES) brush_item(row, model, actions);
-    key_item("Next brush", model, actions);
+    item("next_brush", model, actions);
     ImGui::Separator();
     for (int group = 1; group <= 9; ++group) {
         const std::string name = group_of(model.session.groups, uint8_t(group)).name;
         const std::string label = name + "##" + std::to_string(group);
         if (ImGui::MenuItem(label.c_str(), std::to_string(group).c_str(), int{model.brush().group} == group))
-            actions.push_back(ChooseGroup{uint8_t(group)});
+            set(actions, model, [&](Session& s) { s.probe.brush.group = uint8_t(group); });
     }
-    key_item("Eraser", model, actions, {.is_checked = model.brush().group == 0});
+    item("eraser", model, actions, model.brush().group == 0);
     ImGui::Separator();
-    key_item("Preview of the brush", model, actions, {.is_checked = model.session.probe.preview});
+    item("preview", model, actions, model.session.probe.preview);
     ImGui::EndMenu();
 }
 
 void trace_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Trace")) return;
+    if (!ImGui::BeginMenu("Trace", model.is_open)) return;
     const TraceSelection& selected = model.trace.selection();
-    const bool has_nodes = !model.trace.nodes().empty();
-    key_item("Paint or trace", model, actions, {.is_checked = model.tool == Tool::trace});
+    item("next_tool", model, actions, model.tool() == Tool::trace);
     ImGui::Separator();
-    key_item("Add a node, linked with the selected one", model, actions);
-    key_item("Select the nearest node, then its internode", model, actions, {.is_enabled = has_nodes});
-    key_item("Select the whole segment", model, actions, {.is_enabled = !selected.empty()});
-    key_item("Deselect", model, actions, {.is_enabled = !selected.empty()});
+    item("add_node", model, actions);
+    item("select_nearest", model, actions);
+    item("select_segment", model, actions);
+    item("deselect", model, actions);
     ImGui::Separator();
-    key_item("Link the selected node with the nearest", model, actions, {.is_enabled = selected.node().has_value()});
-    key_item("Delete what is selected", model, actions, {.is_enabled = !selected.empty()});
+    item("link_nearest", model, actions);
+    item("delete_selected", model, actions);
     ImGui::Separator();
-    key_item("Larger selected nodes, or internodes of the group", model, actions, {.is_enabled = has_nodes});
-    key_item("Smaller selected nodes, or internodes of the group", model, actions, {.is_enabled = has_nodes});
-    key_item("Larger nodes of the group", model, actions, {.is_enabled = has_nodes});
-    key_item("Smaller nodes of the group", model, actions, {.is_enabled = has_nodes});
+    item("larger_selected", model, actions);
+    item("smaller_selected", model, actions);
+    item("larger_nodes", model, actions);
+    item("smaller_nodes", model, actions);
     if (ImGui::BeginMenu("Group of what is selected", !selected.empty())) {
         for (int group = 1; group <= 9; ++group) {
             const std::string label =
                 group_of(model.session.groups, uint8_t(group)).name + "##" + std::to_string(group);
             if (ImGui::MenuItem(label.c_str(), ("Ctrl + " + std::to_string(group)).c_str()))
-                actions.push_back(Trace{GroupOp{uint8_t(group)}});
+                actions.push_back(GroupOp{uint8_t(group)});
         }
         ImGui::EndMenu();
     }
@@ -225,20 +190,20 @@ void trace_menu(const Model& model, Actions& actions)
 
 void probe_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Probe")) return;
-    key_item("Guide the probe", model, actions, {.is_checked = model.assistance});
-    key_item("Next kind of guidance", model, actions);
-    key_item("Iso-surface around the probe", model, actions, {.is_checked = model.session.probe.shell});
+    if (!ImGui::BeginMenu("Probe", model.is_open)) return;
+    item("guide", model, actions, model.session.probe.guided);
+    item("next_guidance", model, actions);
+    item("shell", model, actions, model.session.probe.shell);
     ImGui::Separator();
-    key_item("Larger probe", model, actions);
-    key_item("Smaller probe", model, actions);
+    item("larger_probe", model, actions);
+    item("smaller_probe", model, actions);
     ImGui::EndMenu();
 }
 
 void help_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Help")) return;
-    key_item("Keys and mouse", model, actions, {.is_checked = model.shows_help});
+    item("help", model, actions, model.shows_help);
     ImGui::EndMenu();
 }
 
@@ -263,9 +228,8 @@ void align_right(const std::string& text)
 
 void menu_bar(const Model& model, Actions& actions)
 {
-    static OpenDialog dialog;
     if (ImGui::BeginMainMenuBar()) {
-        file_menu(dialog, model, actions);
+        file_menu(model, actions);
         edit_menu(model, actions);
         view_menu(model, actions);
         paint_menu(model, actions);
@@ -274,7 +238,7 @@ void menu_bar(const Model& model, Actions& actions)
         help_menu(model, actions);
         ImGui::EndMainMenuBar();
     }
-    open_dialog(dialog, actions);
+    open_dialog(actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window)
@@ -294,11 +258,15 @@ void status_bar(const Model& model, const glm::uvec2& window)
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
-    ImGui::TextUnformatted(model.status.c_str());
-    align_right(place_of(model.probe_voxel) + "    |    " + (model.is_saved ? "saved" : "not saved") + "    |    " +
-                (!model.view_is_complete ? "refining"
-                 : model.view_is_limited ? "coarser than the screen: device budget"
-                                         : "sharp"));
+    const bool is_bad = !model.messages.all().empty() && model.messages.all().back().weight == Weight::error;
+    ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? WARNING : ImGui::GetColorU32(ImGuiCol_Text));
+    ImGui::TextUnformatted(model.status().c_str());
+    ImGui::PopStyleColor();
+    if (model.is_open)
+        align_right(place_of(model.probe_voxel) + "    |    " + (model.is_saved ? "saved" : "not saved") + "    |    " +
+                    (!model.view_is_complete ? "refining"
+                     : model.view_is_limited ? "coarser than the screen: device budget"
+                                             : "sharp"));
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);

@@ -26,7 +26,8 @@ void read_only_banner(const Model& model, const glm::vec2& begin, float width, A
     ImGui::SameLine();
     if (ImGui::Button("Try again")) actions.push_back(Open{model.session_path});
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::Text("Read only: open for writing in %s. Nothing that is changed here is saved.", model.holder.c_str());
+    ImGui::Text("Read only: open for writing in %.*s. Nothing that is changed here is saved.", int(model.holder.size()),
+                model.holder.data());
     ImGui::PopTextWrapPos();
     ImGui::End();
     ImGui::PopStyleVar();

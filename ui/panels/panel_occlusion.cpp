@@ -4,6 +4,7 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -27,7 +28,7 @@ void occlusion_panel(const Model& model, Actions& actions)
     ImGui::SameLine();
     is_other |= ImGui::Checkbox("Automatic", &settings.automatic);
     hint("Updates at every change; otherwise with Update or F8.");
-    if (is_other) actions.push_back(SetOcclusion{settings});
+    if (is_other) set(actions, model, [&](Session& s) { s.light.occlusion = settings; });
     if (settings.automatic || settings.strength == 0.0) return;
     ImGui::SameLine();
     if (ImGui::Button("Update")) actions.push_back(UpdateOcclusion{});

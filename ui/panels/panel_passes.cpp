@@ -70,8 +70,8 @@ void passes_panel(const Model& model, Actions&)
 {
     ImGui::TextDisabled("Time on the GPU, by step (?)");
     hint("Of the current picture, which is drawn in many small pieces, so each step runs many times.");
-    table(model.pass_times);
-    ImGui::TextWrapped("%s", model.gpu_name.c_str());
+    table(model.screen ? model.screen->pass_times() : std::vector<View::PassTime>());
+    ImGui::TextWrapped("%.*s", int(model.gpu_name.size()), model.gpu_name.data());
     hint("The GPU in use.");
     ImGui::Text("Memory: %.0f of %.0f MiB", mebibytes(model.device_bytes), mebibytes(model.device_budget));
     hint("GPU memory in use, and how much SHVR may use.");

@@ -8,12 +8,11 @@
 #include <imgui/imgui.h>
 
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
 namespace {
-
-constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
 
 /// Integer intensities need no decimals.
 const char* format_of(VoxelType type)
@@ -152,11 +151,11 @@ void preview(const Model& model, Actions& actions)
 {
     bool is_on = model.session.probe.preview;
     label("Preview");
-    if (ImGui::Checkbox("(F5)", &is_on)) actions.push_back(ShowPreview{is_on});
+    if (ImGui::Checkbox("(F5)", &is_on)) set(actions, model, [&](Session& s) { s.probe.preview = is_on; });
     hint("Shows the voxels that painting would change here; striped where it would erase.");
     if (!is_on) return;
     ImGui::SameLine();
-    if (model.tool == Tool::trace)
+    if (model.tool() == Tool::trace)
         ImGui::TextDisabled("when painting");
     else if (model.previewed_voxels)
         ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
@@ -173,7 +172,7 @@ void painting(const Model& model, Actions& actions)
     changed |= connectivity(brush);
     ImGui::EndDisabled();
     changed |= density(model, brush);
-    if (changed) actions.push_back(SetBrush{brush});
+    if (changed) set(actions, model, [&](Session& s) { s.probe.brush = brush; });
     preview(model, actions);
 }
 
@@ -181,26 +180,29 @@ void painting(const Model& model, Actions& actions)
 
 void guidance(const Model& model, Actions& actions)
 {
-    bool assists = model.assistance;
-    if (ImGui::Checkbox("Guide the probe (Space)", &assists)) actions.push_back(Assist{assists});
+    bool assists = model.session.probe.guided;
+    if (ImGui::Checkbox("Guide the probe (Space)", &assists))
+        set(actions, model, [&](Session& s) { s.probe.guided = assists; });
     hint("Pulls the probe towards the middle of what it touches, so that it stays on a root while you move along.");
 
     label("Feel from");
     double intensity = model.haptic_threshold();
-    if (intensity_slider("##felt", model, intensity)) actions.push_back(SetHapticThreshold{intensity});
+    if (intensity_slider("##felt", model, intensity))
+        set(actions, model, [&](Session& s) { s.probe.haptic_threshold = intensity; });
     hint("Voxels at or above this intensity are felt.");
 
     label("Pull");
-    if (ImGui::RadioButton("smooth", model.law == ProxyLaw::potential) && model.law != ProxyLaw::potential)
-        actions.push_back(SetProxyLaw{ProxyLaw::potential});
+    const Guidance guidance = model.session.probe.guidance;
+    if (ImGui::RadioButton("smooth", guidance == Guidance::potential))
+        set(actions, model, [](Session& s) { s.probe.guidance = Guidance::potential; });
     hint("The pull grows from nothing at the first touch, and never drives the hand by itself.");
     ImGui::SameLine();
-    if (ImGui::RadioButton("as in the thesis", model.law == ProxyLaw::mean) && model.law != ProxyLaw::mean)
-        actions.push_back(SetProxyLaw{ProxyLaw::mean});
+    if (ImGui::RadioButton("to the mean", guidance == Guidance::mean))
+        set(actions, model, [](Session& s) { s.probe.guidance = Guidance::mean; });
     hint("Pulls to the mean of what lies in the probe. Key: Home switches between the kinds of guidance.");
 
     text_label("Moved by");
-    ImGui::TextUnformatted(model.device_name.c_str());
+    ImGui::TextUnformatted(model.device_name.data(), model.device_name.data() + model.device_name.size());
 }
 
 struct FlagText {
@@ -223,7 +225,7 @@ void touch(const Model& model, const ServoState& servo)
     text_label("Felt region");
     ImGui::Text("%.0f ms old", model.relevance_age_ms);
     hint("Age of the region around the probe that is felt. Above 50 ms the force fades out.");
-    if (!model.assistance) return;
+    if (!model.session.probe.guided) return;
     for (const FlagText& flag : FLAGS) {
         if (!(servo.step.flags & flag.flag)) continue;
         ImGui::PushStyleColor(ImGuiCol_Text, WARNING);

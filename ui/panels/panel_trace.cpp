@@ -7,7 +7,8 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/trace_ops.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
 
@@ -16,9 +17,11 @@ namespace {
 void tool(const Model& model, Actions& actions)
 {
     label("Tool");
-    if (ImGui::RadioButton("Paint", model.tool == Tool::paint)) actions.push_back(SetTool{Tool::paint});
+    if (ImGui::RadioButton("Paint", model.tool() == Tool::paint))
+        set(actions, model, [](Session& s) { s.probe.tool = Tool::paint; });
     ImGui::SameLine();
-    if (ImGui::RadioButton("Trace (X)", model.tool == Tool::trace)) actions.push_back(SetTool{Tool::trace});
+    if (ImGui::RadioButton("Trace (X)", model.tool() == Tool::trace))
+        set(actions, model, [](Session& s) { s.probe.tool = Tool::trace; });
     hint(
         "The right mouse button, F and the stylus add a node at the probe, with its radius and in the chosen group, "
         "linked with the selected node.");
@@ -69,7 +72,7 @@ void radius(const Model& model, double radius_units, Actions& actions)
     ImGui::DragScalar("##node radius", ImGuiDataType_Double, &edited, 0.05f, &LEAST, &MOST, "%.2f voxels",
                       ImGuiSliderFlags_AlwaysClamp);
     is_edited = ImGui::IsItemActive();
-    if (ImGui::IsItemDeactivatedAfterEdit()) actions.push_back(Trace{RadiusOp{.radius_voxels = edited}});
+    if (ImGui::IsItemDeactivatedAfterEdit()) actions.push_back(RadiusOp{.radius_voxels = edited});
     hint("Drag sideways, or Ctrl + click to type. Keys: = and -, slowly with Shift.");
     if (model.volume.unit == "voxel") return;
     ImGui::SameLine();
@@ -126,10 +129,10 @@ void selection(const Model& model, Actions& actions)
     ImGui::TextDisabled(model.trace.nodes().empty() ? "nothing: N adds a node" : "nothing: . selects a node");
 }
 
-void button(const char* name, bool is_enabled, const char* text, const TraceOp& op, Actions& actions)
+void button(const char* name, bool is_enabled, const char* text, const Action& action, Actions& actions)
 {
     ImGui::BeginDisabled(!is_enabled);
-    if (ImGui::Button(name)) actions.push_back(Trace{op});
+    if (ImGui::Button(name)) actions.push_back(action);
     ImGui::EndDisabled();
     hint(text);
 }
@@ -168,7 +171,7 @@ void tapering(const Model& model, Actions& actions)
         if (tapers) op.radius_voxels.reset();
         op.of = RadiusOp::Of::internodes;
         op.group = model.brush().group;
-        actions.push_back(Trace{op});
+        actions.push_back(op);
     }
     hint(
         "Tapers from node to node; otherwise all of the group have one size, which = and - change while nothing is "

@@ -9,6 +9,7 @@
 
 #include "engine/base/image.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -79,14 +80,14 @@ Points points_of(const Model& model)
 }
 
 /// Clamps points first: a transfer function refuses values outside its limits.
-void send(Points points, Actions& actions)
+void send(Points points, const Model& model, Actions& actions)
 {
     for (ControlPoint& point : points) {
         point.intensity = std::clamp(point.intensity, -double(FLT_MAX), double(FLT_MAX));
         point.opacity = std::clamp(point.opacity, 0.0, 1.0);
         point.color = glm::clamp(point.color, glm::dvec3(0.0), glm::dvec3(1.0));
     }
-    actions.push_back(SetTransferFunction{TransferFunction(std::move(points))});
+    set(actions, model, [&](Session& s) { s.transfer_function = TransferFunction(std::move(points)); });
 }
 
 /// The axis covers both the volume's and the function's intensities.
@@ -211,8 +212,9 @@ Found under_mouse(const Canvas& canvas, const Model& model, const ImVec2& mouse)
     return {is_paint ? Grip::paint_threshold : Grip::haptic_threshold, 0};
 }
 
-void add_point(const Canvas& canvas, const ImVec2& mouse, Points points, WidgetState& state, Actions& actions)
+void add_point(const Canvas& canvas, const ImVec2& mouse, const Model& model, WidgetState& state, Actions& actions)
 {
+    Points points = points_of(model);
     const double intensity = canvas.intensity_at(mouse.x);
     const TransferFunction function(points);
     ControlPoint added{.intensity = intensity, .opacity = canvas.opacity_at(mouse.y)};
@@ -222,15 +224,16 @@ void add_point(const Canvas& canvas, const ImVec2& mouse, Points points, WidgetS
                                         [](double value, const ControlPoint& p) { return value < p.intensity; });
     state.selected = size_t(after - points.begin());
     points.insert(after, added);
-    send(std::move(points), actions);
+    send(std::move(points), model, actions);
 }
 
-void remove_point(size_t point, Points points, WidgetState& state, Actions& actions)
+void remove_point(size_t point, const Model& model, WidgetState& state, Actions& actions)
 {
+    Points points = points_of(model);
     if (points.size() <= 2) return;
     points.erase(points.begin() + std::ptrdiff_t(point));
     state.selected = std::min(point, points.size() - 1);
-    send(std::move(points), actions);
+    send(std::move(points), model, actions);
 }
 
 /// Clamped between its neighbours, so that its index stays the same.
@@ -241,12 +244,13 @@ double held_between_neighbors(const Points& points, size_t index, double intensi
     return std::clamp(intensity, lower, upper);
 }
 
-void move_point(const Canvas& canvas, const ImVec2& mouse, Points points, size_t index, Actions& actions)
+void move_point(const Canvas& canvas, const ImVec2& mouse, const Model& model, size_t index, Actions& actions)
 {
+    Points points = points_of(model);
     const ControlPoint was = points[index];
     points[index].intensity = held_between_neighbors(points, index, canvas.intensity_at(mouse.x));
     points[index].opacity = canvas.opacity_at(mouse.y);
-    if (!(points[index] == was)) send(std::move(points), actions);
+    if (!(points[index] == was)) send(std::move(points), model, actions);
 }
 
 /// Keeps part of the function within the volume's intensities.
@@ -258,7 +262,7 @@ void move_all(const Model& model, double shift, Actions& actions)
     const double held = std::clamp(shift, std::min(least, 0.0), std::max(most, 0.0));
     if (held == 0.0) return;
     for (ControlPoint& point : points) point.intensity += held;
-    send(std::move(points), actions);
+    send(std::move(points), model, actions);
 }
 
 void begin_drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetState& state)
@@ -281,13 +285,15 @@ void drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetS
     BrushSettings brush = model.brush();
     switch (state.grip) {
         case Grip::nothing: return;
-        case Grip::point: return move_point(canvas, mouse, points_of(model), state.selected, actions);
+        case Grip::point: return move_point(canvas, mouse, model, state.selected, actions);
         case Grip::all_points: return move_all(model, now - std::exchange(state.grabbed_at, now), actions);
         case Grip::paint_threshold:
-            if (std::exchange(brush.threshold, threshold) != threshold) actions.push_back(SetBrush{brush});
+            if (std::exchange(brush.threshold, threshold) != threshold)
+                set(actions, model, [&](Session& s) { s.probe.brush = brush; });
             return;
         case Grip::haptic_threshold:
-            if (model.haptic_threshold() != threshold) actions.push_back(SetHapticThreshold{threshold});
+            if (model.haptic_threshold() != threshold)
+                set(actions, model, [&](Session& s) { s.probe.haptic_threshold = threshold; });
             return;
     }
 }
@@ -302,11 +308,11 @@ void use_mouse(const Canvas& canvas, const Model& model, WidgetState& state, Act
     if (!ImGui::IsItemHovered()) return;
     const Found found = under_mouse(canvas, model, mouse);
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::nothing)
-        add_point(canvas, mouse, points_of(model), state, actions);
+        add_point(canvas, mouse, model, state, actions);
     else if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         begin_drag(canvas, model, mouse, state);
     else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && found.grip == Grip::point)
-        remove_point(found.point, points_of(model), state, actions);
+        remove_point(found.point, model, state, actions);
 }
 
 // ---- The panel's parts
@@ -330,13 +336,14 @@ void curve(const Model& model, WidgetState& state, Actions& actions)
 void shading_and_help(const Model& model, Actions& actions)
 {
     Light light = model.session.light;
-    if (ImGui::Checkbox("Shading", &light.shaded)) actions.push_back(SetLight{light});
+    if (ImGui::Checkbox("Shading", &light.shaded)) set(actions, model, [&](Session& s) { s.light = light; });
     hint("Light from over your shoulder. Without it, colours are as chosen above.");
     const RenderSettings& render = model.session.render;
     bool sees_peaks = render.preintegration;
     ImGui::SameLine();
     ImGui::BeginDisabled(render.step_voxels > 1.0);
-    if (ImGui::Checkbox("Narrow peaks", &sees_peaks)) actions.push_back(SetPreintegration{sees_peaks});
+    if (ImGui::Checkbox("Narrow peaks", &sees_peaks))
+        set(actions, model, [&](Session& s) { s.render.preintegration = sees_peaks; });
     ImGui::EndDisabled();
     hint(
         "No peak or edge of the curve is missed, however narrow (pre-integration). Slower; smooth curves do not need "
@@ -373,7 +380,7 @@ void edit_point(const Model& model, size_t index, Actions& actions)
         changed = true;
     }
     ImGui::PopItemWidth();
-    if (changed) send(std::move(points), actions);
+    if (changed) send(std::move(points), model, actions);
 }
 
 /// Replaces the whole function by a preset fitted to the volume.
@@ -382,10 +389,11 @@ void preset_list(const Model& model, Actions& actions)
     ImGui::SetNextItemWidth(-1.0f);
     if (!ImGui::BeginCombo("##presets", "Start from ...")) return;
     if (ImGui::Selectable("the histogram"))
-        actions.push_back(SetTransferFunction{automatic_transfer_function(model.statistics)});
+        set(actions, model, [&](Session& s) { s.transfer_function = automatic_transfer_function(model.statistics); });
     for (const TransferPreset& preset : model.presets) {
         if (ImGui::Selectable(preset.name.c_str()))
-            actions.push_back(SetTransferFunction{transfer_function_of(preset, model.statistics)});
+            set(actions, model,
+                [&](Session& s) { s.transfer_function = transfer_function_of(preset, model.statistics); });
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.note.c_str());
     }
     ImGui::EndCombo();

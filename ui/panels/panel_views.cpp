@@ -6,6 +6,7 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -69,7 +70,7 @@ void interaction_controls(const Model& model, Actions& actions)
     is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
     hint("Size of large screenshots (Ctrl + P), relative to the window.");
     interaction.screenshot_scale = uint32_t(scale);
-    if (is_other) actions.push_back(SetInteraction{interaction});
+    if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });
 }
 
 }  // namespace
@@ -78,10 +79,8 @@ void views_panel(const Model& model, Actions& actions)
 {
     ViewSettings view = model.session.view;
     int arrangement = int(view.arrangement);
-    bool is_other = choice("Window", arrangement, "full screen\0two eyes\0overview\0slices\0");
-    hint(
-        "Full screen: F10. Two eyes: F11. Overview, with maps of where the camera is: F9. Slices through the probe: "
-        "F6.");
+    bool is_other = choice("Window", arrangement, "single view\0two eyes\0overview\0slices\0");
+    hint("One view, two eyes, an overview with maps of where the camera is, or slices through the probe (menu View).");
     view.arrangement = Arrangement(arrangement);
     switch (view.arrangement) {
         case Arrangement::single: break;
@@ -92,7 +91,7 @@ void views_panel(const Model& model, Actions& actions)
             break;
         case Arrangement::slices: is_other |= slice_controls(view.slices, model.statistics); break;
     }
-    if (is_other) actions.push_back(SetView{view});
+    if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
     ImGui::Separator();
     interaction_controls(model, actions);
 }

@@ -119,7 +119,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     ImGui::Begin("Side panel", nullptr, flags);
     section("Probe and painting", true, probe_panel, model, actions);
     // While painting, the transfer function needs the space; while tracing, this section opens even if it was folded.
-    if (model.tool == Tool::trace) ImGui::SetNextItemOpen(true);
+    if (model.tool() == Tool::trace) ImGui::SetNextItemOpen(true);
     section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);
     section("Light and depth", false, light_panel, model, actions);
@@ -149,10 +149,13 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     const glm::vec2 pixels_per_unit(scale.x > 0.0f ? scale.x : 1.0f, scale.y > 0.0f ? scale.y : 1.0f);
     const glm::vec2 size = glm::vec2(window) / pixels_per_unit;
     const float bar = ImGui::GetFrameHeight();
-    const float panel = std::min(PANEL_WIDTH * ImGui::GetFontSize(), size.x);
+    const float panel = model.is_open ? std::min(PANEL_WIDTH * ImGui::GetFontSize(), size.x) : 0.0f;
 
     menu_bar(model, actions);
-    side_panel({size.x - panel, bar}, {panel, std::max(size.y - 2.0f * bar, 1.0f)}, model, actions);
+    if (model.is_open)
+        side_panel({size.x - panel, bar}, {panel, std::max(size.y - 2.0f * bar, 1.0f)}, model, actions);
+    else
+        start_page(model, actions);
     status_bar(model, window);
     notices(model, {0.0f, bar}, size.x - panel, actions);
     if (model.shows_help) help_window(model, actions);

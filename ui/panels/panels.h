@@ -2,8 +2,8 @@
 // The panels around the graphics window. Each function draws state and returns the user's actions; none changes
 // anything but its own widgets. Call between Window::begin_ui and Window::present, main thread.
 
-#include "ui/action.h"
-#include "ui/model.h"
+#include "ui/workbench/action.h"
+#include "ui/workbench/model.h"
 
 namespace shvr::ui {
 
@@ -17,6 +17,7 @@ struct Layout {
 void set_style(double content_scale);
 
 /// Draws the menu bar, side panel, status bar and, if open, the help window; adds to `actions`. Returns the area left.
+/// While nothing is open, the start page is there instead of the side panel.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
 // The parts of the side panel, each in its own file.
@@ -30,6 +31,11 @@ void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
+/// Shows the dialog that asks for a file, from the next frame on.
+void ask_for_file();
+void open_dialog(Actions& actions);
+/// What is there while nothing is open.
+void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window);
 /// That this window only looks, at the upper edge of the graphics window; and the question which files to believe.
 void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);

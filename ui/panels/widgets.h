@@ -7,6 +7,8 @@
 
 namespace shvr::ui {
 
+inline constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
+
 /// A tooltip for the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
 

@@ -251,14 +251,6 @@ constexpr OpReader OPS[] = {
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 
-ScriptOp read_op(const JsonNode& line)
-{
-    if (!line.is_object()) line.refuse("an object such as {\"op\":\"save\"}");
-    std::vector<std::string_view> names;
-    for (const OpReader& op : OPS) names.push_back(op.name);
-    return OPS[line["op"].choice(names)].read(line);
-}
-
 /// Standard input ("-") or a pipe, to its end.
 std::string read_stream(const std::filesystem::path& path, const std::string& name)
 {
@@ -279,6 +271,19 @@ std::string read_stream(const std::filesystem::path& path, const std::string& na
 
 }  // namespace
 
+std::vector<std::string_view> script_op_names()
+{
+    std::vector<std::string_view> names;
+    for (const OpReader& op : OPS) names.push_back(op.name);
+    return names;
+}
+
+ScriptOp read_script_op(const JsonNode& line)
+{
+    if (!line.is_object()) line.refuse("an object such as {\"op\":\"save\"}");
+    return OPS[line["op"].choice(script_op_names())].read(line);
+}
+
 std::string name_of_script(const std::filesystem::path& path)
 {
     return path == "-" ? "standard input" : path.string();
@@ -297,7 +302,7 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& path)
         if (start == std::string::npos || line.compare(start, 2, "//") == 0) continue;
         const JsonDocument document(line, sentence(name, ":", number),
                                     {.depth = 8, .expected = "an object on the line"});
-        script.push_back({number, read_op(document.root())});
+        script.push_back({number, read_script_op(document.root())});
     }
     return script;
 }

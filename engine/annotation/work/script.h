@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -33,6 +35,15 @@ struct ScriptLine {
     int number = 0;  ///< from 1
     ScriptOp op;
 };
+
+class JsonNode;
+
+/// The names of operations, the more common ones first.
+std::vector<std::string_view> script_op_names();
+/// A line, whose key "op" must be one of those names. Fails as read_script does.
+ScriptOp read_script_op(const JsonNode& line);
+/// The line that reads as the same operation.
+std::string line_of(const ScriptOp& op);
 
 /// Reads and checks the whole script before anything runs. Errors name file, line, key, value and what was expected;
 /// unknown keys and operations are refused. "-" is standard input; that and pipes are read to their end.

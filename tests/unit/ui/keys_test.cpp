@@ -7,6 +7,10 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/session/session_patch.h"
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/preferences.h"
+
 using namespace shvr;
 using namespace shvr::ui;
 
@@ -20,22 +24,34 @@ struct World {
     Session session;
     VolumeInfo volume;
     VolumeStatistics statistics;
+    Camera camera;
     std::vector<Screen::Part> panes;
     std::vector<TransferPreset> presets;
     TraceGraph trace;
-    Model model{.session = session,
+    std::filesystem::path path;
+    MessageLog messages;
+    Keymap keymap;
+    Preferences preferences;
+    Model model{.is_open = true,
+                .session = session,
                 .volume = volume,
                 .statistics = statistics,
+                .camera = camera,
                 .panes = panes,
                 .presets = presets,
                 .trace = trace,
-                .pass_times = {}};
+                .session_path = path,
+                .messages = messages,
+                .keymap = keymap,
+                .preferences = preferences};
 };
 
-Actions actions_of(const World& world, int key, int mods, bool repeated = false)
+Actions actions_of(const World& world, int key, int mods, bool repeated = false, const std::string& character = {})
 {
+    Keyboard keyboard;
     Actions actions;
-    key_pressed({.key = key, .mods = mods, .pressed = true, .repeated = repeated}, world.model, actions);
+    keyboard.handle({.key = key, .mods = mods, .pressed = true, .repeated = repeated, .character = character},
+                    world.model, false, actions);
     return actions;
 }
 
@@ -48,67 +64,216 @@ Expected only(const Actions& actions)
     return std::get<Expected>(actions[0]);
 }
 
-std::string name_of_binding(const char* name)
+/// The session as the key's setting leaves it.
+Session after(const World& world, int key, int mods = 0)
 {
-    for (const KeyBinding& binding : key_bindings())
-        if (std::strcmp(binding.name, name) == 0) return name_of(binding);
-    return "(no such binding)";
+    return patched(world.session, only<Set>(actions_of(world, key, mods)).patch);
+}
+
+std::string keys_of(const char* id, const Keymap& keymap)
+{
+    const Shortcut* const shortcut = shortcut_named(id);
+    return shortcut ? keymap.text_of(*shortcut) : "(no such shortcut)";
 }
 
 }  // namespace
 
-TEST_CASE("every key has a name and a group, and every name is given once")
+TEST_CASE("every shortcut has a name, a group and an id of its own")
 {
-    std::set<std::string> names;
-    for (const KeyBinding& binding : key_bindings()) {
-        CAPTURE(binding.key);
-        CHECK(std::strlen(binding.name) > 0);
-        CHECK(std::strlen(binding.group) > 0);
-        CHECK(names.insert(binding.name).second);
-        const bool is_of_application = std::strcmp(binding.name, "Paint while held") == 0 ||
-                                       std::strcmp(binding.name, "Move the selected node while held") == 0;
-        CHECK((binding.action || is_of_application));
+    std::set<std::string> names, ids;
+    for (const Shortcut& shortcut : shortcuts()) {
+        CAPTURE(shortcut.id);
+        CHECK(std::strlen(shortcut.name) > 0);
+        CHECK(std::strlen(shortcut.group) > 0);
+        CHECK(names.insert(shortcut.name).second);
+        CHECK(ids.insert(shortcut.id).second);
+        CHECK((shortcut.action != nullptr));
     }
 }
 
-TEST_CASE("no two bindings answer to the same key and modifiers")
+TEST_CASE("in both sets no two shortcuts answer to the same press")
 {
-    std::set<std::tuple<int, int>> taken;
-    for (const KeyBinding& binding : key_bindings()) {
-        CAPTURE(binding.name);
-        CHECK(taken.insert({binding.key, binding.mods}).second);
-        if (binding.is_slowed) CHECK(taken.insert({binding.key, binding.mods | SHIFT}).second);
+    for (const KeySet set : {KeySet::modern, KeySet::thesis}) {
+        const Keymap keymap(set);
+        CHECK(keymap.conflicts().empty());
+        for (const Shortcut& shortcut : shortcuts())
+            for (Chord chord : keymap.chords_of(shortcut)) {
+                CAPTURE(shortcut.id);
+                CHECK(keymap.shortcuts_for(chord).size() == 1);
+                chord.shift = true;
+                if (shortcut.is_slowed()) CHECK(keymap.shortcuts_for(chord).size() == 1);
+            }
     }
 }
 
-TEST_CASE("the bindings of a group stand together, so that its heading is shown once")
+TEST_CASE("the shortcuts of a group stand together, so that its heading is shown once")
 {
     std::set<std::string> seen;
     std::string group;
-    for (const KeyBinding& binding : key_bindings()) {
-        if (group == binding.group) continue;
-        group = binding.group;
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (group == shortcut.group) continue;
+        group = shortcut.group;
         CHECK_MESSAGE(seen.insert(group).second, group);
     }
+}
+
+TEST_CASE("the thesis's set has the keys of its appendix C, and today's set those that everybody knows")
+{
+    const Keymap thesis(KeySet::thesis), modern(KeySet::modern);
+    for (const auto& [id, keys] : std::map<const char*, const char*>{{"undo", "Ctrl + Z"},
+                                                                     {"redo", "Ctrl + Shift + Z"},
+                                                                     {"add_node", "N"},
+                                                                     {"drag_node", "M"},
+                                                                     {"link_nearest", ","},
+                                                                     {"select_nearest", "."},
+                                                                     {"deselect", "/"},
+                                                                     {"delete_selected", "Delete"},
+                                                                     {"group_7", "7"},
+                                                                     {"regroup_0", "Ctrl + 0"},
+                                                                     {"next_brush", "End"},
+                                                                     {"larger_brush", "]"},
+                                                                     {"guide", "Space"},
+                                                                     {"next_guidance", "Home"},
+                                                                     {"larger_probe", "Page Up"},
+                                                                     {"turn_up", "Alt + W"},
+                                                                     {"move_back", "S"},
+                                                                     {"later_blending", "R"},
+                                                                     {"sooner_blending", "Ctrl + R"},
+                                                                     {"more_blending", "T"},
+                                                                     {"near_x_out", "Ctrl + Y"},
+                                                                     {"far_z_in", "K"},
+                                                                     {"screenshot", "P"},
+                                                                     {"larger_selected", "="},
+                                                                     {"smaller_nodes", "Alt + -"},
+                                                                     {"near_clip_closer", "Ctrl + C"},
+                                                                     {"far_clip_away", "Ctrl + V"},
+                                                                     {"shell", "F4"},
+                                                                     {"update_occlusion", "F8"},
+                                                                     {"overview", "F9"},
+                                                                     {"single_view", "F10"},
+                                                                     {"stereo", "F11"}}) {
+        CAPTURE(id);
+        CHECK(keys_of(id, thesis) == keys);
+    }
+    const auto means = [&](const char* keys, const char* id) {
+        const auto found = modern.shortcuts_for(*chord_of(keys));
+        REQUIRE(found.size() == 1);
+        CHECK(std::string(found[0]->id) == id);
+    };
+    means("Ctrl+Y", "redo");
+    means("Ctrl+Shift+Z", "redo");
+    means("F1", "help");
+    means("F11", "full_screen");
+    CHECK(modern.shortcuts_for(*chord_of("Ctrl+C")).empty());
+    CHECK(modern.shortcuts_for(*chord_of("Ctrl+V")).empty());
+}
+
+TEST_CASE("a person's keys replace those that ship, and a chord that means two things is named")
+{
+    const Keymap keymap(KeySet::modern, {{"undo", {"Ctrl+U"}}, {"save", {}}, {"redo", {"F5", "Ctrl+R"}}});
+    CHECK(keys_of("undo", keymap) == "Ctrl + U");
+    CHECK(keys_of("save", keymap).empty());
+    CHECK(keymap.shortcuts_for(*chord_of("Ctrl+Z")).empty());
+    REQUIRE(keymap.conflicts().size() == 1);
+    CHECK(keymap.conflicts()[0] == "F5 stands for 'Redo' and for 'Preview of the brush'; change one of them");
+    CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undoo", {"Ctrl+U"}}}),
+                      "keys: 'undoo' is no shortcut; expected one that the help window lists");
+    CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undo", {"Ctrl+"}}}),
+                      "keys: undo is 'Ctrl+'; expected a key such as Ctrl+Z, F5, PageUp or [");
+    for (const char* bad : {"", "Ctrl", "ctrl+Z", "Z+Ctrl", "F26", "F0", "ZZ", "z", "Shift+Ctrl+Z"}) {
+        CAPTURE(bad);
+        CHECK_FALSE(chord_of(bad));
+    }
+}
+
+TEST_CASE("letters are those of the person's keyboard, and steering keys stay at their place")
+{
+    const World world;
+    // QWERTZ: the key at the place of Y bears Z.
+    only<UndoOp>(actions_of(world, 'Y', CONTROL, false, "z"));
+    only<RedoOp>(actions_of(world, 'Z', CONTROL, false, "y"));
+    // AZERTY: the key at the place of W bears Z, that at the place of Q bears A.
+    CHECK(only<Move>(actions_of(world, 'W', 0, false, "z")).heights.z > 0.0);
+    CHECK(only<Move>(actions_of(world, 'Q', 0, false, "a")).heights.y < 0.0);
+    // and digits need Shift there
+    CHECK(after(world, '3').probe.brush.group == 3);
+    CHECK(patched(world.session, only<Set>(actions_of(world, '3', 0, false, "\"")).patch).probe.brush.group == 3);
+}
+
+TEST_CASE("F paints and M moves a node until they are released, whatever has the keyboard by then")
+{
+    const World world;
+    Keyboard keyboard;
+    for (const int key : {int('F'), int('M')}) {
+        Actions actions;
+        keyboard.handle({.key = key, .pressed = true}, world.model, false, actions);
+        keyboard.handle({.key = key, .pressed = true, .repeated = true}, world.model, false, actions);
+        REQUIRE(actions.size() == 1);
+        keyboard.handle({.key = key}, world.model, true, actions);
+        REQUIRE(actions.size() == 2);
+        const bool is_paint = key == 'F';
+        CHECK((is_paint ? std::get<Paint>(actions[0]).on : std::get<DragNode>(actions[0]).on));
+        CHECK_FALSE((is_paint ? std::get<Paint>(actions[1]).on : std::get<DragNode>(actions[1]).on));
+        // A key whose release was never seen, since the window was left.
+        keyboard.handle({.key = key, .pressed = true}, world.model, false, actions);
+        keyboard.hold(
+            0.1, 0, [](int) { return false; }, world.model, actions);
+        CHECK(actions.size() == 4);
+    }
+}
+
+TEST_CASE("while text is typed, keys mean nothing here")
+{
+    const World world;
+    Keyboard keyboard;
+    Actions actions;
+    keyboard.handle({.key = 'N', .pressed = true}, world.model, true, actions);
+    keyboard.handle({.key = 'N'}, world.model, true, actions);
+    CHECK(actions.empty());
+}
+
+TEST_CASE("keys that are held go on, five times a second, and slowly with Shift")
+{
+    const World world;
+    Keyboard keyboard;
+    Actions actions;
+    const auto is_down = [](int) { return true; };
+    keyboard.handle({.key = 'W', .pressed = true}, world.model, false, actions);
+    actions.clear();
+    keyboard.hold(0.1, 0, is_down, world.model, actions);
+    CHECK(only<Move>(actions).heights.z == doctest::Approx(0.05 * 0.5));
+    actions.clear();
+    keyboard.hold(0.1, SHIFT, is_down, world.model, actions);
+    CHECK(only<Move>(actions).heights.z == doctest::Approx(0.05 * 0.1));
+    actions.clear();
+    keyboard.hold(0.1, CONTROL, is_down, world.model, actions);
+    CHECK(actions.empty());
+    // Ctrl + S, and Ctrl is released first.
+    keyboard.handle({.key = 'W'}, world.model, false, actions);
+    keyboard.handle({.key = 'S', .mods = CONTROL, .pressed = true}, world.model, false, actions);
+    actions.clear();
+    keyboard.hold(0.1, 0, is_down, world.model, actions);
+    CHECK(actions.empty());
 }
 
 TEST_CASE("Ctrl + Z undoes and Ctrl + Shift + Z redoes, also while the keyboard repeats them")
 {
     const World world;
     for (const bool repeated : {false, true}) {
-        only<Undo>(actions_of(world, 'Z', CONTROL, repeated));
-        only<Redo>(actions_of(world, 'Z', CONTROL | SHIFT, repeated));
+        only<UndoOp>(actions_of(world, 'Z', CONTROL, repeated));
+        only<RedoOp>(actions_of(world, 'Z', CONTROL | SHIFT, repeated));
     }
     CHECK(actions_of(world, 'Z', 0).empty());
     CHECK(actions_of(world, 'Z', CONTROL | ALT).empty());
-    only<Undo>(actions_of(world, 'Z', CONTROL | CAPS_LOCK));
+    only<UndoOp>(actions_of(world, 'Z', CONTROL | CAPS_LOCK));
 }
 
 TEST_CASE("a key that goes up, or that the keyboard repeats, does nothing")
 {
     const World world;
+    Keyboard keyboard;
     Actions actions;
-    key_pressed({.key = 'W', .pressed = false}, world.model, actions);
+    keyboard.handle({.key = 'W', .pressed = false}, world.model, false, actions);
     CHECK(actions.empty());
     CHECK(actions_of(world, 'W', 0, true).empty());
     CHECK(actions_of(world, ' ', 0, true).empty());
@@ -124,12 +289,11 @@ TEST_CASE("Shift slows a key to a fifth")
     CHECK(only<Orbit>(actions_of(world, 'W', ALT | SHIFT)).up_degrees == doctest::Approx(0.6));
 }
 
-TEST_CASE("digits choose colour groups, and F is left to the application")
+TEST_CASE("digits choose colour groups")
 {
-    const World world;
-    for (int group = 0; group <= 9; ++group)
-        CHECK(int{only<ChooseGroup>(actions_of(world, '0' + group, 0)).group} == group);
-    CHECK(actions_of(world, 'F', 0).empty());
+    World world;
+    world.session.probe.brush.group = 77;
+    for (int group = 0; group <= 9; ++group) CHECK(int{after(world, '0' + group).probe.brush.group} == group);
 }
 
 TEST_CASE("End goes through all brushes and keeps the rest of the brush")
@@ -140,7 +304,7 @@ TEST_CASE("End goes through all brushes and keeps the rest of the brush")
     const int end = 269;
     std::set<Brush> seen;
     for (int i = 0; i < 3; ++i) {
-        brush = only<SetBrush>(actions_of(world, end, 0)).brush;
+        brush = after(world, end).probe.brush;
         seen.insert(brush.brush);
     }
     CHECK(seen.size() == 3);
@@ -165,65 +329,56 @@ void trace_three(World& world)
     world.model.probe_voxel = {29.0, 10.0, 10.0};
 }
 
-template <class Op>
-Op only_trace(const Actions& actions)
-{
-    const TraceOp op = only<Trace>(actions).op;
-    REQUIRE(std::holds_alternative<Op>(op));
-    return std::get<Op>(op);
-}
-
 }  // namespace
 
 TEST_CASE("keys of tracing become the operations that scripts have")
 {
     World world;
     trace_three(world);
-    const NodeOp node = only_trace<NodeOp>(actions_of(world, 'N', 0));
+    const NodeOp node = only<NodeOp>(actions_of(world, 'N', 0));
     CHECK(node.at == glm::dvec3(29, 10, 10));
     CHECK(node.radius_voxels == 4.0);
     CHECK(node.group == uint8_t(2));
-    const LinkOp link = only_trace<LinkOp>(actions_of(world, ',', 0));
+    const LinkOp link = only<LinkOp>(actions_of(world, ',', 0));
     CHECK(link.near == glm::dvec3(29, 10, 10));
     CHECK(link.within_voxels == 16.0);
-    only_trace<SelectSegmentOp>(actions_of(world, '.', SHIFT));
-    only_trace<DeselectOp>(actions_of(world, '/', 0));
-    only_trace<DeleteOp>(actions_of(world, 261, 0));
-    CHECK(only_trace<GroupOp>(actions_of(world, '4', CONTROL)).group == 4);
-    CHECK(actions_of(world, 'M', 0).empty());  // held: the application's
+    only<SelectSegmentOp>(actions_of(world, '.', SHIFT));
+    only<DeselectOp>(actions_of(world, '/', 0));
+    only<DeleteOp>(actions_of(world, 261, 0));
+    CHECK(only<GroupOp>(actions_of(world, '4', CONTROL)).group == 4);
 }
 
 TEST_CASE("a full stop selects the nearest node, and where that is selected its internode")
 {
     World world;
     trace_three(world);
-    const SelectOp again = only_trace<SelectOp>(actions_of(world, '.', 0));
+    const SelectOp again = only<SelectOp>(actions_of(world, '.', 0));
     CHECK(again.is_internode);
     CHECK_FALSE(again.within_voxels);
     world.model.probe_voxel = {12.0, 10.0, 10.0};
-    const SelectOp other = only_trace<SelectOp>(actions_of(world, '.', 0));
+    const SelectOp other = only<SelectOp>(actions_of(world, '.', 0));
     CHECK_FALSE(other.is_internode);
     CHECK(other.within_voxels == 16.0);
     world.trace.select({});
-    CHECK_FALSE(only_trace<SelectOp>(actions_of(world, '.', 0)).is_internode);
+    CHECK_FALSE(only<SelectOp>(actions_of(world, '.', 0)).is_internode);
 }
 
 TEST_CASE("equals and minus change what is selected, or the internodes of the group; with Alt its nodes")
 {
     World world;
     trace_three(world);
-    const RadiusOp larger = only_trace<RadiusOp>(actions_of(world, '=', 0));
+    const RadiusOp larger = only<RadiusOp>(actions_of(world, '=', 0));
     CHECK((larger.of == RadiusOp::Of::selected));
     CHECK(larger.radius_voxels.value() == doctest::Approx(2.2));
-    CHECK(only_trace<RadiusOp>(actions_of(world, '-', 0)).radius_voxels.value() == doctest::Approx(2.0 / 1.1));
-    CHECK(only_trace<RadiusOp>(actions_of(world, '=', SHIFT)).radius_voxels.value() ==
+    CHECK(only<RadiusOp>(actions_of(world, '-', 0)).radius_voxels.value() == doctest::Approx(2.0 / 1.1));
+    CHECK(only<RadiusOp>(actions_of(world, '=', SHIFT)).radius_voxels.value() ==
           doctest::Approx(2.0 * std::pow(1.1, 0.2)));
     world.trace.select({});
-    const RadiusOp internodes = only_trace<RadiusOp>(actions_of(world, '=', 0));
+    const RadiusOp internodes = only<RadiusOp>(actions_of(world, '=', 0));
     CHECK((internodes.of == RadiusOp::Of::internodes));
     CHECK(internodes.group == 2);
     CHECK(internodes.radius_voxels.value() == doctest::Approx(2.2));
-    const RadiusOp nodes = only_trace<RadiusOp>(actions_of(world, '=', ALT));
+    const RadiusOp nodes = only<RadiusOp>(actions_of(world, '=', ALT));
     CHECK((nodes.of == RadiusOp::Of::nodes));
     CHECK(nodes.group == 2);
 }
@@ -231,31 +386,21 @@ TEST_CASE("equals and minus change what is selected, or the internodes of the gr
 TEST_CASE("X changes between painting and tracing")
 {
     World world;
-    CHECK((only<SetTool>(actions_of(world, 'X', 0)).tool == Tool::trace));
-    world.model.tool = Tool::trace;
-    CHECK((only<SetTool>(actions_of(world, 'X', 0)).tool == Tool::paint));
+    CHECK((after(world, 'X').probe.tool == Tool::trace));
+    world.session.probe.tool = Tool::trace;
+    CHECK((after(world, 'X').probe.tool == Tool::paint));
 }
 
-TEST_CASE("cutting planes move inwards, and outwards with Ctrl")
+TEST_CASE("cutting planes move inwards, and outwards with Alt")
 {
     const World world;
     const MoveCut lower = only<MoveCut>(actions_of(world, 'U', 0));
     CHECK(lower.axis == 1);
     CHECK_FALSE(lower.upper);
     CHECK(lower.share == doctest::Approx(0.01));
-    const MoveCut upper = only<MoveCut>(actions_of(world, 'K', CONTROL));
+    const MoveCut upper = only<MoveCut>(actions_of(world, 'K', ALT));
     CHECK(upper.axis == 2);
     CHECK(upper.upper);
     CHECK(upper.share == doctest::Approx(0.01));
     CHECK(only<MoveCut>(actions_of(world, 'K', 0)).share == doctest::Approx(-0.01));
-}
-
-TEST_CASE("keys are spelled as a person would")
-{
-    CHECK(name_of_binding("Redo") == "Ctrl + Shift + Z");
-    CHECK(name_of_binding("Turn up") == "Alt + W");
-    CHECK(name_of_binding("Guide the probe") == "Space");
-    CHECK(name_of_binding("Larger probe") == "Page Up");
-    CHECK(name_of_binding("Larger brush") == "]");
-    CHECK(name_of_binding("Keys and mouse") == "F12");
 }

@@ -4,8 +4,6 @@
 
 #include <doctest/doctest.h>
 
-#include "ui/action.h"
-
 using namespace shvr::ui;
 
 TEST_CASE("the interface's time is the median of its last frames, not the last one")
@@ -43,14 +41,4 @@ TEST_CASE("keys are answered, and first pictures there, when the frame that show
     CHECK(!report.measured().sharp_picture_ms);
     report.opened(2.0);
     CHECK(!report.measured().first_picture_ms);
-}
-
-TEST_CASE("looking, probing and leaving are no reason to save; what sets something is")
-{
-    CHECK(!edits_session(Orbit{}));
-    CHECK(!edits_session(ProbeTo{}));
-    CHECK(!edits_session(Quit{}));
-    CHECK(edits_session(ScaleProbe{}));
-    CHECK(edits_session(SetLight{}));
-    CHECK(edits_session(MoveCut{}));
 }

@@ -2,17 +2,17 @@
 // Turns the keys, menus and buttons of tracing into operations, the same ones that scripts use. Pure; the main thread,
 // while the model lives.
 
-#include "ui/action.h"
-#include "ui/model.h"
+#include "ui/workbench/action.h"
+#include "ui/workbench/model.h"
 
 namespace shvr::ui {
 
 /// A node at the probe, with its size and group, linked to the selected node.
-TraceOp node_at_probe(const Model& model);
+NodeOp node_at_probe(const Model& model);
 /// Selects the nearest node or, if that is selected already, the nearest of its internodes.
-TraceOp nearest_selection(const Model& model);
+SelectOp nearest_selection(const Model& model);
 /// Links the selected node to the nearest other one.
-TraceOp link_with_nearest(const Model& model);
+LinkOp link_with_nearest(const Model& model);
 
 /// Scales the radii of the selected nodes or, if none is selected, of all internodes of the chosen group, which then no
 /// longer taper.

@@ -1,4 +1,4 @@
-#include "ui/screenshots.h"
+#include "ui/workbench/screenshots.h"
 
 #include <chrono>
 #include <utility>

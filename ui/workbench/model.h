@@ -1,44 +1,48 @@
 #pragma once
-// A read-only view of the application's state in this frame, for panels and keys. Plain references and numbers; the
-// application fills it once per frame.
+// A read-only view of the workbench, for panels, keys and conditions of actions. References and a few numbers: making
+// one costs nothing worth measuring. Valid until the next action or turn.
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "engine/annotation/trace/trace_command.h"
-#include "engine/live/annotator.h"
+#include "engine/annotation/work/work.h"
 #include "engine/live/screen.h"
 #include "engine/session/session.h"
 #include "engine/session/transfer_presets.h"
 #include "haptics/servo.h"
-#include "ui/action.h"
+#include "ui/workbench/messages.h"
+
+namespace shvr::ui {
+class Keymap;
+struct Preferences;
+}  // namespace shvr::ui
 
 namespace shvr::ui {
 
 struct Model {
+    bool is_open = false;  ///< false: what follows is of an empty session
     const Session& session;
     const VolumeInfo& volume;
     const VolumeStatistics& statistics;
-    std::vector<std::string> cameras;  ///< names that LookFrom takes
-
+    const Camera& camera;
     const std::vector<Screen::Part>& panes;
     const std::vector<TransferPreset>& presets;
+    const Screen* screen = nullptr;  ///< null where nothing is open
 
     // The probe
     glm::dvec3 probe_voxel{0.0};
     bool is_painting = false;
-    bool assistance = false;
-    ProxyLaw law = ProxyLaw::potential;
     const ServoState* servo = nullptr;  ///< null while no servo runs
-    std::string device_name;            ///< device that moves the probe: "mouse", ...
+    std::string_view device_name{};     ///< device that moves the probe: "mouse", ...
 
     // Tracing
-    Tool tool = Tool::paint;
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
+    bool drags_node = false;
     /// Number of voxels that painting would change now; nothing if no preview is shown or it is still pending.
     std::optional<int64_t> previewed_voxels;
 
@@ -46,24 +50,27 @@ struct Model {
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
     bool is_saved = true;
-    std::string holder;  ///< who writes the project, if that is another process: then this window only looks
-    std::filesystem::path session_path{};
+    std::string_view holder{};  ///< who writes the project, if that is another process: then this window only looks
+    const std::filesystem::path& session_path;
     std::span<const Dispute> disputes{};  ///< saved files that others have changed; empty: nothing to choose
-    std::string status;                   ///< the last action, in words
-    bool shows_help = false;
+    const MessageLog& messages;
+    const Keymap& keymap;
+    const Preferences& preferences;
+    bool shows_help = false, is_full_screen = false;
 
     // The device
-    std::string gpu_name;
-    std::vector<View::PassTime> pass_times;
+    std::string_view gpu_name{};
     bool view_is_complete = true;
     bool view_is_limited = false;   ///< coarser than the screen, because the visible bricks exceed the budget
     double relevance_age_ms = 0.0;  ///< of the patch that the servo uses; 0 without assistance
-    double ui_frame_ms = 0.0;       ///< median of the last frames
+    double ui_frame_ms = 0.0;       ///< median of the last frames; the window's
     uint64_t device_bytes = 0, device_budget = 0;
 
     const BrushSettings& brush() const { return session.probe.brush; }
-    double paint_threshold() const { return brush().threshold.value(); }
-    double haptic_threshold() const { return session.probe.haptic_threshold.value(); }
+    double paint_threshold() const { return brush().threshold.value_or(0.0); }
+    double haptic_threshold() const { return session.probe.haptic_threshold.value_or(0.0); }
+    Tool tool() const { return session.probe.tool; }
+    const std::string& status() const { return messages.last(); }
 };
 
 }  // namespace shvr::ui

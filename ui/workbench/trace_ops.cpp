@@ -1,4 +1,4 @@
-#include "ui/trace_ops.h"
+#include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
 
@@ -32,12 +32,12 @@ double scaled_radius(const Model& model, const Mean& mean, double factor)
 
 }  // namespace
 
-TraceOp node_at_probe(const Model& model)
+NodeOp node_at_probe(const Model& model)
 {
     return NodeOp{.at = model.probe_voxel, .radius_voxels = model.brush().radius_voxels, .group = model.brush().group};
 }
 
-TraceOp nearest_selection(const Model& model)
+SelectOp nearest_selection(const Model& model)
 {
     const std::optional<uint32_t> selected = model.trace.selection().node();
     const bool is_nearest = selected && model.trace.nearest_node(model.probe_voxel * model.volume.spacing) == selected;
@@ -49,7 +49,7 @@ TraceOp nearest_selection(const Model& model)
     return op;
 }
 
-TraceOp link_with_nearest(const Model& model)
+LinkOp link_with_nearest(const Model& model)
 {
     return LinkOp{.near = model.probe_voxel, .node = {}, .within_voxels = within_voxels(model)};
 }

@@ -1,6 +1,6 @@
 // Actions on the trace: the operations that scripts use, as commands of the one history.
 
-#include "ui/app.h"
+#include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
 
@@ -29,31 +29,36 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
 
 }  // namespace
 
-void App::apply(const Trace& action)
+void Workbench::trace(const TraceOp& op)
 {
     Annotator& annotator = document_->annotator;
-    if (annotator.stroke_is_running()) return say("The trace cannot be edited while a stroke is being painted");
+    if (annotator.stroke_is_running()) fail("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
-    if (std::holds_alternative<NodeOp>(action.op) && document_->brush().group == 0)
-        return say("Group 0 is the eraser; choose a group from 1 up for the node");
-    TraceEffect effect = effect_of(action.op, trace, document_->trace_defaults());
-    document_->drags_node = false;
+    if (const NodeOp* node = std::get_if<NodeOp>(&op); node && node->group.value_or(document_->brush().group) == 0)
+        fail("Group 0 is the eraser; choose a group from 1 up for the node");
+    if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
+        fail("Group 0 is the eraser, and what is traced belongs to a group from 1 up");
+    record_settings();
+    TraceEffect effect = effect_of(op, trace, document_->trace_defaults());
     if (effect.selection) annotator.work().select_trace(*effect.selection);
     const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
+    document_->drags_node = false;
     if (done) show_changes(*done);
-    say(said_of(action.op, effect.selection.has_value(), done, trace));
+    say(said_of(op, effect.selection.has_value(), done, trace));
 }
 
-void App::apply(const DragNode& action)
+void Workbench::perform(const DragNode& action)
 {
     const TraceGraph& trace = document_->annotator.document().trace;
     if (action.on) {
         const std::optional<uint32_t> node = trace.selection().node();
-        if (!node) return say("No node is selected; select one to move it");
+        if (document_->annotator.stroke_is_running())
+            fail("The trace cannot be edited while a stroke is being painted");
+        if (!node) fail("No node is selected; select one to move it");
         document_->drags_node = true;
         return say(sentence("Node ", *node, " follows the probe until the key is released"));
     }
-    if (document_->drags_node) apply(Trace{MoveOp{document_->probe_voxel()}});
+    if (document_->drags_node) this->trace(MoveOp{document_->probe_voxel()});
 }
 
 }  // namespace shvr::ui

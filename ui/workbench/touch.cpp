@@ -1,4 +1,4 @@
-#include "ui/touch.h"
+#include "ui/workbench/touch.h"
 
 #include <algorithm>
 #include <ctime>

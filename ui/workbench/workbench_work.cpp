@@ -1,35 +1,41 @@
 // Actions on the work: undo and redo, saving, pictures, opening another scan.
 
-#include <imgui/imgui.h>
-
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
-#include "ui/app.h"
+#include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
 
-void App::apply(const Undo&)
+template <class Way>
+void Workbench::step(int count, const char* done, const char* nothing, Way way)
 {
     record_settings();
-    const Command* command = document_->annotator.undo();
-    if (!command) return say("Nothing to undo");
-    show_changes(*command);
-    say("Undone: " + command->label);
+    std::string last;
+    int steps = 0;
+    for (; steps < count; ++steps) {
+        const Command* const command = way(document_->annotator);
+        if (!command) break;
+        show_changes(*command);
+        last = command->label;
+    }
+    if (steps == 0) fail(document_->annotator.stroke_is_running() ? "A stroke is being painted" : nothing);
+    say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-void App::apply(const Redo&)
+void Workbench::perform(const UndoOp& action)
 {
-    record_settings();
-    const Command* command = document_->annotator.redo();
-    if (!command) return say("Nothing to redo");
-    show_changes(*command);
-    say("Redone: " + command->label);
+    step(action.count, "Undone", "Nothing to undo", [](Annotator& annotator) { return annotator.undo(); });
+}
+
+void Workbench::perform(const RedoOp& action)
+{
+    step(action.count, "Redone", "Nothing to redo", [](Annotator& annotator) { return annotator.redo(); });
 }
 
 /// Updates the window's data about the trace; the annotator passes changes to the scene itself.
-void App::show_changes(const Command& command)
+void Workbench::show_changes(const Command& command)
 {
     Document& document = *document_;
     const bool is_traced = std::ranges::any_of(
@@ -42,39 +48,33 @@ void App::show_changes(const Command& command)
     look_again();
 }
 
-void App::apply(const Save&)
+void Workbench::perform(const SaveOp&)
 {
     save();
 }
 
-void App::apply(const Screenshot& action)
+void Workbench::perform(const Screenshot& action)
 {
     if (!action.is_large) {
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }
     Session session = document_->saved_session();
-    session.render.size = viewport_.pixels() * session.interaction.screenshot_scale;
+    session.render.size = pixels_ * session.interaction.screenshot_scale;
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
-    screenshots_.take_large(screenshot_stem(), *renderer_, session, document_->camera, options);
+    screenshots_.take_large(screenshot_stem(), renderer_, session, document_->camera, options);
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
 }
 
-void App::apply(const SetInteraction& action)
-{
-    document_->session.interaction = action.interaction;
-    look_again();
-}
-
-void App::apply(const Open& action)
+void Workbench::perform(const Open& action)
 {
     if (document_) save_before_leaving();
     open(action.path, {});
 }
 
-void App::apply(const ChooseBelief& action)
+void Workbench::perform(const ChooseBelief& action)
 {
     std::string said;
     for (const Notice& notice : document_->annotator.choose(action.takes_files ? Belief::files : Belief::journal))
@@ -84,7 +84,7 @@ void App::apply(const ChooseBelief& action)
     say(said);
 }
 
-void App::apply(const WorkOnCopy&)
+void Workbench::perform(const WorkOnCopy&)
 {
     const std::filesystem::path copy = document_->save_copy();
     open(copy, {});
@@ -92,7 +92,7 @@ void App::apply(const WorkOnCopy&)
 
 /// Saves all work as the Save command does; if the user only looked around, saves the view silently. A window that only
 /// looks saves nothing, as it says; and while it is asked what to believe, annotation stays as the journal has it.
-void App::save_before_leaving()
+void Workbench::save_before_leaving()
 {
     if (document_->only_looks()) return;
     if (!document_->annotator.work().disputes().empty()) return document_->save_settings();
@@ -100,48 +100,25 @@ void App::save_before_leaving()
     save();
 }
 
-/// Makes a step of the history of what was set, once the hand has let go: one drag is one step.
-void App::follow_settings()
-{
-    const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || ImGui::IsAnyMouseDown();
-    if (!settings_to_record_ || is_being_set || document_->annotator.stroke_is_running()) return;
-    record_settings();
-}
-
-/// Of what follows, undo is to take back that first.
-void App::record_settings()
-{
-    if (document_->annotator.stroke_is_running()) return;
-    settings_to_record_ = false;
-    document_->record_settings();
-}
-
-void App::note_edit()
-{
-    document_->note_edit();
-    settings_to_record_ = was_set_in_this_turn_ = true;
-    was_asked_to_close_ = false;
-}
-
 /// A save includes all that the stroke has covered, so this waits for its bricks. Returns why part of it was not
 /// painted; empty if all was.
-std::string App::finish_stroke()
+std::string Workbench::finish_stroke()
 {
     constexpr double PATIENCE_S = 20.0;
     constexpr std::chrono::milliseconds TURN(1);
     Annotator& annotator = document_->annotator;
     extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
-    double last_progress_s = window_.now_s();
+    double last_progress_s = options_.now_s();
     uint64_t uploads = 0;
     try {
         while (annotator.stroke_is_running()) {
             const bool has_painted = annotator.advance().has_value();
-            renderer_->scene().advance();
+            renderer_.scene().advance();
             const uint64_t uploads_before =
-                std::exchange(uploads, renderer_->volume().counts().value_or(DeviceVolume::Counts{}).uploads);
-            if (has_painted || uploads != uploads_before) last_progress_s = window_.now_s();
-            if (window_.now_s() - last_progress_s > PATIENCE_S) {
+                std::exchange(uploads, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
+            if (has_painted || uploads != uploads_before) last_progress_s = options_.now_s();
+            if (options_.now_s() - last_progress_s > PATIENCE_S) {
                 annotator.drop_stroke();
                 return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
             }
@@ -153,7 +130,7 @@ std::string App::finish_stroke()
     return {};
 }
 
-void App::save()
+void Workbench::save()
 {
     const std::string unpainted = finish_stroke();
     record_settings();
@@ -164,16 +141,6 @@ void App::save()
     say("Saved " + document_->session.mask_path.string() + (has_trace ? ", " + trace.string() : std::string()) +
         " and " + document_->session_path.string() +
         (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted) + kept);
-}
-
-void App::apply(const ShowHelp& action)
-{
-    shows_help_ = action.on;
-}
-
-void App::apply(const Quit&)
-{
-    window_.close();
 }
 
 }  // namespace shvr::ui

@@ -1,4 +1,4 @@
-#include "ui/document.h"
+#include "ui/workbench/document.h"
 
 #include <algorithm>
 #include <utility>
@@ -304,17 +304,9 @@ TraceMarks Document::trace_marks() const
 {
     const glm::dvec3& spacing = volume().spacing;
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    return shvr::trace_marks(annotator.document().trace, tool == Tool::trace ? nearby_node() : std::nullopt, least,
+    return shvr::trace_marks(annotator.document().trace,
+                             session.probe.tool == Tool::trace ? nearby_node() : std::nullopt, least,
                              drags_node ? std::optional(touch.probe()) : std::nullopt);
-}
-
-std::vector<std::string> Document::cameras() const
-{
-    std::vector<std::string> names;
-    for (const auto& [name, camera_spec] : session.cameras) names.push_back(name);
-    for (const std::string& side : camera_sides())
-        if (std::ranges::find(names, side) == names.end()) names.push_back(side);
-    return names;
 }
 
 }  // namespace shvr::ui

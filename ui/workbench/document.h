@@ -14,8 +14,8 @@
 #include "engine/live/screen.h"
 #include "engine/picture/picture_job.h"
 #include "engine/session/session.h"
-#include "ui/action.h"
-#include "ui/touch.h"
+#include "ui/workbench/action.h"
+#include "ui/workbench/touch.h"
 
 namespace shvr::ui {
 
@@ -35,8 +35,6 @@ struct Document {
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;
-    bool assistance = false;
-    ProxyLaw law = ProxyLaw::potential;
     Annotator annotator;
     Previewer previewer{annotator};
     Screen screen;
@@ -44,8 +42,7 @@ struct Document {
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every turn
     std::vector<std::string> messages;  ///< notes from opening the work
     std::string holder;                 ///< the other process that writes the work, in words; empty: this one may
-    Tool tool = Tool::paint;
-    bool drags_node = false;  ///< the selected node follows the probe
+    bool drags_node = false;            ///< the selected node follows the probe
 
     /// Loads everything onto the device again after it held another document. Fails as load and create do.
     void show_again(Renderer& renderer);
@@ -89,7 +86,6 @@ struct Document {
     /// Writes the session if only the camera and the probe's position changed and it already has a file. So just
     /// looking at a volume creates no file. A file that cannot be written stays as it is.
     void keep_view();
-    std::vector<std::string> cameras() const;
 
 private:
     Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,

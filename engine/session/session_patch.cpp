@@ -1,0 +1,86 @@
+#include "engine/session/session_patch.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/session/lasting_settings.h"
+#include "engine/session/session_keys.h"
+
+namespace shvr {
+
+namespace {
+
+using nlohmann::json;
+
+json settings_of(Session session)
+{
+    return json::parse(write_fields({}, [&](Fields& f) { setting_fields(f, session); }));
+}
+
+/// Arrays are replaced as a whole, as merge patches do.
+json difference(const json& before, const json& after)
+{
+    json patch = json::object();
+    for (const auto& [key, value] : after.items()) {
+        const auto was = before.find(key);
+        if (was == before.end())
+            patch[key] = value;
+        else if (was->is_object() && value.is_object() && *was != value)
+            patch[key] = difference(*was, value);
+        else if (*was != value)
+            patch[key] = value;
+    }
+    for (const auto& [key, value] : before.items())
+        if (!after.contains(key)) patch[key] = nullptr;
+    return patch;
+}
+
+SettingValues texts_of(const json& settings)
+{
+    SettingValues texts;
+    for (const auto& [name, value] : settings.items()) texts[name] = value.dump();
+    return texts;
+}
+
+}  // namespace
+
+std::string patch_between(const Session& before, const Session& after)
+{
+    const json patch = difference(settings_of(before), settings_of(after));
+    return patch.empty() ? std::string() : patch.dump();
+}
+
+std::string patch_of(const std::string& setting)
+{
+    JsonDocument document = session_document("{}", "setting");
+    apply_settings(document, {setting});
+    return document.value().dump();
+}
+
+Session patched(const Session& session, std::string_view patch)
+{
+    const JsonDocument change = session_document(patch, "settings");
+    if (!change.value().is_object()) change.root().refuse("an object such as {\"light\": {\"ambient\": 0.4}}");
+    JsonDocument document = session_document("{}", "settings");
+    document.value() = settings_of(session);
+    document.value().merge_patch(change.value());
+    const Session read = read_settings(document);
+    Session changed = session;
+    changed.transfer_function = read.transfer_function;
+    changed.transfer_preset = read.transfer_preset;
+    changed.groups = read.groups;
+    changed.light = read.light;
+    changed.blend = read.blend;
+    changed.cut = read.cut;
+    changed.render = read.render;
+    changed.view = read.view;
+    changed.interaction = read.interaction;
+    changed.probe = read.probe;
+    return changed;
+}
+
+std::string difference_in_words(const Session& before, const Session& after)
+{
+    return difference_of(texts_of(settings_of(before)), texts_of(settings_of(after)));
+}
+
+}  // namespace shvr

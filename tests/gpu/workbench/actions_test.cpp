@@ -1,0 +1,164 @@
+// Every action, applied once without a display: what it must change, and that nothing else changes. The table is the
+// documentation of the actions; ui/workbench/ACTIONS.md is printed from it.
+
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/file.h"
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+struct Row {
+    const char* line;                   ///< of the action
+    const char* changes;                ///< keys of the state, in order
+    std::vector<const char*> before{};  ///< actions that prepare it
+    bool is_saved_before = true;
+};
+
+constexpr const char* STROKE =
+    R"({"op":"paint","brush":"fill","region":"ball","group":3,"threshold":100,"radius":6,"path":[[20,18,16],[24,18,16]]})";
+constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":2})",
+                     *NEXT_NODE = R"({"op":"node","at":[20,12,14]})", *LAST_NODE = R"({"op":"node","at":[20,22,14]})",
+                     *TRACING = R"({"op":"set","values":{"probe":{"tool":"trace"}}})",
+                     *OVERVIEW = R"({"op":"set","values":{"view":{"arrangement":"overview"}}})",
+                     *BY_HAND = R"({"op":"set","values":{"light":{"occlusion":{"strength":0.5,"automatic":false}}}})",
+                     *NEAR_3 = R"({"op":"keep_camera","name":"node 3"})",
+                     *CUT = R"({"op":"move_cut","axis":0,"share":0.25})", *BEGIN = R"({"op":"paint_here","on":true})",
+                     *DRAG = R"({"op":"drag_node","on":true})", *UNDO = R"({"op":"undo"})";
+
+const Row ROWS[] = {
+    {R"({"op":"orbit","right_degrees":30,"up_degrees":-10})", "camera"},
+    {R"({"op":"roll","degrees":15})", "camera"},
+    {R"({"op":"move_view","heights":[0.1,0,0.2]})", "camera"},
+    {R"({"op":"zoom","pixel":[10,12],"factor":1.5})", "camera"},
+    {R"({"op":"drag_in_map","pane":1,"pixels":[4,3]})", "camera", {OVERVIEW}},
+    {R"({"op":"look_from","camera":"top"})", "camera"},
+    {R"({"op":"keep_camera","name":"node 3"})", "cameras, saved"},
+    {R"({"op":"forget_camera","name":"node 3"})", "cameras, saved", {NEAR_3}},
+    {R"({"op":"move_cut","axis":1,"upper":true,"share":-0.25})", "cut, saved, undo"},
+    {R"({"op":"move_clip","share":0.5})", "camera"},
+    {R"({"op":"reset_cuts"})", "camera, cut, saved, undo", {CUT, R"({"op":"move_clip","share":0.5})"}},
+    {R"({"op":"update_occlusion"})", "", {BY_HAND}},
+    {R"({"op":"set","values":{"light":{"ambient":0.45}}})", "light, saved, undo"},
+    {R"({"op":"set","values":{"groups":{"3":{"name":"leaf trace","color":"#20b060"}}}})", "groups, saved, undo"},
+    {R"({"op":"set","values":{"blend":{"size":0.4}}})", "blend, saved, undo"},
+    {R"({"op":"set","values":{"transfer_function":{"points":[{"intensity":90,"opacity":0},{"intensity":200,"opacity":1}]}}})",
+     "saved, transfer_function, undo"},
+    {R"({"op":"set","values":{"probe":{"group":7,"preview":true}}})", "probe, saved"},
+    {R"({"op":"set","values":{"view":{"arrangement":"slices"}}})", "saved, view"},
+    {R"({"op":"set","values":{"render":{"step_voxels":0.7}}})", "render, saved"},
+    {R"({"op":"set","values":{"interaction":{"resolution":0.5}}})", "interaction, saved"},
+    {R"({"op":"probe_to","pixel":[20,20]})", "place"},
+    {R"({"op":"probe_onto","pixel":[48,40]})", "place"},
+    {R"({"op":"push_probe","voxels":2})", "place"},
+    {R"({"op":"place_probe","voxel":[11,12,13]})", "place"},
+    {R"({"op":"scale_probe","factor":1.5})", "probe, saved"},
+    {R"({"op":"paint_here","on":true})", "painting, saved, undo, voxels"},
+    {R"({"op":"paint_here","on":false})", "painting", {BEGIN}},
+    {R"({"op":"paint_here","on":true})", "saved, selection, trace, undo", {TRACING}},
+    {STROKE, "saved, undo, voxels"},
+    {R"({"op":"density","brush":"fill","region":"ball","threshold":60,"radius":4,"offset":30,"path":[[20,18,16]]})",
+     "offsets, saved, undo"},
+    {R"({"op":"drag_node","on":true})", "drags", {NODE, NEXT_NODE}},
+    {R"({"op":"drag_node","on":false})", "drags, saved, trace, undo", {NODE, NEXT_NODE, DRAG}},
+    {R"({"op":"node","at":[10,12,14],"radius":2,"group":2})", "saved, selection, trace, undo"},
+    {R"({"op":"select","node":0})", "selection", {NODE, NEXT_NODE}},
+    {R"({"op":"select_segment"})", "selection", {NODE, NEXT_NODE}},
+    {R"({"op":"deselect"})", "selection", {NODE, NEXT_NODE}},
+    {R"({"op":"link","node":0})", "saved, trace, undo", {NODE, NEXT_NODE, LAST_NODE}},
+    {R"({"op":"move","to":[22,14,15]})", "saved, trace, undo", {NODE, NEXT_NODE}},
+    {R"({"op":"delete"})", "saved, selection, trace, undo", {NODE, NEXT_NODE}},
+    {R"({"op":"group","group":5})", "saved, trace, undo", {NODE, NEXT_NODE}},
+    {R"({"op":"radius","radius":3.5})", "saved, trace, undo", {NODE, NEXT_NODE}},
+    {R"({"op":"undo"})", "redo, saved, undo, voxels", {STROKE}},
+    {R"({"op":"redo"})", "redo, saved, undo, voxels", {STROKE, UNDO}},
+    {R"({"op":"save"})", "file scan.json, file scan.mask, file scan.mask.json, saved", {STROKE}, false},
+    {R"({"op":"screenshot"})", "file scan-view-1.png"},
+    {R"({"op":"screenshot","large":true})", "file scan-view-1.png"},
+    {R"({"op":"work_on_copy"})",
+     "cameras, file preferences.json, file scan-copy.json, file scan-copy.mask, file scan-copy.mask.json, open, undo",
+     {STROKE}},
+    {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
+    {R"({"op":"bind_keys","shortcut":"undo","keys":"Ctrl+U"})", "file preferences.json, keys"},
+    {R"({"op":"show_help","on":true})", "help"},
+    {R"({"op":"full_screen","on":true})", "full_screen"},
+    {R"({"op":"quit"})", ""},
+};
+
+/// A workbench on a scan of its own.
+struct Bench {
+    TemporaryFolder folder;
+    std::unique_ptr<Workbench> bench;
+
+    explicit Bench(Renderer& renderer)
+    {
+        bench = std::make_unique<Workbench>(
+            renderer, WorkbenchOptions{.has_servo = false, .preferences = folder.path / "preferences.json"});
+        bench->set_pixels({96, 80});
+        bench->open(write_tubes_session(folder.path), {});
+        settle(*bench);
+    }
+    void perform(const std::string& line)
+    {
+        CAPTURE(line);
+        bench->perform(read_action(line, "row"));
+        settle(*bench);
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothing else")
+{
+    std::set<std::string> applied;
+    for (const Row& row : ROWS) {
+        const std::string row_line = row.line;
+        CAPTURE(row_line);
+        Bench on(renderer());
+        for (const char* line : row.before) on.perform(line);
+        if (row.is_saved_before && !on.bench->model().is_painting) on.perform(R"({"op":"save"})");
+        const State before = state_of(*on.bench, on.folder.path);
+        const Action action = read_action(row.line, "row");
+        CHECK(on.bench->why_not(action) == "");
+        on.perform(row.line);
+        on.bench->wait_for_screenshots();
+        settle(*on.bench);
+        CHECK(difference(before, state_of(*on.bench, on.folder.path)) == std::string(row.changes));
+        CHECK(on.bench->messages().count() > 0);
+        applied.insert(row_of(action).id);
+    }
+    // Those that need what this table does not set up, and the tests that do.
+    applied.insert({"open", "choose_belief"});
+    for (const ActionRow& row : action_rows()) CHECK_MESSAGE(applied.contains(row.id), row.id);
+}
+
+TEST_CASE("ACTIONS.md says of each action what the program says")
+{
+    std::string expected =
+        "# Actions\n\nWhat a person can do, as lines of a script or a log; each with what it changes, as "
+        "`tests/gpu/workbench/actions_test.cpp` tries it.\nThat test prints this file where it differs.\n";
+    std::string group;
+    for (const ActionRow& action : action_rows()) {
+        if (std::exchange(group, action.group) != action.group)
+            expected +=
+                sentence("\n## ", action.group, "\n\n| action | does | for example | changes |\n|---|---|---|---|\n");
+        std::string examples, changes;
+        for (const Row& row : ROWS) {
+            if (std::string(row_of(read_action(row.line, "row")).id) != action.id) continue;
+            examples += sentence(examples.empty() ? "" : "<br>", '`', row.line, '`');
+            changes += sentence(changes.empty() ? "" : "<br>", row.changes);
+        }
+        expected += sentence("| `", action.id, "` | ", action.meaning, " | ", examples, " | ", changes, " |\n");
+    }
+    const std::string written = read_text("ui/workbench/ACTIONS.md", int64_t{1} << 20);
+    if (written != expected) std::puts(expected.c_str());
+    CHECK((written == expected));
+}

@@ -1,0 +1,155 @@
+// Whatever a person does, in whatever order: undo leads back to the start and redo to the end, bit for bit; the log
+// replays to the same bits; and an action that cannot be applied now changes nothing.
+
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/session/session_patch.h"
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+class Hand {
+public:
+    explicit Hand(uint32_t seed) : random_(seed) {}
+
+    /// Paints, traces, sets, looks, undoes and saves, about as often as a person who explores the program would.
+    Action next()
+    {
+        switch (whole(0, 24)) {
+            case 0: return Orbit{real(-40, 40), real(-20, 20)};
+            case 1: return Zoom{0, {real(0, 48), real(0, 40)}, real(0.8, 1.3)};
+            case 2: return LookFrom{std::vector<std::string>{"front", "top", "left", "nowhere"}[size_t(whole(0, 3))]};
+            case 3: return MoveCut{int(whole(0, 2)), whole(0, 1) == 1, real(-0.1, 0.1)};
+            case 4: return whole(0, 3) == 0 ? Action(ResetCuts{}) : Action(MoveClip{false, real(-0.1, 0.1)});
+            case 5: return set("light.ambient", digits(real(0, 1)));
+            case 6: return set("groups." + sentence(whole(1, 6)) + ".opacity", digits(real(0, 1)));
+            case 7: return set("blend.size", digits(real(0, 1)));
+            case 8:
+                return set("probe.brush", std::vector<std::string>{"fill", "flood", "speckle"}[size_t(whole(0, 2))]);
+            case 9: return set("probe.tool", whole(0, 1) == 0 ? "paint" : "trace");
+            case 10: return set("probe.group", sentence(whole(0, 6)));
+            case 11: return set("probe.preview", whole(0, 1) == 0 ? "true" : "false");
+            case 12: return ScaleProbe{real(0.7, 1.4)};
+            case 13: return PlaceProbe{voxel()};
+            case 14: return ProbeTo{0, {real(0, 48), real(0, 40)}};
+            case 15: return Paint{whole(0, 1) == 1};
+            case 16: return stroke();
+            case 17: return NodeOp{voxel(), real(0.5, 4), uint8_t(whole(0, 6))};
+            case 18: return trace_edit();
+            case 19: return SelectOp{.near = voxel(), .number = {}, .within_voxels = {}};
+            case 20: return DragNode{whole(0, 1) == 1};
+            case 21: return UndoOp{int(whole(1, 4))};
+            case 22: return RedoOp{int(whole(1, 3))};
+            case 23: return whole(0, 9) == 0 ? Action(SaveOp{}) : Action(DeselectOp{});
+            default: return KeepCamera{sentence("view ", whole(1, 3))};
+        }
+    }
+
+private:
+    static std::string digits(double value) { return sentence(std::round(1000.0 * value) / 1000.0); }
+    static Action set(const std::string& key, const std::string& value) { return Set{patch_of(key + "=" + value)}; }
+    int64_t whole(int64_t lower, int64_t upper)
+    {
+        return std::uniform_int_distribution<int64_t>(lower, upper)(random_);
+    }
+    double real(double lower, double upper) { return std::uniform_real_distribution<double>(lower, upper)(random_); }
+    glm::dvec3 voxel() { return {real(-1, 41), real(-1, 37), real(-1, 33)}; }
+    Action stroke()
+    {
+        PaintOp op{.brush = BRUSHES[size_t(whole(0, 2))].brush,
+                   .region = whole(0, 1) == 0 ? RegionShape::ball : RegionShape::box,
+                   .group = uint8_t(whole(0, 6)),
+                   .threshold = real(20, 200),
+                   .radius_voxels = real(0.5, 7),
+                   .connectivity = whole(0, 1) == 0 ? 6 : 26};
+        for (int64_t i = whole(1, 3); i > 0; --i) op.path.push_back(voxel());
+        if (whole(0, 3) == 0) op.density = DensityBrush{.offset = real(1, 60), .falloff = Falloff::distance};
+        return op;
+    }
+    Action trace_edit()
+    {
+        switch (whole(0, 5)) {
+            case 0: return DeleteOp{};
+            case 1: return GroupOp{uint8_t(whole(0, 6))};
+            case 2: return RadiusOp{.radius_voxels = real(0.5, 5)};
+            case 3: return MoveOp{voxel()};
+            case 4: return SelectSegmentOp{};
+            default: return LinkOp{.near = voxel(), .node = {}, .within_voxels = {}};
+        }
+    }
+    std::mt19937 random_;
+};
+
+struct Run {
+    TemporaryFolder folder;
+    Workbench bench;
+
+    explicit Run(Renderer& renderer) : bench(renderer, {.has_servo = false})
+    {
+        bench.set_pixels({48, 40});
+        bench.open(write_tubes_session(folder.path), {});
+        settle(bench);
+    }
+    /// Applies it; what cannot be applied must change nothing.
+    void apply(const Action& action)
+    {
+        // An open stroke goes on whatever else is asked for.
+        const std::string why = bench.document().annotator.stroke_is_open() ? "" : bench.why_not(action);
+        const std::string before = why.empty() ? std::string() : lasting_state(bench);
+        static_cast<void>(bench.apply(action));
+        settle(bench);
+        if (!why.empty()) CHECK_MESSAGE((lasting_state(bench) == before), line_of(action), ": ", why);
+    }
+    /// Ends what is held down, so that there is a last step to undo.
+    void let_go()
+    {
+        apply(Paint{false});
+        apply(DragNode{false});
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "random actions are undone and redone bit for bit, and their log replays to the same bits")
+{
+    constexpr int ACTIONS = 2000;
+    for (const uint32_t seed : {1u, 2u, 3u}) {
+        CAPTURE(seed);
+        std::vector<std::string> log;
+        std::string end;
+        {
+            Run run(renderer());
+            const std::string start = lasting_state(run.bench);
+            run.bench.log_to([&](const std::string& line) { log.push_back(line); });
+            Hand hand(seed);
+            for (int i = 0; i < ACTIONS; ++i) run.apply(hand.next());
+            run.let_go();
+            end = lasting_state(run.bench);
+            run.bench.log_to({});
+            const size_t steps = run.bench.model().undoable;
+            CHECK(steps > 200);
+            for (size_t i = 0; i < steps; ++i) REQUIRE(run.bench.apply(UndoOp{1}));
+            CHECK((lasting_state(run.bench) == start));
+            for (size_t i = 0; i < steps; ++i) REQUIRE(run.bench.apply(RedoOp{1}));
+            CHECK((lasting_state(run.bench) == end));
+        }
+        Run again(renderer());
+        size_t done = 0;
+        for (const std::string& line : log) {
+            CAPTURE(line);
+            ++done;
+            CAPTURE(done);
+            REQUIRE_NOTHROW(again.bench.perform(read_action(line, "log")));
+            settle(again.bench);
+        }
+        CHECK((lasting_state(again.bench) == end));
+    }
+}

@@ -1,0 +1,134 @@
+// The registry of actions: ids, arguments as JSON and as text, and refusals in words.
+
+#include <random>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "ui/workbench/action_rows.h"
+
+using namespace shvr;
+using namespace shvr::ui;
+
+namespace {
+
+/// One of each kind, with arguments that are not the defaults.
+std::vector<Action> samples()
+{
+    PaintOp paint{.group = 3, .threshold = 0.1, .radius_voxels = 1.0 / 3.0, .path = {{1, 2.5, 3}, {1e-7, 5, 6}}};
+    PaintOp offsets = paint;
+    offsets.brush = Brush::speckle;
+    offsets.density = DensityBrush{.offset = 17.25, .falloff = Falloff::distance};
+    offsets.paints_group = false;
+    return {Orbit{0.1, -7.0},
+            Roll{33.3},
+            Move{{0.1, 0.2, -0.3}},
+            Zoom{2, {7.5, 8.25}, 1.1},
+            DragInMap{1, {3, -4}},
+            LookFrom{"node \"3\", left"},
+            KeepCamera{"a b=c"},
+            ForgetCamera{"x"},
+            MoveCut{2, true, -0.01},
+            MoveClip{true, 0.25},
+            ResetCuts{},
+            UpdateOcclusion{},
+            Set{R"({"light":{"ambient":0.45}})"},
+            ProbeTo{3, {1.5, 2.5}},
+            ProbeOnto{0, {9, 8}},
+            PushProbe{1, -2.5},
+            PlaceProbe{{1, 2, 3.125}},
+            ScaleProbe{1.1},
+            Paint{true},
+            paint,
+            offsets,
+            DragNode{true},
+            NodeOp{{1, 2, 3}, 2.5, uint8_t{4}},
+            NodeOp{{1, 2, 3}, {}, {}},
+            SelectOp{.near = glm::dvec3(4, 5, 6), .number = {}, .is_internode = true, .within_voxels = 7.5},
+            SelectOp{.near = {}, .number = 7, .within_voxels = {}},
+            SelectSegmentOp{},
+            DeselectOp{},
+            LinkOp{.near = {}, .node = 9},
+            LinkOp{.near = glm::dvec3(1), .node = {}, .within_voxels = 2.0},
+            MoveOp{{7, 8, 9}},
+            DeleteOp{},
+            GroupOp{200},
+            RadiusOp{.radius_voxels = 1.5},
+            RadiusOp{.of = RadiusOp::Of::internodes, .radius_voxels = {}, .group = 3},
+            UndoOp{3},
+            RedoOp{2},
+            SaveOp{},
+            Screenshot{true},
+            Open{"/tmp/a b.json"},
+            ChooseBelief{true},
+            WorkOnCopy{},
+            ChooseKeys{"thesis"},
+            BindKeys{"undo", "Ctrl+U F2"},
+            ShowHelp{false},
+            ShowFullScreen{false},
+            Quit{}};
+}
+
+}  // namespace
+
+TEST_CASE("every action has an id of its own, a name, a group and a meaning")
+{
+    std::set<std::string> ids;
+    REQUIRE(action_rows().size() == std::variant_size_v<Action>);
+    for (const ActionRow& row : action_rows()) {
+        CAPTURE(row.id);
+        CHECK(ids.insert(row.id).second);
+        CHECK(std::string(row.name) != "");
+        CHECK(std::string(row.group) != "");
+        CHECK(std::string(row.meaning) != "");
+    }
+}
+
+TEST_CASE("an action is the same after it was written and read, as JSON and as text")
+{
+    std::set<size_t> kinds;
+    for (const Action& action : samples()) {
+        const std::string line = line_of(action);
+        CAPTURE(line);
+        const Action read = read_action(line, "test");
+        CHECK(read.index() == action.index());
+        CHECK(line_of(read) == line);
+        const std::string text = text_of(action);
+        CAPTURE(text);
+        CHECK(line_of(action_of_text(text)) == line);
+        kinds.insert(action.index());
+    }
+    CHECK(kinds.size() == std::variant_size_v<Action>);
+}
+
+TEST_CASE("what is no action is refused, naming what was found and what was expected")
+{
+    const auto refusal = [](const char* line) -> std::string {
+        try {
+            static_cast<void>(read_action(line, "log:3"));
+            return "(taken)";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    CHECK(refusal("[1]") == "log:3: the document is [1]; expected an object such as {\"op\":\"save\"}");
+    CHECK(refusal(R"({"op":"orbit","right":3})") != "(taken)");
+    CHECK(refusal(R"({"op":"orbit","right":3})").find("right") != std::string::npos);
+    CHECK(refusal(R"({"op":"roll"})").find("degrees is missing") != std::string::npos);
+    CHECK(refusal(R"({"op":"zoom","factor":0})").find("factor is 0") != std::string::npos);
+    CHECK(refusal(R"({"op":"fly"})").find("fly") != std::string::npos);
+    CHECK(refusal(R"({"op":"expect","nodes":3})").find("expected") != std::string::npos);
+    CHECK(refusal(R"({"op":"set","values":3})").find("values is 3") != std::string::npos);
+    for (const char* text : {"", "orbit 3", "orbit =3", "orbit right_degrees", "fly away=1"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(action_of_text(text), Error);
+    }
+}
+
+TEST_CASE("values of a text may be bare words")
+{
+    CHECK(line_of(action_of_text("look_from camera=front")) == R"({"op":"look_from","camera":"front"})");
+    CHECK(line_of(action_of_text("keep_camera name=\"my view\"")) == R"({"op":"keep_camera","name":"my view"})");
+    CHECK(line_of(action_of_text("move_cut axis=1 upper=true share=-0.5")) ==
+          R"({"op":"move_cut","axis":1,"upper":true,"share":-0.5})");
+}

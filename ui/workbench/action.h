@@ -1,0 +1,145 @@
+#pragma once
+// What a person can ask for. Keys, mouse, menus, panels, the stylus and scripts make actions and change nothing; the
+// workbench carries them out in one place, in order. Each has a stable id and arguments as JSON (action_rows.h), so it
+// can be logged, replayed and written in a script. Plain data; any thread.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/annotation/work/script.h"
+#include "engine/session/session.h"
+
+namespace shvr::ui {
+
+// ---- Looking. Angles in degrees; pixels are those of a pane, counted as in Screen::parts.
+struct Orbit {
+    double right_degrees = 0.0, up_degrees = 0.0;
+};
+struct Roll {
+    double degrees = 0.0;
+};
+/// Along the camera's right, up and forward; 1 is the height of the view at the target's depth.
+struct Move {
+    glm::dvec3 heights{0.0};
+};
+struct Zoom {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    double factor = 1.0;
+};
+/// Moves the camera in the plane of a map, following the mouse.
+struct DragInMap {
+    size_t pane = 0;
+    glm::dvec2 pixels{0.0};
+};
+struct LookFrom {
+    std::string camera;  ///< a camera of the session, or a side
+};
+/// Keeps the present view under a name; a camera of that name is replaced.
+struct KeepCamera {
+    std::string name;
+};
+struct ForgetCamera {
+    std::string name;
+};
+/// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
+struct MoveCut {
+    int axis = 0;
+    bool upper = false;
+    double share = 0.0;
+};
+/// Clip planes of the camera, as fractions of the distance to the target.
+struct MoveClip {
+    bool far = false;
+    double share = 0.0;
+};
+struct ResetCuts {};
+struct UpdateOcclusion {};  ///< updates it where it does not update by itself
+
+// ---- Settings
+/// Any settings at once, as a patch of the session (session_patch.h). What lasts of them is a step of the history.
+struct Set {
+    std::string patch;
+};
+
+// ---- The probe
+struct ProbeTo {  ///< follows the mouse in the plane through the probe
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+struct ProbeOnto {  ///< onto the visible surface there
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+struct PushProbe {  ///< away from the viewer of a pane, in voxels
+    size_t pane = 0;
+    double voxels = 0.0;
+};
+struct PlaceProbe {  ///< a stroke that is open goes there with it
+    glm::dvec3 voxel{0.0};
+};
+/// Limits of the probe's radius in the window, in voxels along x. Sessions and scripts may use other radii.
+inline constexpr double SMALLEST_RADIUS_VOXELS = 0.5, LARGEST_RADIUS_VOXELS = 60.0;
+struct ScaleProbe {
+    double factor = 1.0;
+};
+
+// ---- Painting and tracing. Strokes from scripts (PaintOp) and operations of the trace are actions, too.
+struct Paint {  ///< begins and ends a stroke at the probe; with the trace tool, its beginning adds a node
+    bool on = false;
+};
+/// A node counts as near the probe up to this distance, in radii of the probe.
+inline constexpr double NEARBY_RADII = 4.0;
+struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
+    bool on = false;
+};
+
+// ---- The work
+struct Screenshot {
+    bool is_large = false;  ///< larger than the window, by the session's interaction.screenshot_scale
+};
+struct Open {
+    std::filesystem::path path;
+};
+/// Where another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
+struct ChooseBelief {
+    bool takes_files = false;
+};
+/// Saves all that is shown under names of its own, and opens that.
+struct WorkOnCopy {};
+
+// ---- The window
+struct ShowHelp {
+    bool on = true;
+};
+/// One of the two sets of keys (shortcuts.h).
+struct ChooseKeys {
+    std::string set;
+};
+/// Other keys for a shortcut: its id, and chords separated by spaces; none: it has no key.
+struct BindKeys {
+    std::string shortcut, keys;
+};
+struct ShowFullScreen {
+    bool on = true;
+};
+struct Quit {};
+
+using Action = std::variant<
+    // looking
+    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, MoveCut, MoveClip, ResetCuts,
+    UpdateOcclusion,
+    // settings, the probe
+    Set, ProbeTo, ProbeOnto, PushProbe, PlaceProbe, ScaleProbe,
+    // painting and tracing
+    Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
+    RadiusOp,
+    // the work, the window
+    UndoOp, RedoOp, SaveOp, Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen,
+    Quit>;
+using Actions = std::vector<Action>;
+
+}  // namespace shvr::ui

@@ -1,0 +1,162 @@
+// Why actions would do nothing just now, in words that fit after a colon or into a tooltip.
+
+#include "ui/workbench/action_rows.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr const char* IS_PAINTING = "a stroke is being painted";
+
+/// What holds for every change of annotation.
+std::string why_not_edited(const Model& model)
+{
+    if (!model.holder.empty()) return sentence("the project is open for writing in ", model.holder);
+    if (!model.disputes.empty()) return "saved files were changed by another program: files or journal?";
+    return {};
+}
+
+std::string why_not_traced(const Model& model)
+{
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+}
+
+std::string why_without_selection(const Model& model)
+{
+    const std::string why = why_not_traced(model);
+    return why.empty() && model.trace.selection().empty() ? "nothing is selected" : why;
+}
+
+std::string why_without_node(const Model& model)
+{
+    const std::string why = why_not_traced(model);
+    return why.empty() && !model.trace.selection().node() ? "no node is selected" : why;
+}
+
+std::string why_without_group(const Model& model, uint8_t group)
+{
+    return group == 0 ? "group 0 is the eraser; choose a group from 1 up" : why_not_traced(model);
+}
+
+/// An action without a condition of its own.
+template <class Kind>
+std::string why(const Model&, const Kind&)
+{
+    return {};
+}
+
+std::string why(const Model& model, const ForgetCamera& action)
+{
+    return model.session.cameras.contains(action.name) ? "" : sentence("no view is kept as ", action.name);
+}
+
+std::string why(const Model& model, const UpdateOcclusion&)
+{
+    return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
+}
+
+std::string why(const Model& model, const Paint& action)
+{
+    if (!action.on) return {};
+    if (model.tool() == Tool::trace) return why_without_group(model, model.brush().group);
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+}
+
+std::string why(const Model& model, const PaintOp&)
+{
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+}
+
+std::string why(const Model& model, const DragNode& action)
+{
+    return action.on ? why_without_node(model) : std::string();
+}
+
+std::string why(const Model& model, const NodeOp& action)
+{
+    return why_without_group(model, action.group.value_or(model.brush().group));
+}
+
+std::string why(const Model& model, const SelectOp&)
+{
+    if (model.is_painting) return IS_PAINTING;
+    return model.trace.nodes().empty() ? "there is no node" : "";
+}
+
+std::string why(const Model& model, const SelectSegmentOp&)
+{
+    if (model.is_painting) return IS_PAINTING;
+    return model.trace.selection().empty() ? "nothing is selected" : "";
+}
+
+std::string why(const Model& model, const DeselectOp&)
+{
+    return model.trace.selection().empty() ? "nothing is selected" : "";
+}
+
+std::string why(const Model& model, const LinkOp&)
+{
+    return why_without_node(model);
+}
+
+std::string why(const Model& model, const MoveOp&)
+{
+    return why_without_node(model);
+}
+
+std::string why(const Model& model, const DeleteOp&)
+{
+    return why_without_selection(model);
+}
+
+std::string why(const Model& model, const GroupOp& action)
+{
+    return action.group == 0 ? "group 0 is the eraser, and what is traced belongs to a group from 1 up"
+                             : why_without_selection(model);
+}
+
+std::string why(const Model& model, const RadiusOp& action)
+{
+    return action.of == RadiusOp::Of::selected ? why_without_selection(model) : why_not_traced(model);
+}
+
+std::string why(const Model& model, const UndoOp&)
+{
+    if (model.is_painting) return IS_PAINTING;
+    return model.undoable == 0 ? "there is nothing to undo" : why_not_edited(model);
+}
+
+std::string why(const Model& model, const RedoOp&)
+{
+    if (model.is_painting) return IS_PAINTING;
+    return model.redoable == 0 ? "there is nothing to redo" : why_not_edited(model);
+}
+
+std::string why(const Model& model, const SaveOp&)
+{
+    return why_not_edited(model);
+}
+
+std::string why(const Model& model, const ChooseBelief&)
+{
+    return model.disputes.empty() ? "no saved file was changed by another program" : "";
+}
+
+template <class Kind, class... Others>
+constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
+template <class Kind>
+constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+
+}  // namespace
+
+std::string why_not(const Model& model, const Action& action)
+{
+    return std::visit(
+        [&]<class Kind>(const Kind& kind) -> std::string {
+            if (NEEDS_DOCUMENT<Kind> && !model.is_open) return "nothing is open";
+            return why(model, kind);
+        },
+        action);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,354 @@
+#include "ui/workbench/action_rows.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/text.h"
+#include "engine/session/fields.h"
+#include "engine/session/session_patch.h"
+
+namespace shvr::ui {
+
+namespace {
+
+// ---- The table, in the order of the alternatives of Action ----------------------------------------------------------
+
+constexpr const char *LOOKING = "Looking", *SETTINGS = "Settings", *PROBE = "Probe", *PAINTING = "Painting",
+                     *TRACING = "Tracing", *WORK = "Work", *WINDOW = "Window";
+
+constexpr ActionRow ROWS[] = {
+    {"orbit", "Turn the view", LOOKING, "turns the camera about its target, to the right and up"},
+    {"roll", "Roll the view", LOOKING, "turns the camera about its line of sight"},
+    {"move_view", "Move the view", LOOKING, "moves the camera right, up and forward, in heights of the view"},
+    {"zoom", "Zoom", LOOKING, "brings what lies under a pixel of a pane nearer by a factor"},
+    {"drag_in_map", "Move the camera in a map", LOOKING, "moves the camera with the mouse in a map of the overview"},
+    {"look_from", "Look from", LOOKING, "takes a camera of the session, or a side of the volume"},
+    {"keep_camera", "Keep this view", LOOKING, "keeps the present view in the session, under a name"},
+    {"forget_camera", "Forget a view", LOOKING, "removes a camera of the session"},
+    {"move_cut", "Move a cutting plane", LOOKING, "moves one of the six planes by a share of the volume's size"},
+    {"move_clip", "Move a clip plane", LOOKING, "moves the near or far plane by a share of the distance to the target"},
+    {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
+    {"update_occlusion", "Update ambient occlusion", LOOKING, "computes it anew where it is not automatic"},
+    {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
+    {"probe_to", "Move the probe", PROBE, "the probe goes to a pixel of a pane, in its plane"},
+    {"probe_onto", "Put the probe onto what is seen", PROBE, "the probe goes to the surface seen at a pixel of a pane"},
+    {"push_probe", "Push the probe", PROBE, "the probe goes away from the viewer of a pane"},
+    {"place_probe", "Place the probe", PROBE, "the probe goes to a voxel"},
+    {"scale_probe", "Resize the probe", PROBE, "the probe and its brush grow by a factor"},
+    {"paint_here", "Paint at the probe", PAINTING, "begins or ends a stroke at the probe; when tracing, adds a node"},
+    {"paint", "Paint along a path", PAINTING, "paints a whole stroke with a brush of its own (`density`: offsets)"},
+    {"drag_node", "Move the selected node", TRACING, "the selected node goes with the probe until it is let go"},
+    {"node", "Add a node", TRACING, "adds a node, linked with the selected one"},
+    {"select", "Select", TRACING, "selects a node or an internode, by number or the nearest"},
+    {"select_segment", "Select the segment", TRACING, "selects all between two branchings or ends"},
+    {"deselect", "Deselect", TRACING, "selects nothing"},
+    {"link", "Link", TRACING, "links the selected node with another"},
+    {"move", "Move to", TRACING, "moves the selected node to a voxel"},
+    {"delete", "Delete", TRACING, "deletes what is selected"},
+    {"group", "Change group", TRACING, "gives what is selected to a group"},
+    {"radius", "Change radius", TRACING, "sets radii of what is selected, or of a group"},
+    {"undo", "Undo", WORK, "takes the last steps of the history back"},
+    {"redo", "Redo", WORK, "does the steps again that were undone last"},
+    {"save", "Save", WORK, "writes mask, offsets, trace and session for other programs"},
+    {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
+    {"open", "Open", WORK, "opens a volume, a session or a project folder"},
+    {"choose_belief", "Files or journal", WORK, "says whether changed files or the journal are right"},
+    {"work_on_copy", "Work on a copy", WORK, "saves all that is shown under new names, and opens that"},
+    {"choose_keys", "Choose the keys", WINDOW, "takes one of the two sets of keys that ship"},
+    {"bind_keys", "Other keys", WINDOW, "gives a shortcut other keys than those that ship"},
+    {"show_help", "Keys and mouse", WINDOW, "shows or hides the list of keys"},
+    {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
+    {"quit", "Quit", WINDOW, "saves the work and closes the window"},
+};
+static_assert(std::size(ROWS) == std::variant_size_v<Action>);
+
+// ---- Arguments ------------------------------------------------------------------------------------------------------
+
+const NumberRange DEGREES{-36000.0, 36000.0}, PIXELS{-1e6, 1e6}, FACTOR{1e-6, 1e6}, SHARES{-100.0, 100.0};
+const NumberRange VOXELS{-1e12, 1e12};
+
+void pane_field(Fields& f, size_t& pane)
+{
+    f.whole("pane", pane, 0, 15, {"number of the pane, from 0"});
+}
+
+void pixel_field(Fields& f, const char* name, glm::dvec2& pixel)
+{
+    std::optional<glm::dvec2> value = pixel;
+    f.numbers(name, value, PIXELS, {"pixels of the pane, right and down"});
+    pixel = value.value_or(pixel);
+}
+
+void fields(Fields& f, Orbit& a)
+{
+    f.number("right_degrees", a.right_degrees, DEGREES, {});
+    f.number("up_degrees", a.up_degrees, DEGREES, {});
+}
+void fields(Fields& f, Roll& a)
+{
+    f.number("degrees", a.degrees, DEGREES, {.is_required = true});
+}
+void fields(Fields& f, Move& a)
+{
+    f.vector("heights", a.heights, SHARES, {.is_required = true});
+}
+void fields(Fields& f, Zoom& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+    f.number("factor", a.factor, FACTOR, {.is_required = true});
+}
+void fields(Fields& f, DragInMap& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixels", a.pixels);
+}
+void fields(Fields& f, LookFrom& a)
+{
+    f.text("camera", a.camera, {.is_required = true});
+}
+void fields(Fields& f, KeepCamera& a)
+{
+    f.text("name", a.name, {.is_required = true});
+}
+void fields(Fields& f, ForgetCamera& a)
+{
+    f.text("name", a.name, {.is_required = true});
+}
+void fields(Fields& f, MoveCut& a)
+{
+    f.whole("axis", a.axis, 0, 2, {.is_required = true});
+    f.flag("upper", a.upper, {});
+    f.number("share", a.share, SHARES, {.is_required = true});
+}
+void fields(Fields& f, MoveClip& a)
+{
+    f.flag("far", a.far, {});
+    f.number("share", a.share, SHARES, {.is_required = true});
+}
+void fields(Fields& f, Set& a)
+{
+    const auto read = [&](const JsonNode& node) {
+        if (!node.is_object()) node.refuse("an object such as {\"light\": {\"ambient\": 0.4}}");
+        a.patch = node.dump();
+    };
+    f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
+}
+void fields(Fields& f, ProbeTo& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+}
+void fields(Fields& f, ProbeOnto& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+}
+void fields(Fields& f, PushProbe& a)
+{
+    pane_field(f, a.pane);
+    f.number("voxels", a.voxels, VOXELS, {.is_required = true});
+}
+void fields(Fields& f, PlaceProbe& a)
+{
+    f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
+}
+void fields(Fields& f, ScaleProbe& a)
+{
+    f.number("factor", a.factor, FACTOR, {.is_required = true});
+}
+void fields(Fields& f, Paint& a)
+{
+    f.flag("on", a.on, {.is_required = true});
+}
+void fields(Fields& f, DragNode& a)
+{
+    f.flag("on", a.on, {.is_required = true});
+}
+void fields(Fields& f, Screenshot& a)
+{
+    f.flag("large", a.is_large, {});
+}
+void fields(Fields& f, Open& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, ChooseBelief& a)
+{
+    f.flag("files", a.takes_files, {.is_required = true});
+}
+void fields(Fields& f, ShowHelp& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, ChooseKeys& a)
+{
+    f.text("set", a.set, {.is_required = true});
+}
+void fields(Fields& f, BindKeys& a)
+{
+    f.text("shortcut", a.shortcut, {.is_required = true});
+    f.text("keys", a.keys, {});
+}
+void fields(Fields& f, ShowFullScreen& a)
+{
+    f.flag("on", a.on, {});
+}
+template <class Bare>
+requires std::is_empty_v<Bare>
+void fields(Fields&, Bare&) {}
+
+// ---- Between actions and lines --------------------------------------------------------------------------------------
+
+template <class Kind>
+constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
+
+/// The alternative of Action with that index, as it is made.
+template <size_t INDEX = 0>
+Action default_action(size_t index)
+{
+    if constexpr (INDEX + 1 < std::variant_size_v<Action>)
+        if (index != INDEX) return default_action<INDEX + 1>(index);
+    return Action(std::in_place_index<INDEX>);
+}
+
+/// The key that names the action, then its arguments.
+Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
+{
+    return [&op, arguments](Fields& f) {
+        f.text("op", op, {.is_required = true});
+        arguments(f);
+    };
+}
+
+/// ids of the registry and names of operations of scripts, each once.
+std::vector<std::string_view> known_ids()
+{
+    std::vector<std::string_view> ids;
+    for (const ActionRow& row : ROWS) ids.push_back(row.id);
+    for (const std::string_view name : script_op_names())
+        if (std::ranges::find(ids, name) == ids.end() && name != "expect") ids.push_back(name);
+    return ids;
+}
+
+Action of_script(const ScriptOp& op, const JsonNode& line)
+{
+    return std::visit(
+        [&]<class Op>(const Op& each) -> Action {
+            if constexpr (std::is_constructible_v<Action, Op>)
+                return each;
+            else
+                line["op"].refuse("an action");
+        },
+        op);
+}
+
+const JsonLimits LINE{.depth = 16, .expected = "an action"};
+
+/// Splits at spaces that are not inside quotes.
+std::vector<std::string> parts_of(const std::string& text)
+{
+    std::vector<std::string> words{""};
+    bool is_quoted = false, is_escaped = false;
+    for (const char c : text) {
+        is_quoted ^= c == '"' && !is_escaped;
+        is_escaped = c == '\\' && !is_escaped;
+        if (c == ' ' && !is_quoted)
+            words.emplace_back();
+        else
+            words.back() += c;
+    }
+    std::erase(words, "");
+    return words;
+}
+
+std::string quoted(const std::string& text)
+{
+    std::string escaped;
+    for (const char c : text) escaped += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+    return '"' + escaped + '"';
+}
+
+bool is_json(const std::string& text)
+{
+    try {
+        return JsonDocument(text, "", LINE).root().exists();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+std::span<const ActionRow> action_rows()
+{
+    return ROWS;
+}
+
+const ActionRow& row_of(const Action& action)
+{
+    return ROWS[action.index()];
+}
+
+std::string line_of(const Action& action)
+{
+    return std::visit(
+        [&]<class Kind>(Kind kind) -> std::string {
+            if constexpr (IS_SCRIPT_OP<Kind>) {
+                return line_of(ScriptOp(kind));
+            } else {
+                std::string id = row_of(action).id;
+                return write_fields({}, with_op(id, [&](Fields& f) { fields(f, kind); }));
+            }
+        },
+        action);
+}
+
+Action read_action(const JsonNode& line)
+{
+    if (!line.is_object()) line.refuse("an object such as {\"op\":\"save\"}");
+    const std::vector<std::string_view> ids = known_ids();
+    std::string id(ids[line["op"].choice(ids)]);
+    const auto names = script_op_names();
+    if (std::ranges::find(names, id) != names.end()) return of_script(read_script_op(line), line);
+    const auto row = std::ranges::find_if(ROWS, [&](const ActionRow& each) { return each.id == id; });
+    Action action = default_action(size_t(row - std::begin(ROWS)));
+    std::visit(
+        [&]<class Kind>(Kind& kind) {
+            if constexpr (!IS_SCRIPT_OP<Kind>) read_fields(line, {}, with_op(id, [&](Fields& f) { fields(f, kind); }));
+        },
+        action);
+    return action;
+}
+
+Action read_action(std::string_view line, const std::string& origin)
+{
+    const JsonDocument document(line, origin, LINE);
+    return read_action(document.root());
+}
+
+std::string text_of(const Action& action)
+{
+    const JsonDocument document(line_of(action), "action", LINE);
+    std::string text = document.root()["op"].any_text();
+    for (const std::string& key : document.root().names())
+        if (key != "op") text += " " + key + "=" + document.root()[key].dump();
+    return text;
+}
+
+Action action_of_text(const std::string& text)
+{
+    const std::vector<std::string> parts = parts_of(text);
+    if (parts.empty()) fail("the action is empty; expected one such as: orbit right_degrees=3");
+    std::string line = sentence("{\"op\":", quoted(parts.front()));
+    for (const std::string& part : std::span(parts).subspan(1)) {
+        const size_t equals = part.find('=');
+        if (equals == std::string::npos || equals == 0)
+            fail("action ", parts.front(), ": '", part, "' is no argument; expected key=value");
+        const std::string value = part.substr(equals + 1);
+        line += sentence(',', quoted(part.substr(0, equals)), ':', is_json(value) ? value : quoted(value));
+    }
+    return read_action(line + "}", "action");
+}
+
+}  // namespace shvr::ui

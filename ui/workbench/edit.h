@@ -1,0 +1,26 @@
+#pragma once
+// Makes the action that changes settings. Pure; any thread.
+
+#include "engine/session/session_patch.h"
+#include "ui/workbench/action.h"
+#include "ui/workbench/model.h"
+
+namespace shvr::ui {
+
+/// The settings as `edit` leaves them.
+template <class Edit>
+Set edited(const Session& session, const Edit& edit)
+{
+    Session after = session;
+    edit(after);
+    return {patch_between(session, after)};
+}
+
+/// Adds it, where it changes anything. `edit(Session&)`.
+template <class Edit>
+void set(Actions& actions, const Model& model, const Edit& edit)
+{
+    if (Set action = edited(model.session, edit); !action.patch.empty()) actions.emplace_back(std::move(action));
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,46 @@
+#pragma once
+// Which keys mean which shortcuts: a set of keys as it ships, with a person's changes. Pure; any thread.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ui/workbench/shortcuts.h"
+
+namespace shvr::ui {
+
+/// A key with its modifiers. Keys are named: "A", "7", "[", "F5", "PageUp", "Space".
+struct Chord {
+    bool control = false, alt = false, shift = false;
+    std::string key;
+    auto operator<=>(const Chord&) const = default;
+};
+/// "Ctrl+Shift+Z"; nothing where the text is no chord.
+std::optional<Chord> chord_of(std::string_view text);
+/// The same for people: "Ctrl + Shift + Z", "Page Up".
+std::string in_words(const Chord& chord);
+
+class Keymap {
+public:
+    /// Chords by the ids of shortcuts, in place of those that ship; an empty list leaves a shortcut without a key.
+    using Changes = std::map<std::string, std::vector<std::string>>;
+    /// Fails at an id that is no shortcut's and at a text that is no chord.
+    explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
+
+    /// The shortcuts that this press means; one, unless a person's changes give a chord twice. Where a shortcut is
+    /// slowed by Shift, Shift may be down.
+    std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
+    /// The chords of a shortcut.
+    const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
+    /// The first, in words; empty where there is none.
+    std::string text_of(const Shortcut& shortcut) const;
+    /// Chords that mean more than one shortcut, each in a sentence.
+    std::vector<std::string> conflicts() const;
+
+private:
+    std::vector<std::vector<Chord>> chords_;  ///< in the order of shortcuts()
+};
+
+}  // namespace shvr::ui

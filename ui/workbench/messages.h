@@ -1,0 +1,54 @@
+#pragma once
+// What the program has told the person at it, with its weight. The main thread.
+
+#include <cstdint>
+#include <deque>
+#include <string>
+
+namespace shvr::ui {
+
+enum class Weight {
+    done,     ///< what an action did
+    warning,  ///< something is not as expected, and work goes on
+    error     ///< something was not done
+};
+
+struct Message {
+    uint64_t number = 0;  ///< counted from 1
+    double time_s = 0.0;  ///< of the workbench's clock
+    Weight weight = Weight::done;
+    std::string text;
+};
+
+/// The last messages; older ones are forgotten.
+class MessageLog {
+public:
+    static constexpr size_t MAX_MESSAGES = 1000;
+
+    void add(double time_s, Weight weight, std::string text)
+    {
+        messages_.push_back({++count_, time_s, weight, std::move(text)});
+        if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
+    }
+    /// Replaces the text of the last message, as progress does; adds one where there is none.
+    void amend(double time_s, std::string text)
+    {
+        if (messages_.empty()) return add(time_s, Weight::done, std::move(text));
+        messages_.back().text = std::move(text);
+    }
+    /// Oldest first.
+    const std::deque<Message>& all() const { return messages_; }
+    /// The last one; empty before the first.
+    const std::string& last() const
+    {
+        static const std::string NOTHING;
+        return messages_.empty() ? NOTHING : messages_.back().text;
+    }
+    uint64_t count() const { return count_; }
+
+private:
+    std::deque<Message> messages_;
+    uint64_t count_ = 0;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,305 @@
+#include "ui/workbench/shortcuts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/trace_ops.h"
+
+namespace shvr::ui {
+
+namespace {
+
+// Steps of a tap.
+constexpr double TURN_DEGREES = 3.0;
+constexpr double MOVE_HEIGHTS = 0.05;
+constexpr double CUT_SHARE = 0.01;
+constexpr double CLIP_SHARE = 0.01;
+constexpr double PROBE_FACTOR = 1.1;
+constexpr double BLEND_STEP = 0.05;
+constexpr double MAX_BLEND = 20.0;
+
+// ---- Actions. Those with parameters appear several times in the table.
+
+template <class Kind>
+Action plain(const Model&, double)
+{
+    return Kind{};
+}
+
+template <uint8_t GROUP>
+Action choose(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.brush.group = GROUP; });
+}
+
+Action next_brush(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        Brush& brush = s.probe.brush.brush;
+        brush = BRUSHES[(size_t(brush) + 1) % BRUSHES.size()].brush;
+    });
+}
+
+template <int DIRECTION>
+Action scale_probe(const Model&, double amount)
+{
+    return ScaleProbe{std::pow(PROBE_FACTOR, DIRECTION * amount)};
+}
+
+template <Arrangement ARRANGEMENT>
+Action arrange(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.view.arrangement = ARRANGEMENT; });
+}
+
+template <bool ProbeSettings::*FLAG>
+Action toggle(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.*FLAG = !(s.probe.*FLAG); });
+}
+
+Action next_guidance(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        s.probe.guidance = s.probe.guidance == Guidance::potential ? Guidance::mean : Guidance::potential;
+    });
+}
+
+Action next_tool(const Model& model, double)
+{
+    return edited(model.session,
+                  [](Session& s) { s.probe.tool = s.probe.tool == Tool::paint ? Tool::trace : Tool::paint; });
+}
+
+template <int RIGHT, int UP, int FORWARD>
+Action move(const Model&, double amount)
+{
+    return Move{MOVE_HEIGHTS * amount * glm::dvec3(RIGHT, UP, FORWARD)};
+}
+
+template <int RIGHT, int UP>
+Action orbit(const Model&, double amount)
+{
+    return Orbit{TURN_DEGREES * RIGHT * amount, TURN_DEGREES * UP * amount};
+}
+
+template <int DIRECTION>
+Action roll(const Model&, double amount)
+{
+    return Roll{TURN_DEGREES * DIRECTION * amount};
+}
+
+enum class Plane { lower, upper };
+
+template <int AXIS, Plane PLANE, int DIRECTION>
+Action move_cut(const Model&, double amount)
+{
+    return MoveCut{AXIS, PLANE == Plane::upper, CUT_SHARE * DIRECTION * amount};
+}
+
+template <bool FAR, int DIRECTION>
+Action move_clip(const Model&, double amount)
+{
+    return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
+}
+
+/// Values near 0 become 0, which costs nothing to render.
+template <double DistanceBlend::*VALUE, int DIRECTION>
+Action blend(const Model& model, double amount)
+{
+    return edited(model.session, [&](Session& s) {
+        const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MAX_BLEND);
+        s.blend.*VALUE = next < 1e-9 ? 0.0 : next;
+    });
+}
+
+template <uint8_t GROUP>
+Action regroup(const Model&, double)
+{
+    return GroupOp{GROUP};
+}
+
+template <int DIRECTION>
+Action scale_selected(const Model& model, double amount)
+{
+    return scaled(model, std::pow(PROBE_FACTOR, DIRECTION * amount));
+}
+
+template <int DIRECTION>
+Action scale_nodes(const Model& model, double amount)
+{
+    return scaled_nodes_of_group(model, std::pow(PROBE_FACTOR, DIRECTION * amount));
+}
+
+template <class Kind>
+Action begin_and_end(const Model&, double amount)
+{
+    return Kind{amount > 0.0};
+}
+
+// ---- The table ------------------------------------------------------------------------------------------------------
+
+using Mode = Shortcut::Mode;
+constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *PAINTING_KEYS = "Painting", *TRACING_KEYS = "Tracing",
+                     *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view", *MOVE_KEYS = "Move the view",
+                     *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes", *BLEND_KEYS = "Distance blending";
+
+/// By one key in both sets.
+constexpr Shortcut both(const char* id, const char* group, const char* name, Mode mode,
+                        Action (*action)(const Model&, double), const char* keys, bool is_by_position = false)
+{
+    return {id, group, name, mode, action, {keys, keys}, is_by_position};
+}
+
+// What goes outwards or back has Ctrl in the thesis; today Ctrl+C, Ctrl+V and Ctrl+Y mean something else.
+constexpr Shortcut SHORTCUTS[] = {
+    {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
+    {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},
+    both("save", WORK_KEYS, "Save", Mode::tap, plain<SaveOp>, "Ctrl+S"),
+    both("screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, "P"),
+    both(
+        "large_screenshot", WORK_KEYS, "Large screenshot", Mode::tap,
+        [](const Model&, double) -> Action { return Screenshot{true}; }, "Ctrl+P"),
+    both("update_occlusion", WORK_KEYS, "Update ambient occlusion", Mode::tap, plain<UpdateOcclusion>, "F8"),
+    {"help",
+     WORK_KEYS,
+     "Keys and mouse",
+     Mode::tap,
+     [](const Model& model, double) -> Action { return ShowHelp{!model.shows_help}; },
+     {"F1 F12", "F12"}},
+    both("quit", WORK_KEYS, "Quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
+
+    both("slices", VIEWS_KEYS, "Slices", Mode::tap, arrange<Arrangement::slices>, "F6"),
+    both("overview", VIEWS_KEYS, "Overview", Mode::tap, arrange<Arrangement::overview>, "F9"),
+    both("single_view", VIEWS_KEYS, "Single view", Mode::tap, arrange<Arrangement::single>, "F10"),
+    {"stereo", VIEWS_KEYS, "Two eyes", Mode::tap, arrange<Arrangement::stereo>, {"Shift+F11", "F11"}},
+    {"full_screen",
+     VIEWS_KEYS,
+     "Full screen",
+     Mode::tap,
+     [](const Model& model, double) -> Action { return ShowFullScreen{!model.is_full_screen}; },
+     {"F11", "Alt+Enter"}},
+
+    both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
+    both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
+    both("eraser", PAINTING_KEYS, "Eraser", Mode::tap, choose<0>, "0"),
+    both("group_1", PAINTING_KEYS, "Group 1", Mode::tap, choose<1>, "1"),
+    both("group_2", PAINTING_KEYS, "Group 2", Mode::tap, choose<2>, "2"),
+    both("group_3", PAINTING_KEYS, "Group 3", Mode::tap, choose<3>, "3"),
+    both("group_4", PAINTING_KEYS, "Group 4", Mode::tap, choose<4>, "4"),
+    both("group_5", PAINTING_KEYS, "Group 5", Mode::tap, choose<5>, "5"),
+    both("group_6", PAINTING_KEYS, "Group 6", Mode::tap, choose<6>, "6"),
+    both("group_7", PAINTING_KEYS, "Group 7", Mode::tap, choose<7>, "7"),
+    both("group_8", PAINTING_KEYS, "Group 8", Mode::tap, choose<8>, "8"),
+    both("group_9", PAINTING_KEYS, "Group 9", Mode::tap, choose<9>, "9"),
+    both("next_brush", PAINTING_KEYS, "Next brush", Mode::tap, next_brush, "End"),
+    both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
+    both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
+
+    both("next_tool", TRACING_KEYS, "Paint or trace", Mode::tap, next_tool, "X"),
+    both(
+        "add_node", TRACING_KEYS, "Add a node, linked with the selected one", Mode::tap,
+        [](const Model& model, double) -> Action { return node_at_probe(model); }, "N"),
+    both("drag_node", TRACING_KEYS, "Move the selected node while held", Mode::while_held, begin_and_end<DragNode>,
+         "M"),
+    both(
+        "link_nearest", TRACING_KEYS, "Link the selected node with the nearest", Mode::tap,
+        [](const Model& model, double) -> Action { return link_with_nearest(model); }, ","),
+    both(
+        "select_nearest", TRACING_KEYS, "Select the nearest node, then its internode", Mode::tap,
+        [](const Model& model, double) -> Action { return nearest_selection(model); }, "."),
+    both("select_segment", TRACING_KEYS, "Select the whole segment", Mode::tap, plain<SelectSegmentOp>, "Shift+."),
+    both("deselect", TRACING_KEYS, "Deselect", Mode::tap, plain<DeselectOp>, "/"),
+    both("delete_selected", TRACING_KEYS, "Delete what is selected", Mode::tap, plain<DeleteOp>, "Delete"),
+    both("larger_selected", TRACING_KEYS, "Larger selected nodes, or internodes of the group", Mode::step,
+         scale_selected<1>, "="),
+    both("smaller_selected", TRACING_KEYS, "Smaller selected nodes, or internodes of the group", Mode::step,
+         scale_selected<-1>, "-"),
+    both("larger_nodes", TRACING_KEYS, "Larger nodes of the group", Mode::step, scale_nodes<1>, "Alt+="),
+    both("smaller_nodes", TRACING_KEYS, "Smaller nodes of the group", Mode::step, scale_nodes<-1>, "Alt+-"),
+    both("regroup_0", TRACING_KEYS, "Selected to no group", Mode::tap, regroup<0>, "Ctrl+0"),
+    both("regroup_1", TRACING_KEYS, "Selected to group 1", Mode::tap, regroup<1>, "Ctrl+1"),
+    both("regroup_2", TRACING_KEYS, "Selected to group 2", Mode::tap, regroup<2>, "Ctrl+2"),
+    both("regroup_3", TRACING_KEYS, "Selected to group 3", Mode::tap, regroup<3>, "Ctrl+3"),
+    both("regroup_4", TRACING_KEYS, "Selected to group 4", Mode::tap, regroup<4>, "Ctrl+4"),
+    both("regroup_5", TRACING_KEYS, "Selected to group 5", Mode::tap, regroup<5>, "Ctrl+5"),
+    both("regroup_6", TRACING_KEYS, "Selected to group 6", Mode::tap, regroup<6>, "Ctrl+6"),
+    both("regroup_7", TRACING_KEYS, "Selected to group 7", Mode::tap, regroup<7>, "Ctrl+7"),
+    both("regroup_8", TRACING_KEYS, "Selected to group 8", Mode::tap, regroup<8>, "Ctrl+8"),
+    both("regroup_9", TRACING_KEYS, "Selected to group 9", Mode::tap, regroup<9>, "Ctrl+9"),
+
+    both("guide", PROBE_KEYS, "Guide the probe", Mode::tap, toggle<&ProbeSettings::guided>, "Space"),
+    both("shell", PROBE_KEYS, "Iso-surface around the probe", Mode::tap, toggle<&ProbeSettings::shell>, "F4"),
+    both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Home"),
+    both("larger_probe", PROBE_KEYS, "Larger probe", Mode::hold, scale_probe<1>, "PageUp"),
+    both("smaller_probe", PROBE_KEYS, "Smaller probe", Mode::hold, scale_probe<-1>, "PageDown"),
+
+    both("turn_up", TURN_KEYS, "Turn up", Mode::hold, orbit<0, 1>, "Alt+W", true),
+    both("turn_down", TURN_KEYS, "Turn down", Mode::hold, orbit<0, -1>, "Alt+S", true),
+    both("turn_left", TURN_KEYS, "Turn left", Mode::hold, orbit<-1, 0>, "Alt+A", true),
+    both("turn_right", TURN_KEYS, "Turn right", Mode::hold, orbit<1, 0>, "Alt+D", true),
+    both("roll_left", TURN_KEYS, "Roll left", Mode::hold, roll<-1>, "Alt+Q", true),
+    both("roll_right", TURN_KEYS, "Roll right", Mode::hold, roll<1>, "Alt+E", true),
+
+    both("move_forward", MOVE_KEYS, "Move forward", Mode::hold, move<0, 0, 1>, "W", true),
+    both("move_back", MOVE_KEYS, "Move back", Mode::hold, move<0, 0, -1>, "S", true),
+    both("move_left", MOVE_KEYS, "Move left", Mode::hold, move<-1, 0, 0>, "A", true),
+    both("move_right", MOVE_KEYS, "Move right", Mode::hold, move<1, 0, 0>, "D", true),
+    both("move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, "Q", true),
+    both("move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, "E", true),
+
+    {"near_x_in", CUT_KEYS, "Near x cut inwards", Mode::hold, move_cut<0, Plane::lower, 1>, {"Y", "Y"}},
+    {"near_x_out", CUT_KEYS, "Near x cut outwards", Mode::hold, move_cut<0, Plane::lower, -1>, {"Alt+Y", "Ctrl+Y"}},
+    {"near_y_in", CUT_KEYS, "Near y cut inwards", Mode::hold, move_cut<1, Plane::lower, 1>, {"U", "U"}},
+    {"near_y_out", CUT_KEYS, "Near y cut outwards", Mode::hold, move_cut<1, Plane::lower, -1>, {"Alt+U", "Ctrl+U"}},
+    {"near_z_in", CUT_KEYS, "Near z cut inwards", Mode::hold, move_cut<2, Plane::lower, 1>, {"I", "I"}},
+    {"near_z_out", CUT_KEYS, "Near z cut outwards", Mode::hold, move_cut<2, Plane::lower, -1>, {"Alt+I", "Ctrl+I"}},
+    {"far_x_in", CUT_KEYS, "Far x cut inwards", Mode::hold, move_cut<0, Plane::upper, -1>, {"H", "H"}},
+    {"far_x_out", CUT_KEYS, "Far x cut outwards", Mode::hold, move_cut<0, Plane::upper, 1>, {"Alt+H", "Ctrl+H"}},
+    {"far_y_in", CUT_KEYS, "Far y cut inwards", Mode::hold, move_cut<1, Plane::upper, -1>, {"J", "J"}},
+    {"far_y_out", CUT_KEYS, "Far y cut outwards", Mode::hold, move_cut<1, Plane::upper, 1>, {"Alt+J", "Ctrl+J"}},
+    {"far_z_in", CUT_KEYS, "Far z cut inwards", Mode::hold, move_cut<2, Plane::upper, -1>, {"K", "K"}},
+    {"far_z_out", CUT_KEYS, "Far z cut outwards", Mode::hold, move_cut<2, Plane::upper, 1>, {"Alt+K", "Ctrl+K"}},
+
+    {"more_blending", BLEND_KEYS, "More distance blending", Mode::hold, blend<&DistanceBlend::size, 1>, {"T", "T"}},
+    {"less_blending",
+     BLEND_KEYS,
+     "Less distance blending",
+     Mode::hold,
+     blend<&DistanceBlend::size, -1>,
+     {"Alt+T", "Ctrl+T"}},
+    {"later_blending", BLEND_KEYS, "Blending sets in later", Mode::hold, blend<&DistanceBlend::rate, 1>, {"R", "R"}},
+    {"sooner_blending",
+     BLEND_KEYS,
+     "Blending sets in sooner",
+     Mode::hold,
+     blend<&DistanceBlend::rate, -1>,
+     {"Alt+R", "Ctrl+R"}},
+
+    {"near_clip_away", CLIP_KEYS, "Near clip plane away", Mode::hold, move_clip<false, 1>, {"C", "C"}},
+    {"near_clip_closer", CLIP_KEYS, "Near clip plane closer", Mode::hold, move_clip<false, -1>, {"Alt+C", "Ctrl+C"}},
+    {"far_clip_closer", CLIP_KEYS, "Far clip plane closer", Mode::hold, move_clip<true, -1>, {"V", "V"}},
+    {"far_clip_away", CLIP_KEYS, "Far clip plane away", Mode::hold, move_clip<true, 1>, {"Alt+V", "Ctrl+V"}},
+};
+
+}  // namespace
+
+std::span<const Shortcut> shortcuts()
+{
+    return SHORTCUTS;
+}
+
+const Shortcut* shortcut_named(std::string_view id)
+{
+    const auto found = std::ranges::find_if(SHORTCUTS, [&](const Shortcut& each) { return each.id == id; });
+    return found == std::end(SHORTCUTS) ? nullptr : &*found;
+}
+
+std::string why_not(const Model& model, const Shortcut& shortcut)
+{
+    return why_not(model, shortcut.action(model, 1.0));
+}
+
+}  // namespace shvr::ui

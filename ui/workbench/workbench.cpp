@@ -1,0 +1,375 @@
+#include "ui/workbench/workbench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/base/assets.h"
+#include "engine/base/text.h"
+#include "haptics/hid_device.h"
+
+namespace shvr::ui {
+
+struct Workbench::Nothing {
+    Session session;
+    VolumeInfo volume;
+    VolumeStatistics statistics;
+    Camera camera;
+    std::vector<Screen::Part> panes;
+    TraceGraph trace;
+    std::filesystem::path path;
+};
+
+Workbench::Workbench(Renderer& renderer, WorkbenchOptions options)
+    : renderer_(renderer), options_(std::move(options)), nothing_(std::make_unique<Nothing>())
+{
+    if (!options_.now_s)
+        options_.now_s = [] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+        };
+    try {
+        presets_ = transfer_presets();
+    } catch (const Error& error) {
+        say(error.what(), Weight::warning);
+    }
+    load_preferences();
+}
+
+Workbench::~Workbench() = default;
+
+void Workbench::say(std::string text, Weight weight)
+{
+    messages_.add(options_.now_s(), weight, std::move(text));
+}
+
+// ---- Actions --------------------------------------------------------------------------------------------------------
+
+void Workbench::perform(const Action& action)
+{
+    if (!document_ && !ui::why_not(model(), action).empty()) fail("Nothing is open");
+    if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
+    std::visit([&](const auto& each) { perform(each); }, action);
+    if (log_) log_(line_of(action));
+}
+
+bool Workbench::apply(const Action& action)
+{
+    try {
+        perform(action);
+        return true;
+    } catch (const std::exception& error) {
+        say(error.what(), Weight::error);
+        return false;
+    }
+}
+
+void Workbench::perform(const ShowHelp& action)
+{
+    shows_help_ = action.on;
+}
+
+void Workbench::perform(const ShowFullScreen& action)
+{
+    is_full_screen_ = action.on;
+}
+
+void Workbench::perform(const Quit&)
+{
+    quits_ = true;
+}
+
+// ---- Preferences ----------------------------------------------------------------------------------------------------
+
+/// A file that cannot be read stays as it is, and nothing is kept until it can.
+void Workbench::load_preferences()
+{
+    if (options_.preferences.empty()) return;
+    try {
+        preferences_ = ui::load_preferences(options_.preferences);
+        keymap_ = Keymap(preferences_.key_set, preferences_.keys);
+        are_preferences_kept_ = true;
+    } catch (const Error& error) {
+        say(sentence(error.what(), "; the keys that ship are used, and the file stays as it is"), Weight::warning);
+    }
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+/// Whether they can be kept is told, and changes nothing else.
+void Workbench::prefer(Preferences preferences)
+{
+    if (preferences == preferences_) return;
+    keymap_ = Keymap(preferences.key_set, preferences.keys);
+    preferences_ = std::move(preferences);
+    if (!are_preferences_kept_) return;
+    try {
+        save_preferences(options_.preferences, preferences_);
+    } catch (const Error& error) {
+        say(error.what(), Weight::warning);
+    }
+}
+
+void Workbench::perform(const ChooseKeys& action)
+{
+    Preferences preferences = preferences_;
+    const auto set = std::ranges::find(KEY_SETS, action.set, &Spelling<KeySet>::name);
+    if (set == std::end(KEY_SETS)) fail("keys: '", action.set, "' is no set; expected modern or thesis");
+    preferences.key_set = set->value;
+    prefer(std::move(preferences));
+    say(set->value == KeySet::modern ? "Keys: today's conventions" : "Keys: as in the thesis");
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+void Workbench::perform(const BindKeys& action)
+{
+    const Shortcut* const shortcut = shortcut_named(action.shortcut);
+    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+    Preferences preferences = preferences_;
+    std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
+    keys_of_it.clear();
+    for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
+    prefer(std::move(preferences));
+    const std::string keys = keymap_.text_of(*shortcut);
+    say(keys.empty() ? sentence("'", shortcut->name, "' has no key") : sentence(keys, ": ", shortcut->name));
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+// ---- Documents ------------------------------------------------------------------------------------------------------
+
+/// The device holds one volume at a time. The previous document is kept until the next one is open, and comes back if
+/// that fails.
+void Workbench::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
+{
+    const double begun_s = options_.now_s();
+    if (document_) document_->annotator.work().settle();  // it may be opened once more
+    OpenedSession opened = open_session(path, settings);
+    const std::vector<std::string> losses = opened.losses;
+    screenshots_.drop_large();
+    if (document_) document_->screen.clear();
+    look_again();
+    try {
+        document_ = Document::open(renderer_, std::move(opened), path, options_.view, settings,
+                                   document_ ? document_->annotator.work().hold() : nullptr);
+    } catch (const Error& error) {
+        if (!document_) throw;
+        bring_back(error.what());
+    }
+    opened_s_ = begun_s;
+    Preferences preferences = preferences_;
+    preferences.note_opened(path);
+    prefer(std::move(preferences));
+    ++openings_;
+    settings_to_record_ = was_set_in_this_turn_ = false;
+    session_before_hand_.reset();
+    journal_failure_.clear();
+    std::string device_said;
+    if (std::unique_ptr<HapticDevice> device = find_device(device_said))
+        document_->touch.use(std::move(device), "haptic device");
+    std::string status = "Opened " + path.string();
+    if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
+    for (const std::string& loss : losses) status += "; " + loss;
+    for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
+    for (const std::string& message : document_->messages) status += "; " + message;
+    if (!device_said.empty()) status += "; " + device_said;
+    const bool is_as_left = losses.empty() && document_->messages.empty() && !document_->only_looks();
+    say(status, is_as_left ? Weight::done : Weight::warning);
+}
+
+/// Reopens the previous scan after the next one failed to open. Always throws, with a message saying why and what is
+/// open.
+void Workbench::bring_back(const std::string& why)
+{
+    const std::string before = document_->session_path.string();
+    try {
+        document_->show_again(renderer_);
+    } catch (const Error& error) {
+        document_.reset();
+        fail(why, "; ", before, " cannot be shown again either: ", error.what(), "; it is saved");
+    }
+    fail(why, "; ", before, " stays open");
+}
+
+/// If the device cannot be used, reports that; the mouse is used instead.
+std::unique_ptr<HapticDevice> Workbench::find_device(std::string& said) const
+{
+    if (!options_.has_servo) return nullptr;
+    try {
+        const std::filesystem::path profiles = asset_folder("devices");
+        return profiles.empty() ? nullptr : open_hid_device(load_hid_profiles(profiles), options_.allow_force);
+    } catch (const Error& error) {
+        said = error.what();
+        return nullptr;
+    }
+}
+
+std::filesystem::path Workbench::screenshot_stem() const
+{
+    return std::filesystem::path(document_->session_path).replace_extension();
+}
+
+// ---- Turns ----------------------------------------------------------------------------------------------------------
+
+template <class Part>
+void Workbench::attempt(Attempt& state, Part part)
+{
+    if (options_.now_s() < state.again_s) return;
+    try {
+        part();
+    } catch (const std::exception& error) {
+        note_failure(state, error.what());
+    }
+}
+
+void Workbench::note_failure(Attempt& state, const std::string& why)
+{
+    constexpr double AGAIN_S = 0.25, SAY_AGAIN_S = 1.0;
+    const double now = options_.now_s();
+    const bool is_known = state.failed_s > 0.0 && why == state.said && now - state.failed_s < SAY_AGAIN_S;
+    if (!is_known) say(why, Weight::error);
+    state = {.said = why, .failed_s = now, .again_s = now + AGAIN_S};
+}
+
+void Workbench::set_pixels(const glm::uvec2& pixels)
+{
+    if (std::exchange(pixels_, pixels) != pixels) look_again();
+}
+
+bool Workbench::has_work() const
+{
+    return document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
+                         document_->touch.servo() || is_stirring() || screenshots_.is_writing() ||
+                         screenshots_.has_large() || !document_->previewer.is_current());
+}
+
+void Workbench::advance()
+{
+    if (!document_) return;
+    attempt(touching_, [this] { follow_touch(); });
+    attempt(recording_, [this] { follow_settings(); });
+    attempt(painting_, [this] { follow_stroke(); });
+    attempt(previewing_, [this] { follow_preview(); });
+    attempt(looking_, [this] { follow_look(); });
+    for (const std::string& message : renderer_.scene().take_messages()) say(message, Weight::warning);
+    attempt(photographing_, [this] { follow_screenshots(); });
+}
+
+TouchSettings Workbench::touch_settings() const
+{
+    const ProbeSettings& probe = document_->session.probe;
+    return {.assistance = probe.guided && options_.has_servo,
+            .threshold = *probe.haptic_threshold,
+            .probe_radius = document_->probe_radius(),
+            .law = probe.guidance == Guidance::potential ? ProxyLaw::potential : ProxyLaw::mean,
+            .axes = axes_of(document_->camera),
+            .target = document_->camera.target,
+            .view_height =
+                pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target))};
+}
+
+void Workbench::follow_touch()
+{
+    Touch& touch = document_->touch;
+    touch.advance(touch_settings());
+    if (const bool paints = touch.paint_button(); paints != std::exchange(device_paints_, paints)) apply(Paint{paints});
+}
+
+void Workbench::follow_stroke()
+{
+    Annotator& annotator = document_->annotator;
+    const std::string failure = annotator.work().journal().failure;
+    if (failure != journal_failure_)
+        say(failure.empty() ? "The journal can be written again: all work is kept" : failure,
+            failure.empty() ? Weight::done : Weight::error);
+    journal_failure_ = failure;
+    if (!annotator.stroke_is_running()) return;
+    extend_stroke();
+    static_cast<void>(annotator.advance());
+    if (!annotator.stroke_is_running()) stroke_ended();
+}
+
+void Workbench::follow_look()
+{
+    Document& document = *document_;
+    if (pixels_.x > 0 && pixels_.y > 0) {
+        if (look_is_stale_)
+            document.screen.look(document.session, document.camera, pixels_, document.probe_voxel());
+        else if (camera_moved_)
+            document.screen.look_from(document.camera, document.probe_voxel());
+        look_is_stale_ = camera_moved_ = false;
+    }
+    // A running stroke, or touch, requests its own bricks.
+    if (!document.touch.servo() && !document.annotator.stroke_is_running())
+        renderer_.volume().prefer(document.voxels_around_probe());
+    document.screen.show_probe(document.probe_look());
+    document.screen.advance();
+}
+
+void Workbench::follow_screenshots()
+{
+    if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
+        screenshots_.drop_large();  // paint would show in some of its parts only
+        say("The large screenshot was cancelled by painting", Weight::warning);
+    }
+    const Screenshots::Turn turn = screenshots_.advance(document_->screen, screenshot_stem(), is_still_);
+    if (!turn.said.empty()) say(turn.said);
+    if (!turn.progress.empty()) messages_.amend(options_.now_s(), turn.progress);
+}
+
+// ---- What there is to see -------------------------------------------------------------------------------------------
+
+Model Workbench::model() const
+{
+    if (!document_)
+        return {.session = nothing_->session,
+                .volume = nothing_->volume,
+                .statistics = nothing_->statistics,
+                .camera = nothing_->camera,
+                .panes = nothing_->panes,
+                .presets = presets_,
+                .trace = nothing_->trace,
+                .session_path = nothing_->path,
+                .messages = messages_,
+                .keymap = keymap_,
+                .preferences = preferences_,
+                .shows_help = shows_help_,
+                .is_full_screen = is_full_screen_,
+                .gpu_name = renderer_.device().traits().name};
+    const Document& document = *document_;
+    const Previewer& previewer = document.previewer;
+    const bool has_preview = previewer.shown() && previewer.is_current();
+    return {.is_open = true,
+            .session = document.session,
+            .volume = document.volume(),
+            .statistics = document.statistics,
+            .camera = document.camera,
+            .panes = document.screen.parts(),
+            .presets = presets_,
+            .screen = &document.screen,
+            .probe_voxel = document.probe_voxel(),
+            .is_painting = document.annotator.stroke_is_running(),
+            .servo = document.touch.servo(),
+            .device_name = document.touch.device_name(),
+            .trace = document.annotator.document().trace,
+            .nearby_node = document.nearby_node(),
+            .drags_node = document.drags_node,
+            .previewed_voxels = has_preview ? std::optional(previewer.shown()->voxels) : std::nullopt,
+            .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+            .undoable = document.annotator.history().undoable() + settings_to_record_,
+            .redoable = document.annotator.history().redoable(),
+            .is_saved = document.is_saved(),
+            .holder = document.holder,
+            .session_path = document.session_path,
+            .disputes = document.annotator.work().disputes(),
+            .messages = messages_,
+            .keymap = keymap_,
+            .preferences = preferences_,
+            .shows_help = shows_help_,
+            .is_full_screen = is_full_screen_,
+            .gpu_name = renderer_.device().traits().name,
+            .view_is_complete = document.screen.complete(),
+            .view_is_limited = renderer_.volume().state() == DeviceVolume::State::limited,
+            .relevance_age_ms = document.touch.relevance_age_ms(),
+            .device_bytes = renderer_.memory().device_bytes(),
+            .device_budget = renderer_.memory().device_budget()};
+}
+
+}  // namespace shvr::ui

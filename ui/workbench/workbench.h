@@ -1,0 +1,213 @@
+#pragma once
+// Everything a person can do, without a window: the open document, the actions on it, the work that goes on beside
+// them, and what there is to say. The window, scripts and tests are its callers; keys, menus and panels only make
+// actions (action.h).
+//
+//   actions -> perform -> Session, Annotator, Touch -> advance: touch, settings, stroke, preview, view, screenshots
+//
+// One thread, the one that owns the renderer, besides the servo's (haptics/servo.h) and one that writes a screenshot.
+// `advance` never waits for the device; a turn in which nothing happens costs microseconds (MEASURED.md).
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/document.h"
+#include "ui/workbench/messages.h"
+#include "ui/workbench/preferences.h"
+#include "ui/workbench/screenshots.h"
+
+namespace shvr::ui {
+
+struct WorkbenchOptions {
+    View::Options view{};
+    bool has_servo = true;     ///< guidance and haptic devices run; false: guidance is a setting that nobody follows
+    bool allow_force = false;  ///< lets a haptic device with a verified profile push the hand
+    std::filesystem::path preferences{};  ///< the file (preferences.h); empty: none are read or kept
+    std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
+};
+
+class Workbench {
+public:
+    Workbench(Renderer& renderer, WorkbenchOptions options);
+    ~Workbench();
+    Workbench(const Workbench&) = delete;
+
+    // ---- Actions
+
+    /// Carries it out. Fails, with nothing changed, with the reason; then the caller says it.
+    void perform(const Action& action);
+    /// The same; a failure becomes a message. Returns whether it was carried out.
+    bool apply(const Action& action);
+    /// As the action Open, with settings as --set takes them.
+    void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    void say(std::string text, Weight weight = Weight::done);
+    /// Called with each action that was carried out, as a line that replays it (action_rows.h).
+    void log_to(std::function<void(const std::string& line)> log) { log_ = std::move(log); }
+
+    // ---- Turns
+
+    /// Size of the picture; 0, 0: none is drawn.
+    void set_pixels(const glm::uvec2& pixels);
+    /// While a hand is setting something no step of the history is made of it: one drag is one step.
+    void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
+    /// Nothing else waits for the device: large screenshots may go on.
+    void set_still(bool is_still) { is_still_ = is_still; }
+    /// Does a turn of all that goes on beside the actions. Failures become messages, and that part is tried again a
+    /// little later: whatever fails, the rest goes on and no work is lost.
+    void advance();
+    /// Turns until a running stroke is painted. Returns why part of it was not; empty if all was.
+    std::string finish_stroke();
+    /// Whether another turn at once would find something to do.
+    bool has_work() const;
+    /// Whether the picture does not yet show what was done last.
+    bool is_stirring() const { return look_is_stale_ || camera_moved_; }
+    /// Saves all work as Save does; if the person only looked around, saves the view silently. Where the work is only
+    /// looked at, nothing is saved, as was said; while it is asked what to believe, annotation stays as the journal has
+    /// it.
+    void save_before_leaving();
+
+    // ---- What there is to see
+
+    bool is_open() const { return document_ != nullptr; }
+    const Document& document() const { return *document_; }
+    Screen& screen() { return document_->screen; }
+    Model model() const;
+    std::string why_not(const Action& action) const { return ui::why_not(model(), action); }
+    const MessageLog& messages() const { return messages_; }
+    bool takes_large_screenshot() const { return screenshots_.has_large(); }
+    void wait_for_screenshots() const { screenshots_.wait(); }
+    /// Quit was asked for; asking clears it.
+    bool take_quit() { return std::exchange(quits_, false); }
+    bool shows_full_screen() const { return is_full_screen_; }
+    /// Voxels that the preview showed when the last stroke began, if it had one.
+    std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
+    /// When the open document was opened, and how often one was.
+    double opened_s() const { return opened_s_; }
+    uint64_t openings() const { return openings_; }
+
+private:
+    /// A part of a turn.
+    struct Attempt {
+        std::string said;       ///< message of the last failure
+        double failed_s = 0.0;  ///< when that was; 0: never
+        double again_s = 0.0;
+    };
+    template <class Part>
+    void attempt(Attempt& state, Part part);
+    void note_failure(Attempt& state, const std::string& why);
+
+    // One for each action.
+    void perform(const Orbit& action);
+    void perform(const Roll& action);
+    void perform(const Move& action);
+    void perform(const Zoom& action);
+    void perform(const DragInMap& action);
+    void perform(const LookFrom& action);
+    void perform(const KeepCamera& action);
+    void perform(const ForgetCamera& action);
+    void perform(const MoveCut& action);
+    void perform(const MoveClip& action);
+    void perform(const ResetCuts& action);
+    void perform(const UpdateOcclusion& action);
+    void perform(const Set& action);
+    void perform(const ProbeTo& action);
+    void perform(const ProbeOnto& action);
+    void perform(const PushProbe& action);
+    void perform(const PlaceProbe& action);
+    void perform(const ScaleProbe& action);
+    void perform(const Paint& action);
+    void perform(const PaintOp& action);
+    void perform(const DragNode& action);
+    void perform(const NodeOp& op) { trace(op); }
+    void perform(const SelectOp& op) { trace(op); }
+    void perform(const SelectSegmentOp& op) { trace(op); }
+    void perform(const DeselectOp& op) { trace(op); }
+    void perform(const LinkOp& op) { trace(op); }
+    void perform(const MoveOp& op) { trace(op); }
+    void perform(const DeleteOp& op) { trace(op); }
+    void perform(const GroupOp& op) { trace(op); }
+    void perform(const RadiusOp& op) { trace(op); }
+    void perform(const UndoOp& action);
+    void perform(const RedoOp& action);
+    void perform(const SaveOp& action);
+    void perform(const Screenshot& action);
+    void perform(const Open& action);
+    void perform(const ChooseBelief& action);
+    void perform(const WorkOnCopy& action);
+    void perform(const ChooseKeys& action);
+    void perform(const BindKeys& action);
+    void perform(const ShowHelp& action);
+    void perform(const ShowFullScreen& action);
+    void perform(const Quit& action);
+
+    // Documents
+    [[noreturn]] void bring_back(const std::string& why);
+    std::unique_ptr<HapticDevice> find_device(std::string& said) const;
+    void save();
+    std::filesystem::path screenshot_stem() const;
+
+    // Preferences
+    void load_preferences();
+    void prefer(Preferences preferences);
+
+    // Looking
+    const Pane& pane(size_t index) const;
+    void look_again() { look_is_stale_ = true; }
+    void look_from(const Camera& camera);
+
+    // Settings
+    void take_session(Session session);
+    void settings_changed(const Session& before);
+    std::string sentence_about(const Session& before) const;
+    void note_edit();
+    void record_settings();
+
+    // Annotation
+    void trace(const TraceOp& op);
+    void move_probe(const glm::dvec3& point, bool jumps);
+    void extend_stroke();
+    void stroke_ended();
+    void show_changes(const Command& command);
+    template <class Way>
+    void step(int count, const char* done, const char* nothing, Way way);
+
+    // Turns
+    TouchSettings touch_settings() const;
+    void follow_touch();
+    void follow_settings();
+    void follow_stroke();
+    void follow_preview();
+    void follow_look();
+    void follow_screenshots();
+
+    Renderer& renderer_;
+    WorkbenchOptions options_;
+    std::unique_ptr<Document> document_;
+    std::vector<TransferPreset> presets_;
+    MessageLog messages_;
+    Preferences preferences_;
+    Keymap keymap_;
+    bool are_preferences_kept_ = false;
+    Screenshots screenshots_;
+    std::function<void(const std::string&)> log_;
+    Attempt touching_, recording_, painting_, previewing_, looking_, photographing_;
+    glm::uvec2 pixels_{0};
+    bool look_is_stale_ = true, camera_moved_ = false;
+    bool is_hand_down_ = false, is_still_ = true;
+    bool settings_to_record_ = false, was_set_in_this_turn_ = false;
+    std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
+    bool device_paints_ = false;                  ///< its paint button is down
+    glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to
+    std::string journal_failure_;                 ///< as last reported
+    std::optional<int64_t> previewed_at_stroke_;
+    bool shows_help_ = false, is_full_screen_ = false, quits_ = false;
+    double opened_s_ = 0.0;
+    uint64_t openings_ = 0;
+    /// What a model refers to where nothing is open.
+    struct Nothing;
+    std::unique_ptr<Nothing> nothing_;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,142 @@
+// Actions of looking.
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// The point that the view turns about: the middle of what is shown.
+glm::dvec3 pivot_of(const Document& document)
+{
+    return document.camera.target;
+}
+
+/// The height of the view at the target's depth.
+double height_of(const Camera& camera)
+{
+    return pixel_size(camera, {1, 1}, glm::distance(camera.eye, camera.target));
+}
+
+}  // namespace
+
+void Workbench::look_from(const Camera& camera)
+{
+    document_->camera = camera;
+    camera_moved_ = true;
+}
+
+void Workbench::perform(const Orbit& action)
+{
+    look_from(orbited(document_->camera, pivot_of(*document_), action.right_degrees, action.up_degrees));
+}
+
+void Workbench::perform(const Roll& action)
+{
+    look_from(rolled(document_->camera, action.degrees));
+}
+
+void Workbench::perform(const Move& action)
+{
+    look_from(moved(document_->camera, action.heights * height_of(document_->camera)));
+}
+
+void Workbench::perform(const Zoom& action)
+{
+    look_from(zoomed(document_->camera, pane(action.pane).pixels(), action.pixel, action.factor));
+}
+
+const Pane& Workbench::pane(size_t index) const
+{
+    const std::vector<Screen::Part>& parts = document_->screen.parts();
+    if (index >= parts.size()) fail("the window has no such part any more");
+    return parts[index].pane;
+}
+
+void Workbench::perform(const DragInMap& action)
+{
+    const Pane& map = pane(action.pane);
+    const CameraAxes axes = axes_of(map.shot.camera);
+    const glm::dvec2 way = action.pixels * pixel_size(map.shot.camera, map.pixels(), 1.0);
+    const glm::dvec3 moved = axes.right * way.x - axes.up * way.y;
+    Camera camera = document_->camera;
+    camera.eye += moved;
+    camera.target += moved;
+    look_from(camera);
+}
+
+void Workbench::perform(const LookFrom& action)
+{
+    look_from(camera_named(document_->session, action.camera, document_->volume()));
+    say("Looking from " + action.camera);
+}
+
+void Workbench::perform(const KeepCamera& action)
+{
+    document_->session.cameras[action.name] = document_->camera;
+    note_edit();
+    say("This view is kept as " + action.name);
+}
+
+void Workbench::perform(const ForgetCamera& action)
+{
+    if (document_->session.cameras.erase(action.name) == 0)
+        fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
+    if (document_->session.camera_name == action.name) document_->session.camera_name.clear();
+    note_edit();
+    say("The view " + action.name + " is no longer kept");
+}
+
+void Workbench::perform(const MoveCut& action)
+{
+    Session after = document_->session;
+    CutBox& cut = after.cut;
+    const glm::dvec3 size(document_->volume().size);
+    cut.upper = glm::min(cut.upper, size);
+    double& plane = action.upper ? cut.upper[action.axis] : cut.lower[action.axis];
+    const double low = action.upper ? cut.lower[action.axis] : 0.0;
+    const double high = action.upper ? size[action.axis] : cut.upper[action.axis];
+    plane = std::clamp(plane + action.share * size[action.axis], low, high);
+    take_session(std::move(after));
+    say(sentence(action.upper ? "Far" : "Near", " cutting plane of ", "xyz"[action.axis], " at voxel ",
+                 std::lround(plane)));
+}
+
+void Workbench::perform(const MoveClip& action)
+{
+    Camera& camera = document_->camera;
+    const double reach = glm::distance(camera.eye, camera.target);
+    const double diagonal = glm::length(glm::dvec3(document_->volume().size) * document_->volume().spacing);
+    if (!action.far) {
+        camera.near_distance = std::max(0.0, camera.near_distance + action.share * reach);
+    } else {
+        const double from = camera.far_distance > 0.0 ? camera.far_distance : reach + 0.5 * diagonal;
+        camera.far_distance = std::max(from + action.share * reach, 0.01 * reach);
+    }
+    look_again();
+    say(sentence(action.far ? "Far" : "Near", " clip plane at ",
+                 action.far ? camera.far_distance : camera.near_distance, " ", document_->volume().unit,
+                 " from the eye"));
+}
+
+void Workbench::perform(const ResetCuts&)
+{
+    Session after = document_->session;
+    after.cut = {};
+    take_session(std::move(after));
+    document_->camera.near_distance = document_->camera.far_distance = 0.0;
+    look_again();
+    say("All cutting planes are removed");
+}
+
+void Workbench::perform(const UpdateOcclusion&)
+{
+    document_->screen.update_occlusion();
+    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is being updated"
+                                                          : "Ambient occlusion is off: its strength is 0");
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,146 @@
+// Actions of the probe and its brush.
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::string painted_sentence(const PaintOp& brush, int64_t voxels)
+{
+    if (brush.erases()) return sentence("Erased ", voxels, " voxels");
+    if (!brush.density) return sentence("Painted ", voxels, " voxels in group ", int(brush.group));
+    const std::string groups = brush.paints_group ? sentence(" and of group ", int(brush.group)) : std::string();
+    return sentence("Painted ", voxels, " changes of density", groups);
+}
+
+}  // namespace
+
+void Workbench::perform(const ProbeTo& action)
+{
+    const Pane& seen = pane(action.pane);
+    const Camera& camera = seen.shot.camera;
+    const double depth = glm::dot(document_->touch.probe() - camera.eye, axes_of(camera).forward);
+    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
+    move_probe(unproject(camera, seen.pixels(), action.pixel, std::max(depth, shallowest)), false);
+}
+
+void Workbench::perform(const ProbeOnto& action)
+{
+    const Pane& seen = pane(action.pane);
+    const glm::uvec2 pixels = seen.pixels();
+    std::optional<glm::dvec3> point;
+    if (seen.shot.is_slice) {
+        const Camera& camera = seen.shot.camera;
+        point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
+    } else {
+        const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+        point = renderer_.pick(document_->session.look(), seen.shot.camera, pixels, pixel, document_->probe_look());
+    }
+    if (!point) return say("Nothing opaque enough there: the probe stays where it is");
+    move_probe(*point, true);
+    const glm::dvec3 voxel = document_->probe_voxel();
+    say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
+}
+
+void Workbench::perform(const PushProbe& action)
+{
+    const glm::dvec3 forward = axes_of(pane(action.pane).shot.camera).forward;
+    const double voxel = glm::length(forward * document_->volume().spacing);
+    move_probe(document_->touch.probe() + forward * (action.voxels * voxel), false);
+}
+
+void Workbench::perform(const PlaceProbe& action)
+{
+    move_probe(action.voxel * document_->volume().spacing, true);
+}
+
+/// A stroke that is open goes there with it.
+void Workbench::move_probe(const glm::dvec3& point, bool jumps)
+{
+    if (jumps)
+        document_->touch.place(point);
+    else
+        document_->touch.wish(point);
+    extend_stroke();
+}
+
+void Workbench::perform(const ScaleProbe& action)
+{
+    double& radius = document_->session.probe.brush.radius_voxels;
+    radius = std::clamp(radius * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
+    note_edit();
+    say(sentence("Probe radius ", std::round(10.0 * radius) / 10.0, " voxels"));
+}
+
+// ---- Painting -------------------------------------------------------------------------------------------------------
+
+void Workbench::perform(const Paint& action)
+{
+    Annotator& annotator = document_->annotator;
+    if (document_->session.probe.tool == Tool::trace) {
+        if (action.on) trace(NodeOp{.at = document_->probe_voxel(), .radius_voxels = {}, .group = {}});
+        return;
+    }
+    if (action.on && !annotator.stroke_is_running()) {
+        if (document_->drags_node) perform(DragNode{false});
+        const Previewer& previewer = document_->previewer;
+        if (previewer.shown() && previewer.is_current()) previewed_at_stroke_ = previewer.shown()->voxels;
+        check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
+        record_settings();
+        annotator.begin_stroke(document_->stroke());
+        stroke_end_voxel_ = document_->probe_voxel();
+        annotator.extend_stroke(stroke_end_voxel_);
+    } else if (!action.on && annotator.stroke_is_running()) {
+        extend_stroke();
+        annotator.end_stroke();
+    }
+}
+
+void Workbench::perform(const PaintOp& op)
+{
+    if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
+    record_settings();
+    const int64_t voxels = document_->annotator.paint(with_offset(op, document_->session.transfer_function));
+    say(painted_sentence(op, voxels));
+}
+
+void Workbench::extend_stroke()
+{
+    if (!document_->annotator.stroke_is_open() || document_->probe_voxel() == stroke_end_voxel_) return;
+    stroke_end_voxel_ = document_->probe_voxel();
+    document_->annotator.extend_stroke(stroke_end_voxel_);
+    if (log_ && document_->touch.servo()) log_(line_of(PlaceProbe{stroke_end_voxel_}));
+}
+
+void Workbench::stroke_ended()
+{
+    const int64_t voxels = document_->annotator.last_stroke_voxels();
+    if (voxels == 0)
+        return say(
+            "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted "
+            "already");
+    say(painted_sentence(document_->stroke(), voxels));
+}
+
+/// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.
+void Workbench::follow_preview()
+{
+    Document& document = *document_;
+    const bool is_wanted = document.session.probe.preview && document.session.probe.tool == Tool::paint &&
+                           !document.annotator.stroke_is_running();
+    document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
+    try {
+        document.previewer.advance();
+    } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
+        document.session.probe.preview = false;
+        note_edit();
+        document.previewer.want(std::nullopt);
+        say(error.what(), Weight::error);
+    }
+}
+
+}  // namespace shvr::ui

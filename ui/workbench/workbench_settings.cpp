@@ -1,0 +1,140 @@
+// Settings: how they change, what follows from it, and which of it becomes a step of the history.
+
+#include <utility>
+
+#include "engine/session/session_patch.h"
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::string name_of(StereoOutput output)
+{
+    switch (output) {
+        case StereoOutput::side_by_side: return "side by side";
+        case StereoOutput::top_bottom: return "one above the other";
+        case StereoOutput::anaglyph: return "for red and cyan glasses";
+    }
+    return {};
+}
+
+std::string sentence_about(const ViewSettings& view)
+{
+    switch (view.arrangement) {
+        case Arrangement::single: return "Single view";
+        case Arrangement::stereo: return "Two eyes: " + name_of(view.stereo.output);
+        case Arrangement::overview: return "Overview: drag in a map to move the camera";
+        case Arrangement::slices: return "Slices through the probe: the wheel moves a slice";
+    }
+    return {};
+}
+
+std::string sentence_about_group(const Session& session)
+{
+    const uint8_t group = session.probe.brush.group;
+    if (group == 0) return "Eraser: painting removes voxels from their group";
+    return sentence("Group ", int(group), ": ", group_of(session.groups, group).name);
+}
+
+/// Changes for which there is more to say than what was set.
+std::string special_sentence(const Session& was, const Session& is)
+{
+    const ProbeSettings &before = was.probe, &after = is.probe;
+    if (was.view.arrangement != is.view.arrangement) return sentence_about(is.view);
+    if (before.brush.group != after.brush.group) return sentence_about_group(is);
+    if (before.brush.brush != after.brush.brush) return sentence("Brush: ", row_of(after.brush.brush).name);
+    if (before.tool != after.tool)
+        return after.tool == Tool::paint ? "Painting: hold the right mouse button or F"
+                                         : "Tracing: the right mouse button or N adds a node at the probe";
+    if (before.guided != after.guided)
+        return after.guided ? "Guidance on: the probe is pulled to what is at or above the haptic threshold"
+                            : "Guidance off";
+    if (before.guidance != after.guidance)
+        return after.guidance == Guidance::potential ? "Guidance: smooth" : "Guidance: mean of what is relevant";
+    if (before.shell != after.shell)
+        return after.shell ? "Iso-surface around the probe on, at the paint threshold"
+                           : "Iso-surface around the probe off";
+    if (before.preview != after.preview)
+        return after.preview ? "Preview of the brush on: what it would change is shown" : "Preview of the brush off";
+    if (was.light.shaded != is.light.shaded) return is.light.shaded ? "Shading on" : "Shading off";
+    if (was.render.preintegration != is.render.preintegration)
+        return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
+                                        : "Narrow peaks off: samples may miss them";
+    return {};
+}
+
+}  // namespace
+
+void Workbench::perform(const Set& action)
+{
+    Session after = patched(document_->session, action.patch);
+    if (!after.transfer_preset.empty())
+        after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
+                                                       document_->statistics);
+    const Session before = document_->session;
+    take_session(std::move(after));
+    if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;
+    const Session& since = session_before_hand_ ? *session_before_hand_ : before;
+    std::string said = special_sentence(since, document_->session);
+    if (said.empty()) said = difference_in_words(since, document_->session);
+    if (!said.empty()) say(std::move(said));
+}
+
+void Workbench::take_session(Session session)
+{
+    Document& document = *document_;
+    Session before = std::exchange(document.session, std::move(session));
+    const Session& after = document.session;
+    try {
+        settings_changed(before);
+    } catch (...) {
+        document.session = before;
+        throw;
+    }
+    note_edit();
+    before.probe = after.probe;  // which is drawn by itself
+    if (before != after) look_again();
+}
+
+/// What follows from settings beside another picture.
+void Workbench::settings_changed(const Session& before)
+{
+    Document& document = *document_;
+    const Session& after = document.session;
+    if (before.render.sampling != after.render.sampling || before.render.paging != after.render.paging) {
+        document.screen.clear();
+        document.show_again(renderer_);
+    } else if (before.groups != after.groups) {
+        renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
+    }
+    if (before.probe.tool != after.probe.tool) {
+        if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
+        if (document.drags_node) perform(DragNode{false});
+    }
+}
+
+void Workbench::note_edit()
+{
+    document_->note_edit();
+    settings_to_record_ = was_set_in_this_turn_ = true;
+}
+
+/// Makes a step of the history of what was set, once the hand has let go: one drag is one step.
+void Workbench::follow_settings()
+{
+    const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
+    if (!is_hand_down_) session_before_hand_.reset();
+    if (!settings_to_record_ || is_being_set || document_->annotator.stroke_is_running()) return;
+    record_settings();
+}
+
+/// Of what follows, undo is to take back that first.
+void Workbench::record_settings()
+{
+    if (document_->annotator.stroke_is_running()) return;
+    settings_to_record_ = false;
+    document_->record_settings();
+}
+
+}  // namespace shvr::ui
