@@ -210,7 +210,7 @@ class Projects(CliTest):
         # One hierarchy, one version.
         for version, wrong in (("0.5", "0.4"), ("0.4", "0.5")):
             self.check_refused("export", self.projects[version], "--labels", "--ome-zarr", wrong,
-                               says=[f"is an OME-Zarr {version}", f"are to be {wrong}"])
+                               says=[f"is an OME-Zarr {version}", f"were asked for as {wrong}"])
         self.check("export", project, "--labels", "--ome-zarr", "0.5")
 
     def test_a_label_image_alone_keeps_its_version_until_another_is_asked_for(self):
