@@ -296,7 +296,7 @@ class Refusals(CliTest):
         self.check_refused("import", header, project, says=["already exists", "--overwrite"])
         (self.folder / "mine").mkdir()
         (self.folder / "mine/text").write_text("keep")
-        self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is no project"])
+        self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is not a project"])
         self.assertEqual((self.folder / "mine/text").read_text(), "keep")
         with open(self.folder / "volume.raw", "r+b") as voxels:
             voxels.truncate(100)
