@@ -33,7 +33,7 @@ DensityStroke::DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType ty
       falloff_(falloff),
       selection_(size)
 {
-    if (!std::isfinite(offset)) fail("density offset is ", offset, "; expected a number");
+    if (!std::isfinite(offset)) fail("density offset is ", offset, "; expected a finite number");
 }
 
 void DensityStroke::add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,

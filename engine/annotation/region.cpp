@@ -98,7 +98,7 @@ BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, doubl
         fail("brush radius is ", radius_voxels, " voxels; expected a number above 0");
     for (int axis = 0; axis < 3; ++axis)
         if (!std::isfinite(centre_voxel[axis]))
-            fail("brush position along ", "xyz"[axis], " is ", centre_voxel[axis], "; expected a number");
+            fail("brush position along ", "xyz"[axis], " is ", centre_voxel[axis], "; expected a finite number");
     const double radius = radius_voxels * spacing.x;
     const auto squared = [&](int axis, int64_t voxel) {
         const double distance = (double(voxel) + 0.5 - centre_voxel[axis]) * spacing[axis];

@@ -182,7 +182,7 @@ int64_t chosen_channel(const std::string& file, const OpenOptions& options, int6
 
 int64_t chosen_frame(const std::string& file, const OpenOptions& options, int64_t count)
 {
-    return choose(file, options.frame, count, {}, "points in time", "frame");
+    return choose(file, options.frame, count, {}, "time points", "frame");
 }
 
 std::span<const char* const> color_names(int64_t count)

@@ -23,7 +23,7 @@ bool is_pattern(std::string_view data_file);
 std::vector<std::filesystem::path> data_files(const HeaderFields& fields, const char* field, std::string_view rest,
                                               const Size3& size);
 
-/// The channel or point in time, from 0, that the options choose in `file`, which holds `count` of them; `names` are
+/// The channel or time point, from 0, that the options choose in `file`, which holds `count` of them; `names` are
 /// the names of channels, if any. Fails, listing the choices, if there are several and none is chosen.
 int64_t chosen_channel(const std::string& file, const OpenOptions& options, int64_t count,
                        std::span<const char* const> names = {});

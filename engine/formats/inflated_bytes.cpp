@@ -97,7 +97,7 @@ private:
         input_.resize(INPUT_BYTES);
         const size_t count = file_.read_some(input_at_, std::as_writable_bytes(std::span(input_)));
         if (count == 0) {
-            fail(file_.path.string(), ": is cut short: its compressed data ends after ", output_at_,
+            fail(file_.path.string(), ": is truncated: its compressed data ends after ", output_at_,
                  " decompressed bytes, in the middle; expected its end");
         }
         input_at_ += int64_t(count);

@@ -29,6 +29,9 @@ inline constexpr const char* NO_ADDRESS =
 /// Whether it is the path of a zipped OME-Zarr, by its name (.ozx, .zip), or leads into one, as in scan.ozx/0, which is
 /// no path of the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
+/// A sentence for a project that was zipped whole, from which only its image is read; else empty. Reads the archive's
+/// directory.
+std::string archived_project(const std::filesystem::path& path);
 
 /// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});

@@ -24,7 +24,7 @@ public:
         if (count == bytes.size()) return;
         const int64_t end = offset_ + offset + int64_t(count);
         fail(file_.path.string(), ": ended after ", end, " bytes; expected ", offset_ + offset + int64_t(bytes.size()),
-             ": it was cut short while open");
+             ": it was truncated while open");
     }
 
 private:

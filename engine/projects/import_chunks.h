@@ -1,5 +1,6 @@
 #pragma once
-// The chunks of all levels of a project under construction, as files in its folder, and their checksums.
+// The chunks of all levels of a project under construction, as files in its folder, and their checksums. Those of a
+// level with shards are loose, in PROJECT/shvr/chunks, until they are packed into shards.
 
 #include <atomic>
 #include <filesystem>
@@ -15,11 +16,18 @@ namespace shvr {
 class ImportChunks {
 public:
     ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels, OmeZarrVersion version,
-                 const ZarrCompressor& compressor, int workers);
+                 const ZarrCompressor& compressor, bool has_shards, int workers);
 
     /// Compresses and writes the voxels of a chunk; writes no file if all of them are 0. Different workers may write
     /// different chunks at once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
+
+    int64_t shards(int level) const;  ///< 0: the level has none
+    /// Once all chunks of the level are written: makes the shard's file of their files, and removes these. Does nothing
+    /// where it is done already. Writes no file if no chunk of the shard has one. Any thread may pack any shard.
+    void pack(int level, int64_t shard);
+    /// Once all are packed.
+    void remove_loose() const;
 
     int levels() const { return int(levels_.size()); }
     Size3 counts(int level) const { return of(level).volume.counts(); }
@@ -38,10 +46,13 @@ public:
 private:
     struct Level {
         ZarrVolume volume;  ///< for names and places; nothing is read through it
+        ZarrVolume loose;   ///< the same without shards: where `write` puts chunks
         std::vector<uint64_t> checksums;
     };
+    std::filesystem::path loose_folder() const { return project_ / "shvr" / "chunks"; }
     const Level& of(int level) const { return levels_[size_t(level)]; }
 
+    std::filesystem::path project_;
     ZarrCompressor compressor_;
     std::vector<Level> levels_;
     std::vector<std::vector<std::byte>> compressed_;  ///< by worker

@@ -23,6 +23,9 @@ using Json = nlohmann::ordered_json;
 /// Increment when the layout of an import's files or of its state changes.
 constexpr int LAYOUT = 3;
 
+/// Chunks of a shard along an axis: 512 voxels. So a scan of 2048^3 is 64 files, and a shard's index takes 8 KiB.
+constexpr int64_t SHARD_CHUNKS = 8;
+
 /// In the array's order: z, y, x.
 Json zyx(const glm::dvec3& vector)
 {
@@ -97,10 +100,11 @@ Json signatures_of(const fs::path& origin)
 }  // namespace
 
 ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
-                        const ZarrCompressor& compressor)
+                        const ZarrCompressor& compressor, bool has_shards)
 {
     const Size3 size = size_of_level(info.size, level);
     const bool is_3 = version == OmeZarrVersion::v0_5;
+    SHVR_CHECK(is_3 || !has_shards);
     ZarrMetadata metadata{.version = is_3 ? 3 : 2,
                           .shape = {size.z, size.y, size.x},
                           .chunks = {IMPORT_CHUNK, IMPORT_CHUNK, IMPORT_CHUNK},
@@ -109,6 +113,11 @@ ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int lev
                           .separator = '/',
                           .codecs = {compressor},
                           .axes = {"z", "y", "x"}};
+    const Size3 along = glm::min((size - int64_t{1}) / IMPORT_CHUNK + int64_t{1}, Size3(SHARD_CHUNKS));
+    if (has_shards && along != Size3(1)) {
+        const Size3 shard = along * IMPORT_CHUNK;
+        metadata.sharding = ZarrSharding{.shape = {shard.z, shard.y, shard.x}, .order = {0, 1, 2}, .checksums = 1};
+    }
     return {zarr_folder(project / std::to_string(level)), std::move(metadata), ZarrView{}};
 }
 
@@ -171,11 +180,12 @@ fs::path label_image_target(const fs::path& folder)
         const bool is_label_image =
             node && !fs::exists(target / PROJECT_RECORD, error) && node->ome()["image-label"].exists();
         if (!is_label_image)
-            fail(target.string(), ": is there already and is no label image; expected a new name, or one to replace");
+            fail(target.string(),
+                 ": already exists and is not a label image; expected a new name, or a label image to replace");
     }
     if (belongs_to_image(target)) static_cast<void>(listed_labels(target.parent_path()));
     fs::create_directories(target.parent_path(), error);
-    if (error) fail(target.parent_path().string(), ": cannot be made: ", error.message());
+    if (error) fail(target.parent_path().string(), ": cannot be created: ", error.message());
     return target;
 }
 
@@ -196,8 +206,8 @@ OmeZarrVersion label_image_version(const fs::path& target, std::optional<OmeZarr
     if (!node) return wanted.value_or(OmeZarrVersion::v0_4);
     const OmeZarrVersion found = version_of(*node);
     if (belongs && wanted && *wanted != found) {
-        fail(other.string(), ": is an OME-Zarr ", spelled(found), ", and its labels are to be ", spelled(*wanted),
-             "; expected one version for both");
+        fail(other.string(), ": is an OME-Zarr ", spelled(found), ", and its labels were asked for as ",
+             spelled(*wanted), "; expected one version for both: leave out --ome-zarr");
     }
     return belongs ? found : wanted.value_or(found);
 }
@@ -246,7 +256,8 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
         {"compressor",
          {int(options.compressor.kind), options.compressor.codec, options.compressor.level,
           options.compressor.shuffle}},
-        {"version", spelled(options.version.value_or(OmeZarrVersion::v0_4))}};
+        {"version",
+         sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)), options.has_shards ? " in shards" : "")}};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

@@ -8,9 +8,10 @@
 
 namespace shvr {
 
-/// The array of a level, as it will be written.
+/// The array of a level, as it will be written. Only OME-Zarr 0.5 `has_shards`, and of it levels of several chunks: up
+/// to 8 x 8 x 8 of them in a file, with an index of where each is at the end.
 ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
-                        const ZarrCompressor& compressor);
+                        const ZarrCompressor& compressor, bool has_shards);
 
 /// The attributes of the image, as JSON: all that .zattrs holds, or "attributes" of zarr.json. `labels`: additional
 /// attributes of a label image, or null.

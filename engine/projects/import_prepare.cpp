@@ -75,9 +75,9 @@ std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const 
     const VoxelBox box = options.crop.value_or(VoxelBox{Size3(0), info.size});
     if (!glm::all(glm::greaterThanEqual(box.lower, Size3(0))) || !glm::all(glm::lessThanEqual(box.upper, info.size)) ||
         !glm::all(glm::lessThan(box.lower, box.upper))) {
-        fail("the box from ", box.lower.x, ",", box.lower.y, ",", box.lower.z, " to ", box.upper.x, ",", box.upper.y,
-             ",", box.upper.z, " has voxels outside the volume, or none; expected one within 0,0,0 to ", info.size.x,
-             ",", info.size.y, ",", info.size.z);
+        fail("crop: the box from ", box.lower.x, ",", box.lower.y, ",", box.lower.z, " to ", box.upper.x, ",",
+             box.upper.y, ",", box.upper.z, " is empty or reaches outside the volume; expected one within 0,0,0 to ",
+             info.size.x, ",", info.size.y, ",", info.size.z);
     }
     const glm::dvec3& sigma = options.blur_sigma_voxels;
     SHVR_CHECK(options.downscale >= 1 && options.downscale <= LARGEST_DOWNSCALE, options.downscale);

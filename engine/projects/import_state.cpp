@@ -77,7 +77,7 @@ std::string StateReader::take_text()
 
 void StateReader::refuse() const
 {
-    fail(file_.string(), ": is damaged, or from another version; expected the state of a stopped import");
+    fail(file_.string(), ": is damaged, or of another version; expected the state of an interrupted import");
 }
 
 }  // namespace shvr

@@ -40,12 +40,13 @@ int thread_count(int wanted)
 void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 {
     if (info.type == VoxelType::float32 || info.type == VoxelType::float64)
-        fail(info.name, ": its voxels are ", name_of(info.type), "; expected whole numbers, for they are to be labels");
+        fail(info.name, ": its voxel type is ", name_of(info.type),
+             "; expected an integer type, since labels are whole numbers");
     PreparationOptions harmless;
     harmless.crop = preparation.crop;
     if (preparation != harmless)
-        fail(info.name, ": its labels are to be ", to_text(preparation),
-             "; expected them to be cropped at most, for there is no label between two labels");
+        fail(info.name, ": its labels cannot be ", to_text(preparation),
+             "; expected no preparation but --crop, since there is no label between two labels");
 }
 
 class Import {
@@ -96,6 +97,7 @@ public:
             if (step % bands == bands - 1) finish_slab(step / bands, slabs);
         }
         finish_levels();
+        pack_shards();
         write_attributes();
         if (!options_.label_image) write_knowledge();
         finish_folder();
@@ -186,7 +188,7 @@ private:
     {
         pyramid_ = make_import_pyramid(info_.size, info_.type, threads_, options_.halving);
         chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), version(),
-                                                 options_.compressor, threads_);
+                                                 options_.compressor, options_.has_shards, threads_);
         tally_ = std::make_unique<ImportTally>(info_, IMPORT_CHUNK, threads_);
         slabs_done_ = 0;
     }
@@ -218,10 +220,11 @@ private:
                     load_state(state);
                     return slabs_done_ > 0;
                 }
-                report_.warnings.push_back(sentence(
-                    folder_.path().string(), " was begun from another file or with other options; it is made anew"));
+                report_.warnings.push_back(
+                    sentence(folder_.path().string(),
+                             " was started from another file or with other options; the import starts over"));
             } catch (const Error& error) {
-                report_.warnings.push_back(sentence(error.what(), "; the import begins anew"));
+                report_.warnings.push_back(sentence(error.what(), "; the import starts over"));
             }
             begin_anew();
         }
@@ -255,6 +258,14 @@ private:
         for (int level = IMPORT_REACH; level < pyramid_->levels(); ++level) {
             for (int64_t layer = 0; layer < counts(level).z; ++layer) write_layer(level, layer);
         }
+    }
+
+    /// Chunks have files of their own until all are written: a shard spans many slabs, and is not changed any more.
+    void pack_shards()
+    {
+        for (int level = 0; level < pyramid_->levels(); ++level)
+            pool_.run(chunks_->shards(level), [&](int64_t shard, int) { chunks_->pack(level, shard); });
+        chunks_->remove_loose();
     }
 
     void write_attributes()

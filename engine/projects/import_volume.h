@@ -59,6 +59,7 @@ struct ImportOptions {
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
     /// Nothing: 0.4; for label images, that of the image they belong to, or else of the label image they replace.
     std::optional<OmeZarrVersion> version{};
+    bool has_shards = false;  ///< OME-Zarr 0.5 only: up to 512 chunks in a file (import_files.h)
     std::function<void(const ImportProgress&)> progress{};  ///< about every 100 ms, on the calling thread
     const std::atomic<bool>* cancel = nullptr;              ///< checked before every task; tasks take milliseconds
 };

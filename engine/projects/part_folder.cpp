@@ -57,7 +57,8 @@ FileDescriptor locked(const fs::path& folder)
     if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) == 0) return descriptor;
     // Some network file systems do not support locks.
     if (errno != EWOULDBLOCK) return descriptor;
-    fail(folder.string(), ": another process is working on it; expected to be the only one");
+    fail(folder.string(),
+         ": another process is importing into it; expected no other: wait until it ends, or choose another name");
 }
 
 /// All that is in the folder.
@@ -83,7 +84,8 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
         if (entry.path().filename() == "shvr") continue;
-        fail(part_.string(), ": is in the way; expected nothing there, or what a stopped import left");
+        fail(part_.string(),
+             ": is not the remainder of an import; expected no such folder: move it, or choose another name");
     }
     make_folder(part_ / "shvr");
 }
@@ -96,11 +98,12 @@ fs::path PartFolder::state() const
 void PartFolder::refuse_target() const
 {
     if (!is_there(target_) || is_empty_folder(target_)) return;
-    if (!overwrites_) fail(target_.string(), ": is there already; expected a new name, or --overwrite");
+    if (!overwrites_) fail(target_.string(), ": already exists; expected a new name, or --overwrite");
     for (const char* name : {".zattrs", ".zgroup", ".zarray", "zarr.json"}) {
         if (is_there(target_ / name)) return;
     }
-    fail(target_.string(), ": is no project; --overwrite replaces nothing else");
+    fail(target_.string(),
+         ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
 }
 
 void PartFolder::clear() const
@@ -133,7 +136,7 @@ void PartFolder::finish()
         }
         std::error_code error;
         fs::remove_all(part_, error);
-        if (error) fail(part_.string(), ": is the project that was replaced, and cannot be removed: ", error.message());
+        if (error) fail(part_.string(), ": is the project that was replaced, and cannot be deleted: ", error.message());
     } else if (::rename(part_.c_str(), target_.c_str()) != 0) {
         refuse_write(target_, errno);
     }
@@ -163,7 +166,7 @@ void write_part_file(const fs::path& path, std::span<const std::byte> content)
     if (number < 0 && errno == ENOENT) {
         std::error_code error;
         fs::create_directories(path.parent_path(), error);
-        if (error) fail(path.parent_path().string(), ": cannot be made: ", error.message());
+        if (error) fail(path.parent_path().string(), ": cannot be created: ", error.message());
         number = ::open(path.c_str(), FLAGS, 0666);
     }
     const FileDescriptor file(number);

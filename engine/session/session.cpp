@@ -91,6 +91,9 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
     opened.source = open_source(session);
+    if (session_file.empty()) {
+        if (std::string sentence = archived_project(path); !sentence.empty()) opened.losses.push_back(sentence);
+    }
     // A project with a valid record already has its statistics.
     const fs::path record = session.volume_path / PROJECT_RECORD;
     if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))

@@ -141,7 +141,7 @@ void volume_fields(Fields& f, Session& session)
          .allowed = "text",
          .standard = "none: such a file is refused"});
     f.text("frame", session.open_options.frame,
-           {.meaning = "of a file with several points in time: a number from 1",
+           {.meaning = "of a file with several time points: a number from 1",
             .allowed = "text",
             .standard = "none: such a file is refused"});
     spacing_fields(f, session.open_options);

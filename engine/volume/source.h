@@ -30,7 +30,7 @@ struct StoredBlocks {
 /// that lists the choices; readers of formats with one volume ignore this.
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
-    std::string frame{};    ///< a number from 1, if there are several points in time
+    std::string frame{};    ///< a number from 1, if there are several time points
     /// Given, or instead of what the file states (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's

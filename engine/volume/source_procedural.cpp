@@ -19,10 +19,15 @@ struct NamedKind {
 };
 
 constexpr NamedKind KINDS[] = {
-    {"constant", make_constant}, {"ramp", make_ramp},
-    {"sphere", make_sphere},     {"marschner_lobb", make_marschner_lobb},
-    {"tubes", make_tubes},       {"speckles", make_speckles},
-    {"fog", make_fog},           {"checker", make_checker},
+    {"constant", make_constant},
+    {"ramp", make_ramp},
+    {"sphere", make_sphere},
+    {"marschner_lobb", make_marschner_lobb},
+    {"tubes", make_tubes},
+    {"speckles", make_speckles},
+    {"fog", make_fog},
+    {"checker", make_checker},
+    {"chirality", make_chirality},
 };
 
 VolumeInfo info_of(const ProceduralSpec& spec)
@@ -209,6 +214,11 @@ ScalarField procedural_field(const ProceduralSpec& spec)
     field.value = [kind, shift = shift_of(spec.type)](const glm::dvec3& voxel) { return kind->value(voxel) + shift; };
     if (kind->has_gradient()) field.gradient = [kind](const glm::dvec3& voxel) { return kind->gradient(voxel); };
     return field;
+}
+
+std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec)
+{
+    return make_kind(spec)->truth();
 }
 
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec)

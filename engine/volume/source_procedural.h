@@ -4,6 +4,8 @@
 // integer hash, no library random numbers, and transcendental functions are kept out of a voxel's rounding where
 // possible.
 
+#include <array>
+
 #include "engine/volume/source.h"
 
 namespace shvr {
@@ -43,10 +45,28 @@ struct ProceduralSpec {
 /// speckles        small balls scattered at random, no two of which touch: background 20, balls 200.
 /// fog             smooth value noise, 60 ... 160 everywhere: nothing to skip.
 /// checker         one voxel 50, its neighbours 200: the highest frequency a grid holds. Trilinear between voxels.
+/// chirality       a ball off the centre, 250, with an arm along each axis towards its end, the longest along x (200),
+///                 a shorter one along y (150), the shortest along z (100); background 20. Every mirrored or exchanged
+///                 axis shows, from one voxel up. All parts are sharp, and known (ProceduralTruth).
 std::vector<std::string> procedural_kinds();
 
 /// Fails with a sentence that lists the kinds if `spec.kind` is unknown.
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
+
+/// What is in a volume, for those who draw, trace or export it.
+struct ProceduralTruth {
+    /// The colour group of a position in voxel coordinates; 0: background.
+    std::function<uint8_t(const glm::dvec3& voxel)> group;
+    struct Node {
+        glm::dvec3 voxel{0.0};
+        double radius_voxels = 1.0;
+        uint8_t group = 1;
+    };
+    std::vector<Node> nodes;                   ///< along the centre lines
+    std::vector<std::array<size_t, 2>> links;  ///< an internode each, of the group of its second node
+};
+/// Nothing for kinds whose parts are not known. Fails as `open_procedural` does.
+std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec);
 
 }  // namespace shvr

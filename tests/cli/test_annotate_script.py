@@ -150,7 +150,7 @@ class Stopped(CliTest):
         status = self.check_stopped(program, signal.SIGINT, "stopped before this line; the ")
         self.assertEqual(status, 1)
         said = self.check("annotate", session, "--script", self.write_script("s.jsonl", [])).stderr
-        self.assertNotIn("not written to the end", said)
+        self.assertNotIn("are an incomplete or damaged record", said)
         self.assertEqual(len(set((self.folder / "paint.mask").read_bytes())), 1)
 
     def test_a_script_that_is_waited_for(self):

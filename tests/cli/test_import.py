@@ -293,10 +293,10 @@ class Refusals(CliTest):
         self.check_refused("import", header, project, "--crop", "0,0,0,9,8,8", says=["0,0,0 to 9,8,7"])
         self.check_refused("import", header, self.folder / "no/project", says=["no/project.part", "No such file"])
         self.check("import", header, project, "--quiet")
-        self.check_refused("import", header, project, says=["is there already", "--overwrite"])
+        self.check_refused("import", header, project, says=["already exists", "--overwrite"])
         (self.folder / "mine").mkdir()
         (self.folder / "mine/text").write_text("keep")
-        self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is no project"])
+        self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is not a project"])
         self.assertEqual((self.folder / "mine/text").read_text(), "keep")
         with open(self.folder / "volume.raw", "r+b") as voxels:
             voxels.truncate(100)
@@ -456,7 +456,7 @@ class EndingEarly(CliTest):
         os.kill(process.pid, signal.SIGSTOP)
         try:
             if (self.folder / "project.part").exists():
-                self.check_refused("import", *self.arguments, says=["another process is working on it"])
+                self.check_refused("import", *self.arguments, says=["another process is importing into it"])
         finally:
             os.kill(process.pid, signal.SIGCONT)
         process.communicate(timeout=60)

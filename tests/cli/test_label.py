@@ -199,7 +199,7 @@ class Label(CliTest):
         self.check_refused("label", self.header, "--threshold", 1, "-o", project / "x.mask" / "y.mask")
         (self.folder / "scan.zarr").symlink_to(project)
         self.check_refused("label", self.header, "--threshold", 1, "-o", self.folder / "scan.zarr",
-                           says=["is no label image"])
+                           says=["is not a label image"])
         self.assertEqual((project / ".zattrs").read_bytes(), before)
         self.check_refused("label", self.header, "--threshold", 176, "-o", self.folder / "a.mask",
                            says=["uint16", "255"])

@@ -1,7 +1,10 @@
 """shvr phantom: synthetic volumes, written as files."""
+import itertools
 import json
 import struct
 import unittest
+import xml.etree.ElementTree
+from pathlib import Path
 
 from harness import CliTest
 
@@ -19,7 +22,8 @@ class Phantom(CliTest):
             self.assertEqual(file[key], expected[key], key)
 
     def test_every_kind_and_type(self):
-        for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"):
+        for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker",
+                     "chirality"):
             for voxel_type in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
                 result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
                 self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
@@ -31,6 +35,52 @@ class Phantom(CliTest):
             volumes.append((self.folder / name / "fog.raw").read_bytes())
         self.assertEqual(volumes[0], volumes[1])
         self.assertNotEqual(volumes[0], volumes[2])
+
+    def voxels(self, header):
+        """(size, bytes) of a phantom of uint8."""
+        lines = dict(line.split(": ", 1) for line in Path(header).read_text().splitlines() if ": " in line)
+        self.assertEqual(lines["type"], "uint8")
+        return [int(side) for side in lines["sizes"].split()], Path(header).with_name(lines["data file"]).read_bytes()
+
+    def test_chirality_tells_every_axis_and_left_from_right(self):
+        result = self.check_json("phantom", "chirality", "--size", 20, "-o", self.folder)
+        size, voxels = self.voxels(result["volume"])
+        self.assertEqual(size, [20, 20, 20])
+        self.assertEqual(set(voxels), {20, 100, 150, 200, 250})
+        at = [range(20), range(19, -1, -1)]
+        strides = (1, 20, 400)
+        same = 0
+        for order in itertools.permutations(strides):
+            for flips in itertools.product((0, 1), repeat=3):
+                turned = bytes(voxels[x * order[0] + y * order[1] + z * order[2]]
+                               for z in at[flips[2]] for y in at[flips[1]] for x in at[flips[0]])
+                same += turned == voxels
+        self.assertEqual(same, 1)  # of 48: as it is
+
+    def test_chirality_comes_with_its_truth(self):
+        result = self.check_json("phantom", "chirality", "--size", "40x30x24", "-o", self.folder)
+        (size, voxels), (mask_size, groups) = self.voxels(result["volume"]), self.voxels(result["truth_mask"])
+        self.assertEqual((size, mask_size), ([40, 30, 24], [40, 30, 24]))
+        self.assertEqual({*zip(voxels, groups)}, {(20, 0), (200, 1), (150, 2), (100, 3), (250, 4)})
+
+        # The trace: from the ball, at 10, 9, 8.4, to the end of the arm along each axis.
+        tree = xml.etree.ElementTree.parse(result["truth_trace"]).getroot()
+        names = {key.get("id"): key.get("attr.name") for key in tree.findall(".//{*}key")}
+        nodes = {node.get("id"): {names[data.get("key")]: data.text for data in node.findall("{*}data")}
+                 for node in tree.findall(".//{*}node")}
+        places = [tuple(round(float(node[axis]), 9) for axis in "xyz") for node in nodes.values()]
+        self.assertEqual(places, [(10, 9, 8.4), (34, 9, 8.4), (10, 21, 8.4), (10, 9, 14.4)])
+        for place, group in zip(places, (4, 1, 2, 3)):
+            x, y, z = (int(side) for side in place)
+            self.assertEqual(groups[x + 40 * (y + 30 * z)], group)
+        ends = [(edge.get("source"), edge.get("target")) for edge in tree.findall(".//{*}edge")]
+        self.assertEqual(ends, [(list(nodes)[0], end) for end in list(nodes)[1:]])
+
+        # Both are what evaluate takes, and an exported mask and trace of the painted phantom are their equals.
+        scores = self.check_json("evaluate", "--truth-mask", result["truth_mask"], "--mask", result["truth_mask"],
+                                 "--truth-trace", result["truth_trace"], "--trace", result["truth_trace"])
+        self.assertEqual(scores["dice_by_group"], {str(group): 1 for group in (1, 2, 3, 4)})
+        self.assertEqual((scores["node_score"], scores["topological_errors"]), (1, 0))
 
     def test_wrong_usage(self):
         for size in ("0", "-3", "4x4", "4x4x4y", "1048577", "4x4x", ""):

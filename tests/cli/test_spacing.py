@@ -161,7 +161,7 @@ class SmallSlips(CliTest):
         # More than that is missing here.
         path = self.tiff("b.tif", self.tags(), tail=b"")
         path.write_bytes(path.read_bytes()[:-1])
-        self.check_refused("info", path, says=["it was cut short"])
+        self.check_refused("info", path, says=["it is truncated"])
 
     def test_more_bytes_of_strips_than_pixels(self):
         old = {"_258": (3, [1]), "_256": (3, [128])}  # 1 bit a pixel

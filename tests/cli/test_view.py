@@ -59,6 +59,15 @@ class Window(CliTest):
         self.display.do(*arguments)
         time.sleep(pause_s)
 
+    def put_probe(self, x, y, *before, pause_s=0.7):
+        """Onto what is seen there, by a double click; `before`: other commands, at that place."""
+        self.do("mousemove", x, y, *before, "click", "--repeat", 2, "--delay", 60, 1, pause_s=pause_s)
+
+    def stroke(self, *places, before_end=(), pause_s=1.0):
+        """With the key that paints held down from the first place on; `before_end`: other commands before it goes up."""
+        moves = [word for place in places[1:] for word in ("mousemove", *place)]
+        self.do("mousemove", *places[0], "keydown", "f", *moves, *before_end, "keyup", "f", pause_s=pause_s)
+
     def wait_for_file(self, path):
         end = time.monotonic() + PATIENCE_S
         while not path.exists():
@@ -101,10 +110,11 @@ class View(Window):
         x, y = self.middle()
         # Look from elsewhere, then put the probe onto the ball and paint a stroke.
         self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 40, y + 15, "mousemove", x + 80, y + 20, "mouseup", 1)
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=1)
+        self.put_probe(x, y, pause_s=1)
         self.do("mousedown", 3, pause_s=0.1)
         self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "mouseup", 3, pause_s=1)
-        self.do("key", "7", "keydown", "f", "mousemove", x - 30, y - 10, "keyup", "f", pause_s=1)
+        self.do("key", "7", pause_s=0)
+        self.stroke((x + 20, y + 5), (x - 30, y - 10))
         self.do("key", "ctrl+z", pause_s=0.5)
         self.do("key", "ctrl+s", pause_s=0.5)
         self.do("key", "p")
@@ -181,7 +191,7 @@ class View(Window):
         self.start(self.write_ball())
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.5)
+        self.put_probe(x, y, pause_s=0.5)
         self.do("key", "space", pause_s=0.5)
         for step in range(20):
             self.do("mousemove", x + 2 * step, y + step, pause_s=0.03)
@@ -210,7 +220,7 @@ class View(Window):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.put_probe(x, y)
         self.do("click", 3, pause_s=1)
         report = self.finish()
         painted = report["voxels_in_group"]["3"]
@@ -275,7 +285,7 @@ class View(Window):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.put_probe(x, y)
         self.do("key", "F5", pause_s=3)
         self.do("click", 3, pause_s=1)
         report = self.finish()
@@ -316,7 +326,7 @@ class View(Window):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.put_probe(x, y)
         self.do("click", 3, pause_s=1)
         # A cutting plane while its key is held, then the transfer function's preset: a step each.
         self.do("keydown", "y", "sleep", 0.3, "keyup", "y", pause_s=0.7)
@@ -372,10 +382,10 @@ class View(Window):
         self.start(session, "--budget-device", 16, "--threads", 1)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x - 150, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=2.5)
+        self.put_probe(x - 150, y, pause_s=2.5)
         # All in one turn of the loop: the bricks of the stroke were never requested.
         self.program.send_signal(signal.SIGSTOP)
-        self.do("mousemove", x, y, "keydown", "f", "mousemove", x + 40, y - 20, "key", "ctrl+s", "keyup", "f")
+        self.stroke((x, y), (x + 40, y - 20), before_end=("key", "ctrl+s"), pause_s=0.3)
         self.program.send_signal(signal.SIGCONT)
         report = self.finish()
         self.assertGreater(report["voxels_in_group"].get("3", 0), 5000, report["messages"])
@@ -412,8 +422,8 @@ class View(Window):
         x, y = self.middle()
         for group, other in enumerate(others, 3):
             self.open(other)
-            self.do("mousemove", x, y, "key", group, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
-            self.do("keydown", "f", "mousemove", x + 10 * group, y, "keyup", "f", pause_s=1)
+            self.put_probe(x, y, "key", group)
+            self.stroke((x, y), (x + 10 * group, y))
         self.do("key", "p")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)

@@ -29,11 +29,11 @@ class Writers(Window):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "click", "--repeat", 2, "--delay", 60, 1, pause_s=0.7)
+        self.put_probe(x, y)
 
     def paint(self):
         x, y = self.middle()
-        self.do("mousemove", x, y, "keydown", "f", "mousemove", x + 20, y, "keyup", "f", pause_s=1)
+        self.stroke((x, y), (x + 20, y))
 
     def files(self):
         return {path.name: path.read_bytes() for path in self.folder.iterdir()

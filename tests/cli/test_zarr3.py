@@ -1,17 +1,22 @@
 """OME-Zarr 0.5 and zipped OME-Zarr: what is written, as an independent reader sees it (tests/support/zarr3.py), and that
 projects and archives give the pictures, masks and measures that 0.4 gives."""
 import json
+import math
 import os
+import random
 import shutil
+import struct
 import subprocess
+import time
 import unittest
 from pathlib import Path
 
-from harness import CliTest, Volume
+from harness import ENVIRONMENT, SHVR, CliTest, Volume
 from test_import import content_of, python_with_zarr
 
 SUPPORT = Path(__file__).resolve().parents[1] / "support"
 DATA = Path(__file__).resolve().parents[1] / "data"
+ABSENT = 2 ** 64 - 1
 
 # Runs in an interpreter that has numpy and numcodecs. Level 0 is compared with bare voxels, each level with the mean of
 # the one before or, for labels, by their rule: the most frequent label; of equally frequent ones not 0, and of those the
@@ -51,6 +56,16 @@ import zarr3
 values = zarr3.read_folder(sys.argv[1])
 open(sys.argv[2], "wb").write(zarr3.zip_bytes(values, **json.loads(sys.argv[3])))
 """
+
+
+def crc32c(data):
+    """RFC 3720, bit by bit."""
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
 
 
 def independent(test, program, *arguments):
@@ -132,7 +147,7 @@ class Written(CliTest):
             self.check("import", header, project, "--ome-zarr", version, "--overwrite")
             self.assertTrue((project / there).exists())
             self.assertEqual(sum((project / name).exists() for name in ("zarr.json", ".zattrs")), 1)
-        self.check_refused("import", header, project, says=["is there already"])
+        self.check_refused("import", header, project, says=["already exists"])
 
 
 class Projects(CliTest):
@@ -195,7 +210,7 @@ class Projects(CliTest):
         # One hierarchy, one version.
         for version, wrong in (("0.5", "0.4"), ("0.4", "0.5")):
             self.check_refused("export", self.projects[version], "--labels", "--ome-zarr", wrong,
-                               says=[f"is an OME-Zarr {version}", f"are to be {wrong}"])
+                               says=[f"is an OME-Zarr {version}", f"were asked for as {wrong}"])
         self.check("export", project, "--labels", "--ome-zarr", "0.5")
 
     def test_a_label_image_alone_keeps_its_version_until_another_is_asked_for(self):
@@ -216,6 +231,119 @@ class Projects(CliTest):
         self.assertFalse((alone / "zarr.json").exists())
 
 
+class Shards(CliTest):
+    """shvr import --ome-zarr 0.5 --shards: up to 8 x 8 x 8 chunks in a file."""
+
+    def shard(self, path, chunks):
+        """{chunk number in the shard: bytes}; the index lies at the end, behind the chunks, with its CRC-32C."""
+        content = path.read_bytes()
+        index = content[-16 * chunks - 4:]
+        self.assertEqual(int.from_bytes(index[-4:], "little"), crc32c(index[:-4]))
+        parts = [struct.unpack_from("<QQ", index, 16 * i) for i in range(chunks)]
+        self.assertEqual(sum(size for _, size in parts if size != ABSENT), len(content) - len(index))
+        return {i: content[at:at + size] for i, (at, size) in enumerate(parts) if at != ABSENT}
+
+    def test_they_hold_the_chunks_of_a_project_without_them(self):
+        size = (520, 70, 66)  # 9 x 2 x 2 chunks: two shards along x
+        for voxel_type, high in (("uint16", 900), ("float", 1000)):
+            with self.subTest(voxel_type=voxel_type):
+                header = Volume.noise(size, seed=1, voxel_type=voxel_type, high=high).write(self.folder)
+                plain, packed = self.folder / "plain" / "project", self.folder / "packed" / "project"
+                for project, options in ((plain, []), (packed, ["--shards"])):
+                    project.parent.mkdir(exist_ok=True)
+                    report = self.check_json("import", header, project, "--ome-zarr", "0.5", "--overwrite", *options)
+                before, after = content_of(plain), content_of(packed)
+                self.assertEqual(sorted(name for name in after if name.startswith("0/c/")), ["0/c/0/0/0", "0/c/0/0/1"])
+                found = {}
+                for number, along in ((0, 8), (1, 1)):
+                    for i, content in self.shard(packed / "0" / "c" / "0" / "0" / str(number), 8 * 2 * 2).items():
+                        z, y, x = i // 16, i // 8 % 2, i % 8
+                        self.assertLess(x, along)
+                        found[f"0/c/{z}/{y}/{8 * number + x}"] = content
+                self.assertEqual(found, {name: data for name, data in before.items() if name.startswith("0/c/")})
+                self.assertEqual(report["bytes"], sum(map(len, after.values())))
+                # All that is ours is the same, but for the metadata of levels.
+                for name in before:
+                    if name.startswith("shvr/"):
+                        self.assertEqual(after[name], before[name], name)
+                self.assertEqual(set(after) - set(before), {name for name in after if "/c/" in name} - set(before))
+                told, again = self.check_json("info", plain), self.check_json("info", packed)
+                for key in told:
+                    if key not in ("input", "mask"):
+                        self.assertEqual(again[key], told[key], key)
+                for project in (plain, packed):
+                    self.check("render", project, "--size", "32x24", "-o", project.parent / "a.png", "--quiet")
+                self.assertEqual((plain.parent / "a.png").read_bytes(), (packed.parent / "a.png").read_bytes())
+
+    def test_an_independent_reader_reads_them(self):
+        header = Volume.noise((130, 66, 9), seed=2, high=30000, voxel_type="int16").write(self.folder)
+        self.check("import", header, self.folder / "project", "--ome-zarr", "0.5", "--shards")
+        found = read(self, self.folder / "project", self.folder / "volume.raw")
+        first, last = found["metadata"][0], found["metadata"][-1]
+        self.assertEqual(first["chunk_grid"]["configuration"]["chunk_shape"], [64, 128, 192])
+        self.assertEqual([codec["name"] for codec in first["codecs"]], ["sharding_indexed"])
+        configuration = first["codecs"][0]["configuration"]
+        self.assertEqual(configuration["chunk_shape"], [64, 64, 64])
+        self.assertEqual([codec["name"] for codec in configuration["index_codecs"]], ["bytes", "crc32c"])
+        self.assertEqual(configuration["index_location"], "end")
+        self.assertEqual([codec["name"] for codec in last["codecs"]], ["bytes", "blosc"])  # one chunk needs no shard
+
+    def test_chunks_of_zeros_are_left_out_and_shards_of_them_too(self):
+        size = (64 * 9, 64, 64)
+        volume = Volume(size, [])
+        header = volume.write(self.folder)
+        voxels = bytearray(64 ** 3 * 9)
+        voxels[50] = 7
+        (self.folder / "volume.raw").write_bytes(voxels)
+        report = self.check_json("import", header, self.folder / "project", "--ome-zarr", "0.5", "--shards")
+        self.assertEqual(list(self.shard(self.folder / "project" / "0" / "c" / "0" / "0" / "0", 8)), [0])
+        self.assertFalse((self.folder / "project" / "0" / "c" / "0" / "0" / "1").exists())
+        self.assertEqual(report["bytes"], sum(map(len, content_of(self.folder / "project").values())))
+        self.assertEqual(self.check_json("info", self.folder / "project")["max"], 7)
+
+    def test_a_changed_byte_of_a_chunk_or_of_the_index_is_found(self):
+        header = Volume.noise((128, 64, 64), seed=1).write(self.folder)
+        project = self.folder / "project"
+        self.check("import", header, project, "--ome-zarr", "0.5", "--shards")
+        shard = project / "0" / "c" / "0" / "0" / "0"
+        whole = shard.read_bytes()
+        for at, says in ((100, "another program changed it"), (len(whole) - 10, "its CRC-32C is")):
+            shard.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1:])
+            self.check_refused("label", project, "--threshold", 3, says=[str(shard), says])
+
+    def test_killed_while_shards_are_packed_it_goes_on_and_gives_the_same_bytes(self):
+        size = (80, 70, 64 * 20)
+        header = Volume(size, [], voxel_type="uint16").write(self.folder)
+        (self.folder / "volume.raw").write_bytes(random.Random(8).randbytes(2 * math.prod(size)))
+        project, part = self.folder / "project", self.folder / "project.part"
+        arguments = [header, project, "--ome-zarr", "0.5", "--shards", "--threads", "1"]
+        self.check("import", *arguments, "--quiet")
+        expected = content_of(project)
+        killed = 0
+        for _ in range(10):
+            shutil.rmtree(project, ignore_errors=True)
+            process = subprocess.Popen([SHVR, "import", *map(str, arguments)], stdout=subprocess.PIPE,
+                                       stderr=subprocess.PIPE, env=ENVIRONMENT)
+            while process.poll() is None and not (part / "0" / "c" / "0" / "0" / "0").exists():
+                time.sleep(0.001)
+            process.kill()
+            process.communicate()
+            if not project.exists():
+                killed += (part / "0" / "c" / "0" / "0" / "0").exists()
+                self.check("import", *arguments, "--quiet")
+            self.assertEqual(content_of(project), expected)
+            if killed == 2:
+                break
+        self.assertGreater(killed, 0)
+
+    def test_0_4_has_none(self):
+        header = Volume.noise((8, 8, 8), seed=1).write(self.folder)
+        for version in ([], ["--ome-zarr", "0.4"]):
+            self.check_refused("import", header, self.folder / "project", "--shards", *version, status=2,
+                               says=["--ome-zarr 0.5"])
+        self.assertFalse((self.folder / "project").exists())
+
+
 class Archives(CliTest):
     FORMS = {"stored": {}, "zip64": {"zip64": True}, "deflated": {"deflate": True}, "streamed": {"stream": True}}
 
@@ -223,12 +351,32 @@ class Archives(CliTest):
         independent(self, PACKER, folder, self.folder / name, json.dumps(form))
         return self.folder / name
 
+    def check_whole_project(self, archive, project):
+        """Only its image is read, which every command says, quiet ones too; and nothing empty is exported."""
+        says = [str(archive), "is a project in an archive", "unpack the archive"]
+        for command in (["info"], ["render", "-o", self.folder / "a.png", "--size", "8x8"],
+                        ["label", "--threshold", 2900]):
+            said = self.check(command[0], archive, *command[1:], "--quiet").stderr
+            for words in says:
+                self.assertIn(words, said)
+            self.assertEqual(said.count("unpack the archive"), 1, said)
+        before = archive.read_bytes()
+        for option, name in (("--mask", "a.nrrd"), ("--trace", "a.swc"), ("--offset", "a.offset")):
+            self.check_refused("export", archive, option, self.folder / name, "--quiet", says=says)
+            self.assertFalse((self.folder / name).exists())
+        script = self.write_script("script.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "box", "group": 1, "threshold": -200, "radius": 1,
+             "path": [[2, 2, 1]]}, {"op": "save"}])
+        self.check_refused("annotate", archive, "--script", script, "--quiet", says=["expected the key annotation.mask"])
+        self.assertEqual(archive.read_bytes(), before)
+        self.assertNotIn("archive", self.check("info", project).stderr)
+
     def test_an_archive_gives_the_pictures_and_figures_of_its_folder(self):
         header = Volume.noise((70, 66, 65), seed=1, voxel_type="int16", high=3000, spacing=(0.5, 0.5, 2)).write(self.folder)
         project = self.folder / "scan.zarr"
         self.check("import", header, project, "--ome-zarr", "0.5", "--unit", "um")
         whole = self.pack(project, "project.ozx")
-        self.assertIn("is not read from an archive", self.check("info", whole).stderr)
+        self.check_whole_project(whole, project)
         shutil.rmtree(project / "shvr")  # what an archive of another program lacks
         settings = ["--set", "render.size=[48,32]"]
         self.check("render", project, *settings, "-o", self.folder / "a.png")
@@ -273,7 +421,7 @@ class Archives(CliTest):
             {"op": "paint", "brush": "fill", "region": "box", "group": 1, "threshold": -200, "radius": 1,
              "path": [[2, 2, 1]]}, {"op": "save"}])
         self.check_refused("annotate", session, "--script", script, "--set", mask, "--quiet",
-                           says=["lies in an archive, where masks are only read"])
+                           says=["lies in an archive, which is only read"])
         self.assertEqual((DATA / "zarr3" / "with_labels.ozx").read_bytes(), before)
         self.check_refused("export", session, "--set", f'annotation.mask="{labels}x"', says=["cellsx", "zarr.json"])
 

@@ -527,7 +527,7 @@ def make_text():
             "camera": ['cameras.far={"projection":"perspective","eye":[1.5,-400,0.1],"target":[1,2,3],"up":[0,0.1,1]}',
                        "camera=far", '{"side":"left","zoom":1.5,"turn_degrees":30,"tilt_degrees":-20}']}.items():
         seed("setting", name, "\n".join(lines))
-    for kind in ["constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker"]:
+    for kind in ["constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker", "chirality"]:
         seed("procedural", kind, f'{{"procedural": "{kind}", "size": [9, 8, 7], "type": "uint16", "seed": 3}}')
         seed("procedural", kind + "_huge",
              f'{{"procedural": "{kind}", "size": [1048576, 1048576, 1048576], "type": "int8", "spacing": [1, 2, 1e-12]}}')

@@ -93,7 +93,7 @@ void add_input_options(CLI::App& command, Common& common)
     };
     text("--channel", "volume.channel", "NAME|N",
          "What to take from a file with channels: red, green, ... or 1, 2, ...");
-    text("--frame", "volume.frame", "N", "Which point in time to take from a file with several: 1, 2, ...");
+    text("--frame", "volume.frame", "N", "Which time point to take from a file with several: 1, 2, ...");
     add_spacing_options(
         command,
         [&common](const glm::dvec3& spacing) {

@@ -91,6 +91,8 @@ void run_export(const ExportCommandOptions& options)
     check_output("--trace", options.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output("--mesh", options.mesh, {".obj", ".ply"});
     check_output("--metrics", options.metrics, {".csv"});
+    // Its annotations are in it, but empty files would be written.
+    if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
     const OpenedSession opened =
         open_session(options.project, options.common.settings,

@@ -23,6 +23,7 @@ struct ImportCommandOptions {
     bool reverse = false;
     bool labels = false;
     bool overwrite = false;
+    bool shards = false;
     std::optional<OmeZarrVersion> version;
 };
 
@@ -104,6 +105,8 @@ double peak_rss_mib()
 
 void run_import(const ImportCommandOptions& options)
 {
+    if (options.shards && options.version != OmeZarrVersion::v0_5)
+        throw UsageError("--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
     ImportOptions wanted{.preparation = {.crop = parse_crop(options.crop),
                                          .reverse = options.reverse,
                                          .blur_sigma_voxels = parse_blur(options.blur),
@@ -112,7 +115,8 @@ void run_import(const ImportCommandOptions& options)
                          .choice = sentence(options.choice.channel, "\n", options.choice.frame, "\n", options.raw),
                          .overwrites = options.overwrite,
                          .threads = options.common.threads,
-                         .version = options.version};
+                         .version = options.version,
+                         .has_shards = options.shards};
     // Replacing a project takes its annotation away, too: nobody may be writing it.
     const std::filesystem::path session = std::filesystem::path(options.project) / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = options.overwrite ? Hold::take(journal_beside(session), "shvr import") : nullptr;
@@ -184,9 +188,11 @@ void add_import(CLI::App& program)
         [options](const std::string& unit) { options->choice.unit = unit; });
     command->add_option("--channel", options->choice.channel, "What to take from a file with channels")
         ->type_name("NAME|N");
-    command->add_option("--frame", options->choice.frame, "Which point in time to take from a file with several")
+    command->add_option("--frame", options->choice.frame, "Which time point to take from a file with several")
         ->type_name("N");
     add_version_option(*command, options->version, "0.4 unless given");
+    command->add_flag("--shards", options->shards,
+                      "With --ome-zarr 0.5: up to 512 chunks in a file, for storage that dislikes many small files");
     command->add_flag("--overwrite", options->overwrite,
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")

@@ -38,6 +38,7 @@ Described describe(const InfoCommandOptions& options, LongWork& work)
         opened.source = settings.empty() ? open_volume(path) : open_unmeasured_session(path, settings).source;
         opened.statistics = measure(*opened.source, opening.measure);
         opened.warnings = warnings_of(opened.statistics);
+        if (const std::string archived = archived_project(path); !archived.empty()) opened.losses.push_back(archived);
     } else {
         opened = open_session(path, options.common.settings, opening);
     }

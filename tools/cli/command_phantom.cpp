@@ -1,9 +1,11 @@
-// shvr phantom: writes a synthetic volume as a file. Needs no Vulkan device.
+// shvr phantom: writes a synthetic volume, and its truth where that is known, as files. Needs no Vulkan device.
 
 #include <algorithm>
 #include <bit>
 #include <cstdio>
 
+#include "engine/annotation/trace/trace_edit.h"
+#include "engine/annotation/trace/trace_file.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
@@ -71,34 +73,103 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& volume,
     writer.commit();
 }
 
+/// The colour groups of a volume's voxels, at their centres.
+class GroupSource final : public VolumeSource {
+public:
+    GroupSource(const VolumeInfo& volume, std::function<uint8_t(const glm::dvec3&)> group)
+        : VolumeSource(of_groups(volume)), group_(std::move(group))
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        size_t at = 0;
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                for (int64_t x = box.lower.x; x < box.upper.x; ++x)
+                    voxels[at++] = std::byte(group_(glm::dvec3(x, y, z) + 0.5));
+    }
+
+private:
+    static VolumeInfo of_groups(VolumeInfo volume)
+    {
+        volume.type = VoxelType::uint8;
+        return volume;
+    }
+
+    std::function<uint8_t(const glm::dvec3&)> group_;
+};
+
+TraceGraph trace_of(const ProceduralTruth& truth, const VolumeInfo& volume)
+{
+    TraceGraph trace;
+    for (size_t i = 0; i < truth.nodes.size(); ++i) {
+        const ProceduralTruth::Node& node = truth.nodes[i];
+        trace.apply(TraceNodeChange{.node = uint32_t(i),
+                                    .before = {},
+                                    .after = TraceNode{.position = node.voxel * volume.spacing,
+                                                       .radius = node.radius_voxels * volume.spacing.x,
+                                                       .group = node.group}},
+                    Direction::forwards);
+    }
+    for (size_t i = 0; i < truth.links.size(); ++i) {
+        const auto [from, to] = truth.links[i];
+        trace.apply(TraceInternodeChange{.internode = uint32_t(i),
+                                         .before = {},
+                                         .after = TraceInternode{uint32_t(from), uint32_t(to), truth.nodes[to].group}},
+                    Direction::forwards);
+    }
+    return trace;
+}
+
+/// FOLDER/NAME.nhdr and NAME.raw. The header is opened first, so that an unwritable name fails before the long work;
+/// and committed last, so that no header describes voxels not yet written.
+std::string write_volume(const std::filesystem::path& folder, const std::string& name, const VolumeSource& volume,
+                         LongWork& work)
+{
+    const std::filesystem::path header = folder / (name + ".nhdr"), voxels = folder / (name + ".raw");
+    const std::string text = nrrd_header(volume.info(), voxels.filename().string());
+    AtomicWriter header_writer(header);
+    header_writer.append(std::as_bytes(std::span(text)));
+    write_voxels(voxels, volume, work.begin("writing " + voxels.string()));
+    header_writer.commit();
+    return header.string();
+}
+
 void run_phantom(const PhantomCommandOptions& options)
 {
     const std::optional<VoxelType> type = voxel_type_of(options.type);
     if (!type)
         throw UsageError(sentence("--type is ", in_quotes(options.type), "; expected a voxel type, such as uint8"));
-    const std::unique_ptr<VolumeSource> source = open_procedural(
-        {.kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type});
+    const ProceduralSpec spec{
+        .kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type};
+    const std::unique_ptr<VolumeSource> source = open_procedural(spec);
+    const std::optional<ProceduralTruth> truth = procedural_truth(spec);
 
     LongWork work(options.common.quiet);
     const std::filesystem::path folder = options.folder;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) fail(options.folder, ": cannot be created: ", error.message());
-    const std::filesystem::path header = folder / (options.kind + ".nhdr");
-    const std::filesystem::path voxels = folder / (options.kind + ".raw");
-    const std::string text = nrrd_header(source->info(), voxels.filename().string());
-    // Opened first, so that an unwritable name fails before the long work; committed last, so that no header describes
-    // voxels not yet written.
-    AtomicWriter header_writer(header);
-    header_writer.append(std::as_bytes(std::span(text)));
-    write_voxels(voxels, *source, work.begin("writing " + voxels.string()));
-    header_writer.commit();
+    Json written = {{"volume", write_volume(folder, options.kind, *source, work)},
+                    {"truth_mask", nullptr},
+                    {"truth_trace", nullptr}};
+    if (truth) {
+        written["truth_mask"] =
+            write_volume(folder, options.kind + "-mask", GroupSource(source->info(), truth->group), work);
+        const std::filesystem::path trace = folder / (options.kind + "-trace.graphml");
+        save_trace(trace, trace_of(*truth, source->info()), space_of(source->info()));
+        written["truth_trace"] = trace.string();
+    }
 
-    if (!options.common.json) return say(options.common, header.string());
+    if (!options.common.json) {
+        for (const Json& path : written)
+            if (path.is_string()) say(options.common, path.get<std::string>());
+        return;
+    }
     const Size3 size = source->info().size;
-    print({{"volume", header.string()},
-           {"truth_mask", nullptr},
-           {"truth_trace", nullptr},
+    print({{"volume", written["volume"]},
+           {"truth_mask", written["truth_mask"]},
+           {"truth_trace", written["truth_trace"]},
            {"size", {size.x, size.y, size.z}},
            {"type", name_of(*type)},
            {"kind", options.kind},
@@ -117,17 +188,23 @@ std::vector<std::string> type_names()
 void add_phantom(CLI::App& program)
 {
     auto options = std::make_shared<PhantomCommandOptions>();
-    CLI::App* command = program.add_subcommand("phantom", "Writes a synthetic volume");
+    CLI::App* command = program.add_subcommand(
+        "phantom", "Writes a synthetic volume, with its true mask and trace where they are known");
     command->add_option("KIND", options->kind, "What it shows")->required()->check(CLI::IsMember(procedural_kinds()));
     command->add_option("--size", options->size, "Voxels, as in 64 or 64x32x16")->capture_default_str();
     command->add_option("--seed", options->seed, "Equal seeds give equal volumes")->capture_default_str();
     command->add_option("--type", options->type, "Type of the voxels")
         ->check(CLI::IsMember(type_names()))
         ->capture_default_str();
-    command->add_option("-o,--output", options->folder, "Folder for KIND.nhdr and KIND.raw; made where missing")
+    command
+        ->add_option("-o,--output", options->folder,
+                     "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (chirality) also "
+                     "KIND-mask.nhdr and KIND-trace.graphml; made where missing")
         ->required();
     add_output_options(*command, options->common);
-    command->footer("Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr");
+    command->footer(
+        "Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr\n"
+        "  shvr phantom chirality -o phantoms    # a mark that no mirrored or exchanged axis leaves as it is");
     command->callback([options] { run_phantom(*options); });
 }
 

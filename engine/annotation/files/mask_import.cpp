@@ -20,10 +20,12 @@ void save_mask_as(const std::filesystem::path& path, const Mask& mask, const Vol
                   const LabelImage& image)
 {
     if (is_in_archive(path))
-        fail(path.string(), ": lies in an archive, where masks are only read; expected .mask, .nrrd, .tif or .zarr");
+        fail(path.string(),
+             ": lies in an archive, which is only read; expected a path outside it that ends in .mask, .nrrd, .tif or "
+             ".zarr");
     if (is_mask_export(path)) return export_mask(path, mask, volume, image);
     if (states_its_size(path))
-        fail(path.string(), ": is a form in which masks are only read; expected .mask, .nrrd, .tif or .zarr");
+        fail(path.string(), ": has a format in which masks are only read; expected .mask, .nrrd, .tif or .zarr");
     save_mask(path, mask);
 }
 

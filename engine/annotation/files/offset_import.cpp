@@ -102,7 +102,7 @@ void save_offsets_as(const std::filesystem::path& path, const DensityField& fiel
 {
     if (is_offset_export(path)) return export_offsets(path, field, volume);
     if (states_its_size(path))
-        fail(path.string(), ": is a form in which offsets are only read; expected .offset, .nrrd or .tif");
+        fail(path.string(), ": has a format in which offsets are only read; expected .offset, .nrrd or .tif");
     save_offsets(path, field);
 }
 

@@ -26,7 +26,7 @@ FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size,
     const std::string count = bytes_per_voxel == 1 ? "one" : std::to_string(bytes_per_voxel);
     if (is_too_large || status.st_size != bytes)
         fail(path.string(), ": holds ", status.st_size, " bytes; expected ",
-             is_too_large ? std::string("more than 63 bits count") : std::to_string(bytes), ", ", count,
+             is_too_large ? std::string("more than 2^63 - 1") : std::to_string(bytes), ", ", count,
              " for each voxel of ", size.x, " x ", size.y, " x ", size.z);
     return file;
 }
@@ -37,7 +37,7 @@ void read_next(const FileDescriptor& file, const std::filesystem::path& path, st
         const ssize_t count = ::read(file.number(), bytes.data(), bytes.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
-        if (count == 0) fail(path.string(), ": became shorter while it was read; expected its size to stay");
+        if (count == 0) fail(path.string(), ": was truncated while it was read; expected no other program to write it");
         bytes = bytes.subspan(size_t(count));
     }
 }

@@ -28,7 +28,7 @@ public:
         if (op.number) {
             const bool is_there =
                 op.is_internode ? trace_.internodes().contains(*op.number) : trace_.nodes().contains(*op.number);
-            if (!is_there) fail("there is no ", what, " ", *op.number, "; expected one that the trace has");
+            if (!is_there) fail(what, " ", *op.number, " does not exist; expected one of the trace");
             (op.is_internode ? selection.internodes : selection.nodes) = {*op.number};
         }
         if (op.near) {
@@ -46,11 +46,11 @@ public:
     TraceEffect operator()(const LinkOp& op) const
     {
         if (op.node && !trace_.nodes().contains(*op.node))
-            fail("there is no node ", *op.node, "; expected one that the trace has");
+            fail("node ", *op.node, " does not exist; expected one of the trace");
         std::optional<uint32_t> to = op.node;
         if (!to) {
             to = trace_.nearest_node(at(*op.near), trace_.selection().node());
-            if (!to) fail("there is no other node; expected one to link with");
+            if (!to) fail("the trace has no other node; expected one to link to");
             check_distance("other node", glm::length(trace_.node(*to).position - at(*op.near)), op.within_voxels);
         }
         return {"link", link_selected(trace_, *to), {}};

@@ -66,9 +66,9 @@ std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to)
 {
     const uint32_t from = selected_node(trace);
-    if (from == to) fail("node ", to, " would be linked with itself; expected another node");
+    if (from == to) fail("node ", to, " cannot be linked to itself; expected another node");
     if (trace.internode_between(from, to))
-        fail("nodes ", from, " and ", to, " are linked already; expected two that are not");
+        fail("nodes ", from, " and ", to, " are already linked; expected two that are not");
     return {TraceInternodeChange{
         take_number(trace.next_internode(), "internode"), {}, TraceInternode{from, to, trace.node(from).group}}};
 }

@@ -54,10 +54,11 @@ private:
 
 uint32_t TraceReader::add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number)
 {
-    if (trace.nodes().size() == MAX_NODES) fail(where, ": is one node too many; expected at most ", MAX_NODES);
+    if (trace.nodes().size() == MAX_NODES)
+        fail(where, ": exceeds the number of nodes a trace may have; expected at most ", MAX_NODES);
     if (!number && trace.next_node() >> 32 != 0) fail(where, ": no number is left for this node");
     const uint32_t given = number.value_or(uint32_t(trace.next_node()));
-    if (trace.nodes().contains(given)) fail(where, ": node ", given, " is there already; expected each node once");
+    if (trace.nodes().contains(given)) fail(where, ": node ", given, " is defined twice; expected each node once");
     trace.apply(TraceNodeChange{given, {}, node}, Direction::forwards);
     return given;
 }
@@ -75,7 +76,7 @@ void TraceReader::add_internode(const std::string& where, const TraceInternode& 
     if (!number && trace.next_internode() >> 32 != 0) fail(where, ": no number is left for this internode");
     const uint32_t given = number.value_or(uint32_t(trace.next_internode()));
     if (trace.internodes().contains(given))
-        fail(where, ": internode ", given, " is there already; expected each internode once");
+        fail(where, ": internode ", given, " is defined twice; expected each internode once");
     trace.apply(TraceInternodeChange{given, {}, internode}, Direction::forwards);
 }
 
@@ -228,7 +229,7 @@ TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std:
         if (loops == Loops::refuse)
             fail("the trace has ", trees.left_out.size(), " loops, one of them closed by internode ", number,
                  " between nodes ", internode.a, " and ", internode.b, ", and ", form,
-                 " holds trees; expected no loop, or leave to break loops open");
+                 " holds trees; expected no loop: give --break-loops to leave such internodes out");
         notes.push_back(sentence("internode ", number, " between nodes ", internode.a, " and ", internode.b,
                                  " is left out: it closes a loop, and ", form, " holds trees"));
     }

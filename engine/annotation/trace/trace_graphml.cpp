@@ -42,7 +42,7 @@ public:
         if (!result || name_of(root) != "graphml")
             fail(reader_.file(),
                  ": cannot be read as GraphML: ", result ? "it has no element graphml" : result.description(),
-                 "; expected an XML document that is whole");
+                 "; expected a complete XML document");
         pugi::xml_node graph;
         for (const pugi::xml_node& child : root.children()) {
             if (name_of(child) == "key")
@@ -113,7 +113,7 @@ private:
                                      reader_.coordinate(where, "volume_position", words[1]),
                                      reader_.coordinate(where, "volume_position", words[2])};
         }
-        if (!numbers_.emplace(id, number).second) fail(where, ": is there already; expected each id once");
+        if (!numbers_.emplace(id, number).second) fail(where, ": is defined twice; expected each id once");
     }
 
     void read_edge(const pugi::xml_node& edge, bool is_numbered)
@@ -123,7 +123,8 @@ private:
         const std::string where =
             reader_.file() + ": edge " + in_quotes(id) + " from " + in_quotes(source) + " to " + in_quotes(target);
         for (const std::string& end : {source, target})
-            if (!numbers_.contains(end)) fail(where, ": there is no node ", in_quotes(end), "; expected the id of one");
+            if (!numbers_.contains(end))
+                fail(where, ": node ", in_quotes(end), " does not exist; expected the id of a node of the file");
         const Data data = data_of(edge);
         const auto group = data.find("group");
         reader_.add_internode(where,

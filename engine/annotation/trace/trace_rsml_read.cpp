@@ -42,7 +42,7 @@ public:
         const pugi::xml_node rsml = document.document_element();
         if (!result || name_of(rsml) != "rsml")
             fail(reader_.file(), ": cannot be read as RSML: ", result ? "it has no element rsml" : result.description(),
-                 "; expected an XML document that is whole");
+                 "; expected a complete XML document");
         read_metadata(child_named(rsml, "metadata"));
         const pugi::xml_node scene = child_named(rsml, "scene");
         if (!scene) fail(reader_.file(), ": has no element scene; expected one");

@@ -77,7 +77,7 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
                                     reader.radius(where, words[5]),
                                     reader.group(where, words[1])});
         if (!nodes.emplace(*sample, node).second)
-            fail(where, ": sample ", *sample, " is there already; expected each number once");
+            fail(where, ": sample ", *sample, " is defined twice; expected each number once");
         samples.push_back({number, node, *parent == -1 ? std::nullopt : parent});
     }
     for (const Sample& sample : samples) {

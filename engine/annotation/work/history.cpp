@@ -70,19 +70,19 @@ void History::note(std::string label, RecordNumber record)
 
 void History::note_extension(RecordNumber record)
 {
-    if (done_ == 0 || done_ != commands_.size()) fail("a stroke goes on that is not the last command");
+    if (done_ == 0 || done_ != commands_.size()) fail("a stroke continues that is not the last command");
     commands_.back().records.push_back(record);
 }
 
 void History::note_undo()
 {
-    if (done_ == 0) fail("more is undone than was done");
+    if (done_ == 0) fail("more commands are undone than were done");
     --done_;
 }
 
 void History::note_redo()
 {
-    if (done_ == commands_.size()) fail("more is done again than was undone");
+    if (done_ == commands_.size()) fail("more commands are redone than were undone");
     ++done_;
 }
 

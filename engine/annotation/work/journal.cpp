@@ -49,7 +49,8 @@ FileDescriptor opened(const fs::path& path)
     if (!file) fail(path.string(), ": cannot be written: ", reason_of(errno));
     // Some network file systems have no locks.
     if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        throw JournalTaken(sentence(path.string(), ": another process annotates this; expected to be the only one"));
+        throw JournalTaken(
+            sentence(path.string(), ": another process is annotating this; expected no other: close it there first"));
     return file;
 }
 
@@ -230,7 +231,7 @@ std::string Journal::write_from(uint64_t at, const std::deque<Waiting>& waiting,
     for (; first < waiting.size(); ++first) {
         if (const int error = write_all(file_.number(), at, waiting[first].bytes); error != 0)
             return sentence(path_.string(), ": cannot be written: ", reason_of(error),
-                            "; what is done is kept in memory, and writing is tried again");
+                            "; unsaved work stays in memory, and writing is tried again");
         at += waiting[first].bytes.size();
     }
     return {};
@@ -264,7 +265,7 @@ void Journal::write()
             if (is_due && written > 0) {
                 if (const int error = sync(file_.number()); error != 0)
                     failure = sentence(path_.string(), ": cannot be synced: ", reason_of(error),
-                                       "; what is done is kept in memory, and writing is tried again");
+                                       "; unsaved work stays in memory, and writing is tried again");
                 next_sync = Clock::now() + SYNC_INTERVAL;
             }
         }

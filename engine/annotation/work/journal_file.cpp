@@ -86,7 +86,7 @@ void check_file_header(const FileDescriptor& file, const fs::path& path, uint64_
     const std::vector<std::byte> ours = journal_header();
     const size_t compared = std::min(there, sizeof MAGIC);
     if (std::memcmp(header.data(), ours.data(), compared) != 0)
-        fail(path.string(), ": begins with other bytes than SHVRJRNL; expected a journal, or no such file");
+        fail(path.string(), ": does not begin with SHVRJRNL; expected a journal, or no such file");
     const uint64_t version = get(header.data() + sizeof MAGIC, 4);
     if (file_bytes >= FILE_HEADER_BYTES && version != VERSION)
         fail(path.string(), ": is a journal of version ", version, "; expected ", VERSION,
@@ -149,7 +149,7 @@ JournalScan scan_journal(const fs::path& path)
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};
     if (::fstat(file.number(), &status) != 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
-    if (!S_ISREG(status.st_mode)) fail(path.string(), ": is no regular file; expected a journal, or no such file");
+    if (!S_ISREG(status.st_mode)) fail(path.string(), ": is not a regular file; expected a journal, or no such file");
     scan.file_bytes = uint64_t(status.st_size);
     scan.inode = status.st_ino;
     check_file_header(file, path, scan.file_bytes);

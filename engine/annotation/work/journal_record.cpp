@@ -71,7 +71,7 @@ public:
     {
         const uint64_t value = whole();
         if (value > bytes_.size() / bytes_each)
-            fail(value, " things are to follow in ", bytes_.size(), " bytes; expected at most ",
+            fail(value, " elements are said to follow in ", bytes_.size(), " bytes; expected at most ",
                  bytes_.size() / bytes_each);
         return size_t(value);
     }
@@ -91,7 +91,7 @@ public:
     }
     void expect_end() const
     {
-        if (!bytes_.empty()) fail(bytes_.size(), " bytes are left over");
+        if (!bytes_.empty()) fail(bytes_.size(), " bytes are left at its end");
     }
 
 private:
@@ -352,7 +352,7 @@ JournalSubject subject_of(std::span<const std::byte> bytes)
     for (int axis = 0; axis < 3; ++axis) subject.size[axis] = int64_t(in.whole(uint64_t{1} << 40));
     const std::string type = in.text();
     const std::optional<VoxelType> known = voxel_type_of(type);
-    if (!known) fail("the volume's voxels are of type \"", type, "\", which is none");
+    if (!known) fail("the volume's voxels are of type \"", type, "\", which is not known");
     subject.type = *known;
     subject.image = in.text();
     in.expect_end();

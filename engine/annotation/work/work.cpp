@@ -67,8 +67,8 @@ std::vector<std::byte> Work::content_of(RecordNumber number) const
 void Work::refuse_if_only_looking() const
 {
     if (!only_looks_) return;
-    throw JournalTaken(sentence(files_.journal.string(), ": was opened to be looked at only",
-                                "; expected it to be opened for writing, for that changes it"));
+    throw JournalTaken(sentence(files_.journal.string(), ": is open to be looked at only",
+                                "; expected it open for writing, since this would change it"));
 }
 
 void Work::begin_journal()
@@ -221,7 +221,7 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
 void Work::expect_names() const
 {
     if (files_.mask.empty() && (files_.trace.empty() || holds_any(document_, Part::mask)))
-        fail("the session names no mask to save to; expected the key annotation.mask");
+        fail("the session names no file for the mask; expected the key annotation.mask");
     if (files_.trace.empty() && holds_any(document_, Part::trace))
         fail("the session names no file for the trace; expected the key annotation.trace");
     if (files_.density.empty() && holds_any(document_, Part::offsets))

@@ -108,12 +108,12 @@ std::vector<Notice> Work::open_once()
 
     std::vector<Notice> notices;
     const std::string name = files_.journal.string();
-    if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is taken"), true});
+    if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is used"), true});
     // What another process is just writing is no damage.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
         notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
-                                    " bytes were not written to the end, or turned since; expected whole records; the ",
-                                    scan_.records.size(), " records before are taken"),
+                                    " bytes are an incomplete or damaged record; expected complete ones; the ",
+                                    scan_.records.size(), " records before are used"),
                            true});
     unsaved_ = steps_since_save(scan_);
     touched_.fill(unsaved_ > 0);
@@ -192,7 +192,7 @@ void Work::check_subject() const
     try {
         found = subject_of(content_of(1));
     } catch (const Error& error) {
-        fail(name, ": does not say which volume it is of: ", error.what());
+        fail(name, ": does not state its volume: ", error.what());
     }
     const auto volume_in_words = [](const Size3& size, VoxelType type) {
         return sentence(size.x, "x", size.y, "x", size.z, " voxels of ", name_of(type));
@@ -218,7 +218,7 @@ std::string Work::replay()
             return damage;
         } catch (const Error& error) {
             scan_.cut(at - 1);
-            damage = sentence("record ", at, " cannot be taken: ", error.what());
+            damage = sentence("record ", at, " cannot be applied: ", error.what());
             if (!holds_state(scan_)) return damage;
         }
     }
@@ -251,13 +251,13 @@ Work::Replayed Work::replayed(RecordNumber last, RecordNumber& at) const
                 if (is_noted)
                     work.history.note_undo();
                 else if (!work.history.undo(work.document))
-                    fail("more is undone than was done");
+                    fail("more commands are undone than were done");
                 break;
             case RecordKind::redo:
                 if (is_noted)
                     work.history.note_redo();
                 else if (!work.history.redo(work.document))
-                    fail("more is done again than was undone");
+                    fail("more commands are redone than were undone");
                 break;
             default: break;  // states, saves, and kinds unknown to this version
         }

@@ -101,7 +101,7 @@ void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
     }
 }
 
-/// If there are several slices at each position, keeps those of one point in time.
+/// If there are several slices at each position, keeps those of one time point.
 void choose_time(const std::string& where, const OpenOptions& options, std::vector<Placed>& slices)
 {
     std::vector<size_t> begins;  // of positions

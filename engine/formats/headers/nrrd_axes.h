@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (points in time).
+/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (time points).
 struct NrrdAxes {
     size_t dimension = 3;
     size_t first = 0;  ///< index of the first spatial axis

@@ -69,7 +69,7 @@ fs::path with_ending(const fs::path& path, std::string_view from, const std::str
     return fs::exists(other, ignored) ? other : same;
 }
 
-/// The content of a file: one volume of `size` for each point in time and component.
+/// The content of a file: one volume of `size` for each time point and component.
 struct Shape {
     Size3 size{1};
     int64_t frames = 1;
@@ -92,7 +92,7 @@ Shape shape_of(const std::string& file, const NiftiHeader& header)
     return {{side(1), side(2), side(3)}, side(4), side(5)};
 }
 
-/// Several volumes follow one another; points in time vary fastest.
+/// Several volumes follow one another; time points vary fastest.
 void choose_volume(const std::string& file, const OpenOptions& options, const Shape& shape, const Datatype& datatype,
                    VolumeInfo& info, RawVoxels& voxels)
 {

@@ -131,12 +131,12 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
-/// Moves to one of several points in time.
+/// Moves to one of several time points.
 void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, const VolumeInfo& info, RawVoxels& voxels)
 {
     if (frames == 1) return;
     if (!voxels.parts.empty() || voxels.offset_bytes == RawVoxels::AT_END) {
-        fields.refuse("dimension", "3: points in time in several files, or counted from the end, are not supported");
+        fields.refuse("dimension", "3: time points in several files, or counted from the end, are not supported");
     }
     int64_t bytes = 0;
     int64_t all = 0;

@@ -21,7 +21,7 @@ struct RawVoxels {
     std::optional<bool> big_endian = false;
     bool is_deflated = false;   ///< gzip or zlib, from `offset_bytes` of the file on
     int64_t skip_bytes = 0;     ///< if deflated: decoded bytes before the voxels
-    int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other points in time
+    int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other time points
     std::vector<Part> parts{};  ///< instead of `file`: equal shares of the voxels, in this order
     int64_t channels = 1;       ///< values of each voxel, one after the other
     int64_t channel = 0;        ///< the one to read

@@ -221,7 +221,7 @@ private:
         } else if (planes != found) {
             if (description_.channels > 1 || description_.frames > 1) {
                 fail(name_, ": its ImageJ description counts ", description_.channels, " channels of ",
-                     description_.slices, " slices at ", description_.frames, " points in time; expected ", planes,
+                     description_.slices, " slices at ", description_.frames, " time points; expected ", planes,
                      " pages, but it holds ", found);
             }
             if (planes > 1) {
@@ -258,7 +258,7 @@ private:
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
             !file_->holds(uint64_t(first.offset), uint64_t(needed))) {
             refuse("and ", file_->size_bytes() - first.offset, " bytes of voxels; expected ", needed,
-                   ": it was cut short, or pages are missing");
+                   ": it is truncated, or pages are missing");
         }
         is_contiguous_ = true;
     }
@@ -270,7 +270,7 @@ private:
             if (plane == TiffDescription::NO_PAGE) continue;
             if (plane >= directories_.pages.size()) {
                 fail(name_, ": its OME-XML names page ", plane + 1, "; expected at most the ",
-                     directories_.pages.size(), " pages the file holds: it was cut short, or is one of several files");
+                     directories_.pages.size(), " pages the file holds: it is truncated, or one of several files");
             }
             if (shown_.empty() || is_like(plane, shown_.front())) {
                 shown_.push_back(plane);
@@ -382,7 +382,7 @@ void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChann
                                     recipe.mirrors_x ? "columns are stored from right to left" : "",
                                     recipe.mirrors_x && recipe.mirrors_y ? " and " : "",
                                     recipe.mirrors_y ? "rows are stored from bottom to top" : "",
-                                    "; they were put in order"));
+                                    "; they were reordered"));
     }
     volume.info.type = recipe.type;
 }

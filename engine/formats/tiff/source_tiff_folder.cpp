@@ -105,7 +105,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
     const bool is_one_pattern = names.front().pattern == names.back().pattern;
     if (is_one_pattern && names.front().numbers.empty()) {
         fail(folder.string(), ": ", in_quotes(names.front().file), " and ", in_quotes(names.back().file),
-             " have the same name but for its extension; expected one of them");
+             " differ only in their extension; expected one of them: remove the other");
     }
     if (is_one_pattern) {
         if (const std::optional<size_t> number = counting_number(names)) return *number;
@@ -113,7 +113,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
         const auto twice = std::adjacent_find(names.begin(), names.end(), is_same);
         if (twice != names.end()) {
             fail(folder.string(), ": ", in_quotes(twice->file), " and ", in_quotes((twice + 1)->file),
-                 " have the same number; expected one file for each slice");
+                 " have the same number; expected one file for each slice: remove one of them");
         }
     }
     const bool no_numbers =
@@ -121,7 +121,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
     if (no_numbers) {
         fail(folder.string(), ": holds ", names.size(), " TIFFs without numbers in their names, ",
              in_quotes(names.front().file), " and ", in_quotes(names[1].file),
-             " among them; expected the numbered slices of one volume, or a file of its own");
+             " among them; expected the numbered slices of one volume: number them, or open one of the files");
     }
     // Sorted by pattern; within one, by the numbers before the last one that differs.
     size_t last_number = 0;
@@ -136,7 +136,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
     }
     fail(folder.string(), ": holds ", firsts.size(), " series of slices, from ", in_quotes(firsts[0]->file),
          " on and from ", in_quotes(firsts[1]->file), " on", firsts.size() > 2 ? " among them" : "",
-         "; expected one: give each a folder of its own");
+         "; expected one: put each into a folder of its own");
 }
 
 /// Warns of gaps in the count: slices are drawn evenly spaced all the same.
@@ -202,7 +202,7 @@ private:
         const std::vector<uint32_t> shown = pages_to_show(directories);
         if (shown.size() > 1) {
             fail(file.path().string(), ": holds ", shown.size(), " pages; expected one, as a slice of the folder: ",
-                 "open the file itself, or give it a folder of its own");
+                 "open the file itself, or put it into a folder of its own");
         }
         const TiffDirectory& directory = directories.pages[shown.front()];
         const size_t number = shown.front() + 1;
@@ -232,8 +232,9 @@ private:
             read_description(file, page.text(TIFFTAG_IMAGEDESCRIPTION), volume_.layout.samples, TiffRole::slice);
         const auto slices = int64_t(volume_.slices.size());
         if (description.channels > 1 || description.frames > 1) {
-            fail(folder_.string(), ": its first file speaks of ", description.channels, " channels and ",
-                 description.frames, " points in time; expected one of each: save one channel of one point in time");
+            fail(folder_.string(), ": the description of its first file states ", description.channels,
+                 " channels and ", description.frames,
+                 " time points; expected one of each: save one channel of one time point");
         }
         if (description.writer == TiffDescription::Writer::imagej && description.slices > 1 &&
             description.slices != slices) {

@@ -160,7 +160,7 @@ TiffChoice choose(const std::string& subject, const OpenOptions& options, const 
     const bool needs_frame = frames > 1 && options.frame.empty();
     if (needs_channel && needs_frame) {
         fail(subject, ": has ", names.size(), " channels (", channel_names(names), ") and ", frames,
-             " points in time; expected one of each: choose with --channel ", channel_choices(names), " and ",
+             " time points; expected one of each: choose with --channel ", channel_choices(names), " and ",
              frame_choices(frames));
     }
     if (needs_channel) {
@@ -168,14 +168,14 @@ TiffChoice choose(const std::string& subject, const OpenOptions& options, const 
              "); expected one: choose with --channel ", channel_choices(names));
     }
     if (needs_frame) {
-        fail(subject, ": has ", frames, " points in time; expected one: choose with ", frame_choices(frames));
+        fail(subject, ": has ", frames, " time points; expected one: choose with ", frame_choices(frames));
     }
     TiffChoice choice;
     if (!options.channel.empty()) choice.channel = chosen_channel(subject, options.channel, names);
     if (!options.frame.empty()) {
         const std::optional<int64_t> frame = whole_of(trimmed(options.frame));
         if (!frame || *frame < 1 || *frame > frames) {
-            fail(subject, ": has no point in time ", in_quotes(options.frame), "; expected ", numbers_to(frames));
+            fail(subject, ": has no time point ", in_quotes(options.frame), "; expected ", numbers_to(frames));
         }
         choice.frame = *frame - 1;
     }

@@ -80,7 +80,8 @@ void use_one_unit(TiffDescription& description)
             *description.spacing[axis] *= *um / *x_um;
         } else {
             description.warnings.push_back(sentence("spacing along ", "xyz"[axis], " is stated in ",
-                                                    in_quotes(description.unit[axis]), " and was left out"));
+                                                    in_quotes(description.unit[axis]), ", which does not convert to ",
+                                                    in_quotes(description.unit[0]), ", and was ignored"));
             description.spacing[axis].reset();
         }
         description.unit[axis] = description.unit[0];
@@ -110,7 +111,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         if (resolution.um_per_unit != 0.0 && *resolution.x != 1.0) {
             description.warnings.push_back(sentence("its ", *resolution.x, " pixels for each ",
                                                     resolution.um_per_unit == UM_PER_CM ? "centimetre" : "inch",
-                                                    " are a screen's or a printer's and were left out"));
+                                                    " are those of a screen or printer, and were ignored"));
         }
         return;
     }

@@ -99,7 +99,7 @@ public:
         const std::byte* start = window_.at(offset, count_bytes_);
         if (start == nullptr) {
             refuse(" starts at byte ", offset, "; expected less than the ", file_.size_bytes(),
-                   " bytes of the file: it was cut short, or is damaged");
+                   " bytes of the file: it is truncated or damaged");
         }
         const uint64_t count = number(start, count_bytes_);
         if (count == 0 || count > MAX_FIELDS) {
@@ -113,7 +113,7 @@ public:
         if (lacks_next_) start = window_.at(offset, bytes);
         if (start == nullptr) {
             refuse(" has a directory that ends at byte ", offset + bytes, "; expected at most the ", file_.size_bytes(),
-                   " bytes of the file: it was cut short, or is damaged");
+                   " bytes of the file: it is truncated or damaged");
         }
         fields_ = start + count_bytes_;
         count_ = size_t(count);
@@ -269,7 +269,7 @@ public:
             if (found == kinds.end()) kinds.push_back({page - 1, is_reduced_, fields_});
             if (kinds.size() > MAX_KINDS) {
                 fail(file.path().string(), ": its first ", page, " pages differ in ", kinds.size(),
-                     " ways; expected pages that are alike");
+                     " ways; expected pages of one layout: save those of one layout as a file of their own");
             }
         }
         fields_.clear();
@@ -318,7 +318,7 @@ TiffDirectories read_directories(const TiffFile& file)
             fail(file.path().string(), ": holds more than ", MAX_TIFF_PAGES, " pages; expected at most that many");
         }
         if (offset == remembered) {
-            fail(file.path().string(), ": page ", page, " is an earlier page once more, at byte ", offset,
+            fail(file.path().string(), ": page ", page, " starts where an earlier page does, at byte ", offset,
                  "; expected a chain of pages that ends");
         }
         if ((page & (page - 1)) == 0) remembered = offset;
@@ -344,7 +344,7 @@ TiffDirectories read_directories(const TiffFile& file)
                 "the directory of page ", page, " was cut before the offset of a next one; it was taken as the last"));
         directories.pages.push_back({offset, kind.finish(file, directories.kinds, page)});
     }
-    if (directories.pages.empty()) fail(file.path().string(), ": holds no page; expected at least one");
+    if (directories.pages.empty()) fail(file.path().string(), ": has no pages; expected at least one");
     return directories;
 }
 

@@ -67,7 +67,7 @@ void TiffFile::read(int64_t offset, std::span<std::byte> bytes) const
     const size_t done = read_some(offset, bytes);
     if (done == bytes.size()) return;
     fail(path_.string(), ": ended after ", offset + int64_t(done), " bytes; expected ", offset + int64_t(bytes.size()),
-         ": it was cut short while open");
+         ": it was truncated while open");
 }
 
 bool TiffFile::holds(uint64_t offset, uint64_t bytes) const

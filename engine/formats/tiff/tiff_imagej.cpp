@@ -136,7 +136,8 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     const int64_t product = description.slices * description.channels;  // each at most 2^20
     if (images > 1 && (product > images || product * description.frames != images)) {
         fail(subject, ": its ImageJ description counts ", images, " images but ", description.channels, " x ",
-             description.slices, " x ", description.frames, " channels, slices and frames; expected as many");
+             description.slices, " x ", description.frames,
+             " channels, slices and frames; expected equal counts: save it again, for example from Fiji");
     }
 
     const std::string unit = without_escapes(lines.text("unit"));

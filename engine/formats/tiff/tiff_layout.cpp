@@ -192,12 +192,13 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
             "those, for example from Fiji");
     }
     if (!voxel_type_of(layout)) {
-        const char* const kind = layout.sample_format == SAMPLEFORMAT_INT      ? "integers with sign"
-                                 : layout.sample_format == SAMPLEFORMAT_UINT   ? "integers without sign"
+        const char* const kind = layout.sample_format == SAMPLEFORMAT_INT      ? "signed integers"
+                                 : layout.sample_format == SAMPLEFORMAT_UINT   ? "unsigned integers"
                                  : layout.sample_format == SAMPLEFORMAT_IEEEFP ? "floats"
-                                                                               : "numbers of no known kind";
+                                                                               : "numbers of unknown kind";
         fail(page.subject(), ": its samples are ", kind, " of ", layout.bits,
-             " bits; expected integers of 8, 16 or 32 bits (1 to 16 without sign) or floats of 16, 32 or 64 bits");
+             " bits; expected integers of 8, 16 or 32 bits, unsigned ones of 1 to 16 bits, or floats of 16, 32 or 64 "
+             "bits");
     }
     const bool is_jpeg_color = layout.photometric == PHOTOMETRIC_YCBCR && layout.compression == COMPRESSION_JPEG;
     switch (layout.photometric) {
@@ -211,7 +212,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
             if (is_jpeg_color) break;
             fail(page.subject(), ": PhotometricInterpretation is ", layout.photometric,
                  layout.photometric == PHOTOMETRIC_YCBCR ? " (YCbCr without JPEG)"
-                 : layout.photometric == PHOTOMETRIC_CFA ? " (a camera's raw picture)"
+                 : layout.photometric == PHOTOMETRIC_CFA ? " (a camera's raw image)"
                                                          : "",
                  "; expected grey, RGB, CMYK or a palette");
     }
@@ -221,7 +222,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
     }
     if (layout.orientation > ORIENTATION_BOTLEFT || layout.orientation < ORIENTATION_TOPLEFT) {
         fail(page.subject(), ": Orientation is ", layout.orientation,
-             ": rows and columns are exchanged; expected 1 to 4: save it again without turning it");
+             ", rows and columns exchanged; expected 1 to 4: save it again without rotation");
     }
     const int64_t block_bytes = layout.block_row_bytes() * layout.rows_of_block(0);
     if (!layout.is_bare() && block_bytes > LARGEST_BLOCK) {
@@ -247,7 +248,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
     }
     if (!file.holds(offset, bytes)) {
         refuse(" is ", bytes, " bytes at byte ", offset, " by ", name_of_byte_counts(layout),
-               "; expected it within the ", file.size_bytes(), " bytes of the file: it was cut short, or is damaged");
+               "; expected it within the ", file.size_bytes(), " bytes of the file: it is truncated or damaged");
     }
     if (decoded > most_decoded(layout, int64_t(bytes))) {
         refuse(" is ", bytes, " bytes by ", name_of_byte_counts(layout), "; expected enough for ", decoded,
@@ -285,7 +286,7 @@ void check_amount(const TiffFile& file, const TiffLayout& layout, int64_t pages)
     const bool overflows = __builtin_mul_overflow(layout.page_bytes(), pages, &bytes);
     if (!overflows && bytes <= most_decoded(layout, file.size_bytes())) return;
     fail(file.path().string(), ": holds ", file.size_bytes(), " bytes; expected enough for ", pages,
-         pages == 1 ? " page of " : " pages of ", in_words(layout), ": it was cut short, or ImageWidth and ImageLength",
+         pages == 1 ? " page of " : " pages of ", in_words(layout), ": it is truncated, or ImageWidth and ImageLength",
          " are wrong");
 }
 

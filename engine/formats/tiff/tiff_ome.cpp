@@ -52,11 +52,12 @@ public:
         const pugi::xml_node root = first_child(document, "OME");
         if (!result || !root) {
             fail(subject_, " cannot be read: ", result ? "it has no element OME" : result.description(),
-                 "; expected an XML document that is whole");
+                 "; expected a complete XML document");
         }
         if (const pugi::xml_node elsewhere = first_child(root, "BinaryOnly")) {
             fail(subject_, " is in another file, ", in_quotes(elsewhere.attribute("MetadataFile").value()),
-                 "; expected it in this one: data sets of several files are not supported yet");
+                 "; expected it in this one: data sets of several files are not supported: save it as one file, for "
+                 "example from Fiji");
         }
         const pugi::xml_node pixels = largest_pixels(root);
         read_sizes(pixels);
@@ -109,7 +110,7 @@ private:
             largest = pixels;
             name = image.attribute("Name").value();
         });
-        if (count == 0) fail(subject_, " has no Image with Pixels; expected one");
+        if (count == 0) fail(subject_, " has no Image with Pixels; expected at least one");
         if (count > 1) {
             result_.warnings.push_back(sentence("the file holds ", count, " images; the largest",
                                                 name.empty() ? "" : ", " + in_quotes(name) + ",", " was taken"));
@@ -132,7 +133,7 @@ private:
         const int64_t planes = result_.slices * result_.channels;
         if (planes > int64_t(MAX_TIFF_PAGES) || planes * result_.frames > int64_t(MAX_TIFF_PAGES)) {
             fail(subject_, " counts ", result_.slices, " x ", result_.channels, " x ", result_.frames,
-                 " slices, channels and points in time; expected at most ", MAX_TIFF_PAGES, " pages");
+                 " slices, channels and time points; expected at most ", MAX_TIFF_PAGES, " pages");
         }
         result_.pages.assign(size_t(planes * result_.frames), TiffDescription::NO_PAGE);
 
@@ -203,7 +204,7 @@ private:
                 files.insert(file.attribute("FileName").value());
             }
             if (files.size() > 1 && role_ == TiffRole::whole) {
-                fail(subject_, " spreads the stack over several files, ", in_quotes(*files.begin()), " and ",
+                fail(subject_, " describes a stack in several files, ", in_quotes(*files.begin()), " and ",
                      in_quotes(*files.rbegin()), " among them; expected one: save it as one file, for example from ",
                      "Fiji");
             }

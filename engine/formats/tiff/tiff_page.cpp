@@ -94,7 +94,9 @@ TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_
     // offsets are read on demand.
     handle_ = TIFFClientOpenExt("TIFF", "rmO", access_.get(), Access::read, Access::write, Access::seek, Access::close,
                                 Access::size, nullptr, nullptr, options.get());
-    if (handle_ == nullptr) fail(subject(), " cannot be read: ", complaint(), "; expected a TIFF that is whole");
+    if (handle_ == nullptr)
+        fail(subject(), " cannot be read: ", complaint(),
+             "; expected an intact TIFF: save it again, for example from Fiji");
 }
 
 TiffPage::~TiffPage()

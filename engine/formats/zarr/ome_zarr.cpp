@@ -88,8 +88,7 @@ void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& i
         image.xyz[along] = axis;
         is_there[along] = true;
     }
-    if (is_there[0] && is_there[1] && !is_there[2])
-        node.refuse("a z axis too: pictures of two dimensions are no volumes");
+    if (is_there[0] && is_there[1] && !is_there[2]) node.refuse("a z axis too: two-dimensional images are not volumes");
     if (!is_there[0] || !is_there[1] || !is_there[2]) node.refuse("axes of space called x, y and z");
 }
 
@@ -237,7 +236,7 @@ OmeImage read_ome_image(const ZarrNode& node)
 
     OmeImage image;
     if (multiscales.count() > 1)
-        image.warnings.push_back(sentence("the image is there in ", multiscales.count(), " forms; the first is taken"));
+        image.warnings.push_back(sentence("the image has ", multiscales.count(), " multiscales; the first is used"));
     const JsonNode axes_node = multiscale["axes"];
     const std::vector<Axis> axes = read_axes(axes_node, node.version);
     place_axes(axes_node, axes, image);

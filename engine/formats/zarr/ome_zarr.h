@@ -35,7 +35,7 @@ struct OmeImage {
     std::vector<std::string> names{};   ///< of the axes
     std::array<size_t, 3> xyz{};        ///< the array's axis along x, y and z
     std::optional<size_t> channel{};    ///< the array's axis of channels
-    std::optional<size_t> time{};       ///< the array's axis of points in time
+    std::optional<size_t> time{};       ///< the array's axis of time points
     std::optional<std::string> unit{};  ///< unit of x, y and z
     std::vector<Level> levels{};
     std::vector<std::string> channels{};  ///< channel names, as far as there are any

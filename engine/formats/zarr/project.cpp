@@ -11,6 +11,8 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
+#include "engine/formats/open_volume.h"
+#include "engine/formats/zarr/store/zarr_store.h"
 #include "engine/formats/zarr/zarr_json.h"
 #include "engine/volume/grid.h"
 
@@ -221,8 +223,8 @@ ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
     const std::span<const std::byte> frame = std::span(bytes).subspan(HEADER_BYTES);
     const std::vector<std::byte> header = header_of(expected, frame.size());
     if (std::memcmp(bytes.data(), header.data(), header.size()) != 0) {
-        fail(file.string(), ": was made for another volume, or was cut short; expected ", expected.kind, " of ",
-             expected.counts.x, "x", expected.counts.y, "x", expected.counts.z, " elements");
+        fail(file.string(), ": is truncated or of another volume; expected ", expected.kind, " of ", expected.counts.x,
+             "x", expected.counts.y, "x", expected.counts.z, " elements");
     }
     if (decoded_bytes / MAX_OUT_OF_A_BYTE > int64_t(frame.size())) {
         fail(file.string(), ": holds ", frame.size(), " compressed bytes; expected enough for ", decoded_bytes);
@@ -233,7 +235,7 @@ ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
     uint64_t checksum = 0;
     std::memcpy(&checksum, bytes.data() + header.size(), sizeof(checksum));
     if (made != table.elements.size() || checksum != checksum_of(header, table.elements)) {
-        fail(file.string(), ": is damaged; expected a table whose checksum holds");
+        fail(file.string(), ": is damaged; expected a table that matches its checksum");
     }
     return table;
 }
@@ -251,6 +253,16 @@ ValueRange range_of(VoxelType type, std::span<const std::byte> element)
         case VoxelType::float64: return range_as<double>(element);
     }
     return {};
+}
+
+std::string archived_project(const std::filesystem::path& path)
+{
+    if (!leads_into_archive(path)) return {};
+    const std::optional<ZarrPlace> place = zarr_place(path);
+    if (!place || !place->has(PROJECT_RECORD)) return {};
+    return sentence(path.string(),
+                    ": is a project in an archive, of which only the image is read; expected its folder, ",
+                    "for annotations, looks and statistics: unpack the archive");
 }
 
 }  // namespace shvr

@@ -51,7 +51,7 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
         const auto warn = [&](const char* key, const auto& found, const auto& expected) {
             warnings.push_back(sentence(
                 array.path_of(is_3 ? "zarr.json" : ".zarray").string(), ": key ", key, " is ", found, "; expected ",
-                expected, ", as the import wrote it: another program changed it, and what it says is used"));
+                expected, ", as the import wrote it: another program changed it, and its new value is used"));
         };
         ZarrMetadata found;
         try {

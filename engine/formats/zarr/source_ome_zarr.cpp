@@ -196,7 +196,7 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     if (metadata.type != first.type)
         return sentence("holds ", name_of(metadata.type), ", level 0 ", name_of(first.type));
     for (const auto& axis : {image.channel, image.time}) {
-        if (axis && metadata.shape[*axis] != first.shape[*axis]) return "has other channels or points in time";
+        if (axis && metadata.shape[*axis] != first.shape[*axis]) return "has other channels or time points";
     }
     const Size3 size = size_along(first, image.xyz);
     const Size3 coarse = size_along(metadata, image.xyz);
@@ -237,7 +237,7 @@ void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMeta
         const std::string& name = metadata.axes[axis];
         if (name.empty() || lower_case(name) == image.names[axis]) continue;
         warnings.push_back(sentence(array.path_of(metadata.key()).string(), ": calls axis ", axis, " ", in_quotes(name),
-                                    ", the image ", in_quotes(image.names[axis]), ", which counts"));
+                                    ", the image ", in_quotes(image.names[axis]), ", which is used"));
         return;
     }
 }
@@ -274,9 +274,9 @@ std::vector<ZarrVolume> open_levels(const ZarrPlace& folder, int version, const 
     for (const ZarrVolume& volume : volumes)
         if (const std::string stray = volume.stray_chunk(); !stray.empty())
             warnings.push_back(
-                sentence(stray, " is named like a chunk, but is none of the array's, which would be ",
+                sentence(stray, " is named like a chunk, but lies outside the array, whose last chunk is ",
                          volume.path_of(volume.counts() - int64_t{1}).lexically_relative(folder.path_of("")).string(),
-                         " at most; its ", volume.metadata().key(), " does not fit it"));
+                         "; its ", volume.metadata().key(), " does not match it"));
     if (!left_out.empty()) {
         std::string names;
         for (const std::string& path : left_out) names += (names.empty() ? "" : ", ") + in_quotes(path);
@@ -302,11 +302,6 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     read_ome_place(node.attributes(), image.levels[0].translation, info);
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
-    std::error_code ignored;
-    if (place.has(PROJECT_RECORD) && !fs::exists(folder / PROJECT_RECORD, ignored)) {
-        info.warnings.push_back(sentence("what the project ", folder.string(), " knows beside its image (orientation, ",
-                                         "statistics, annotations) is not read from an archive"));
-    }
     if (node.ome()["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
@@ -378,7 +373,7 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     const JsonNode attributes = node.ome();
     const fs::path folder = place.path_of("");
     if (attributes["plate"].exists() || attributes["well"].exists()) {
-        fail(folder.string(), ": is a plate of many images; expected one of them, as in ",
+        fail(folder.string(), ": is a plate of many images; expected one of them, for example ",
              (folder / (attributes["plate"].exists() ? "A/1/0" : "0")).string());
     }
     const std::vector<std::string> images = images_in(place);
@@ -387,7 +382,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
              "multiscales is missing; expected an OME-Zarr image, or one of its arrays");
     }
     if (images.size() > 1) {
-        fail(folder.string(), ": holds several images; expected one of them, as in ", (folder / images[0]).string());
+        fail(folder.string(), ": holds several images; expected one of them, for example ",
+             (folder / images[0]).string());
     }
     const ZarrPlace inner = place / images[0];
     const std::optional<ZarrNode> image = read_zarr_node(inner);
@@ -398,8 +394,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
 /// The usual mistake: the folder was zipped, not what is in it.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
-    fail(path.string(), ": has no zarr.json ", place.prefix.empty() ? "at its root" : "in this place",
-         "; expected a zipped OME-Zarr, made of the content of its folder");
+    fail(path.string(), ": has no zarr.json ", place.prefix.empty() ? "at its root" : "here",
+         "; expected a zipped OME-Zarr: zip the content of its folder, not the folder");
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ std::optional<std::vector<std::byte>> ZarrChunks::read(std::span<const int64_t> 
     const Part part = part_of(chunk, key);
     if (part.offset == ABSENT && part.bytes == ABSENT) return std::nullopt;
     if (part.offset == SHARED && part.bytes == 0)
-        fail(name_of(chunk), ": shares bytes with another chunk of its shard; expected a place of its own");
+        fail(name_of(chunk), ": shares bytes with another chunk of its shard; expected bytes of its own");
     const auto index = uint64_t(metadata_.sharding->index_bytes(metadata_.chunks));
     const auto shard = uint64_t(array_.store->size_of(array_.key(key)).value_or(0));
     const uint64_t lower = metadata_.sharding->is_index_first ? index : 0;

@@ -35,14 +35,14 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     if (stored_bytes != stored.size()) {
         fail(name, ": holds ", stored.size(), " bytes; expected ", stored_bytes, ", as its blosc header says");
     }
-    if (bytes != chunk.size()) refuse_size(name, "its blosc header promises", bytes, chunk.size());
+    if (bytes != chunk.size()) refuse_size(name, "its blosc header states", bytes, chunk.size());
     if (blosc_cbuffer_validate(stored.data(), stored.size(), &bytes) != 0 || bytes != chunk.size()) {
-        fail(name, ": has a blosc header that contradicts itself; expected a whole chunk");
+        fail(name, ": has a blosc header that contradicts itself; expected a complete chunk");
     }
     // One thread: chunks are decoded in parallel already.
     const int made = blosc_decompress_ctx(stored.data(), chunk.data(), chunk.size(), 1);
     if (made < 0 || size_t(made) != chunk.size()) {
-        fail(name, ": cannot be decoded by blosc (error ", made, "); expected a whole chunk");
+        fail(name, ": cannot be decoded by blosc (error ", made, "); expected a complete chunk");
     }
 }
 
@@ -71,7 +71,7 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     Inflater inflater;
     constexpr int ZLIB_OR_GZIP = 32 + MAX_WBITS;
     inflater.is_ready = inflateInit2(&inflater.stream, ZLIB_OR_GZIP) == Z_OK;
-    if (!inflater.is_ready) fail(name, ": cannot be decoded: zlib has no memory");
+    if (!inflater.is_ready) fail(name, ": cannot be decoded: zlib found no memory; expected more free memory");
     z_stream& stream = inflater.stream;
     // zlib's interface predates const.
     stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(stored.data()));

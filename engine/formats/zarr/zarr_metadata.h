@@ -68,7 +68,8 @@ struct ZarrMetadata {
 /// and grids), or if a chunk is larger than LARGEST_CHUNK_BYTES.
 ZarrMetadata read_zarr_metadata(const ZarrPlace& array, int version);
 
-/// The content of `key()`; equal for equal metadata. Of version 3: without sharding.
+/// The content of `key()`; equal for equal metadata. The index of a shard must be little-endian, in the array's order,
+/// with one checksum.
 std::string to_text(const ZarrMetadata& metadata);
 
 }  // namespace shvr

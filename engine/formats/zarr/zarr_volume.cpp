@@ -92,7 +92,7 @@ Block ZarrVolume::load(const Size3& chunk) const
     if (stored) return arranged(chunks_->decoded(*stored, chunks_->name_of(numbers)));
     // An array that was removed must not look empty.
     if (!is_there()) {
-        fail(chunks_->metadata_path().string(), ": cannot be found any more: ", reason_of(ENOENT),
+        fail(chunks_->metadata_path().string(), ": no longer exists: ", reason_of(ENOENT),
              "; expected the array that was opened");
     }
     return {};

@@ -32,7 +32,7 @@ uint64_t bytes_of_file(const std::filesystem::path& path, int descriptor)
 {
     struct stat status {};
     if (::fstat(descriptor, &status) != 0) fail(path.string(), ": cannot be examined: ", reason_of(errno));
-    if (!S_ISREG(status.st_mode)) fail(path.string(), ": is no regular file; expected a zip archive");
+    if (!S_ISREG(status.st_mode)) fail(path.string(), ": is not a regular file; expected a zip archive");
     return uint64_t(status.st_size);
 }
 
@@ -55,7 +55,7 @@ void inflate_entry(const std::string& name, std::span<const std::byte> stored, s
 {
     RawInflater inflater;
     inflater.is_ready = inflateInit2(&inflater.stream, -MAX_WBITS) == Z_OK;
-    if (!inflater.is_ready) fail(name, ": cannot be decoded: zlib has no memory");
+    if (!inflater.is_ready) fail(name, ": cannot be inflated: zlib found no memory; expected more free memory");
     z_stream& stream = inflater.stream;
     // zlib's interface predates const.
     stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(stored.data()));
@@ -64,8 +64,8 @@ void inflate_entry(const std::string& name, std::span<const std::byte> stored, s
     stream.avail_out = static_cast<uInt>(bytes.size());
     const int status = inflate(&stream, Z_FINISH);
     if (status != Z_STREAM_END || stream.avail_out > 0) {
-        fail(name, ": cannot be inflated (", stream.msg != nullptr ? stream.msg : "it is longer or shorter",
-             "); expected ", bytes.size(), " bytes, as the archive's directory says");
+        fail(name, ": cannot be inflated (", stream.msg != nullptr ? stream.msg : "its size differs", "); expected ",
+             bytes.size(), " bytes, as the archive's directory says");
     }
 }
 
@@ -104,9 +104,11 @@ void ZipArchive::read_at(uint64_t offset, std::span<std::byte> bytes) const
 uint64_t ZipArchive::data_of(const ZipEntry& entry) const
 {
     const std::string name = name_of(entry);
-    if ((entry.flags & ZIP_ENCRYPTED) != 0) fail(name, ": is encrypted; expected an entry that is not");
+    if ((entry.flags & ZIP_ENCRYPTED) != 0)
+        fail(name, ": is encrypted; expected no encryption: make the archive without a password");
     if (entry.method != ZIP_STORED && entry.method != ZIP_DEFLATED)
-        fail(name, ": is compressed by method ", entry.method, " of zip; expected it stored (0) or deflated (8)");
+        fail(name, ": is compressed with zip method ", entry.method,
+             "; expected 0 (stored) or 8 (deflated): make the archive without compression");
     const uint64_t end = directory_.offset;
     const bool has_header = entry.header <= end && end - entry.header >= HEADER_BYTES + entry.name.size();
     std::vector<char> header;
@@ -122,14 +124,14 @@ uint64_t ZipArchive::data_of(const ZipEntry& entry) const
     }
     const uint64_t data = entry.header + header.size() + little_endian<uint16_t>(header.data() + 28);
     if (data > end || entry.stored_bytes > end - data) {
-        fail(name, ": is said to have ", entry.stored_bytes, " stored bytes at byte ", data,
-             "; expected them before the archive's directory at byte ", end);
+        fail(name, ": has ", entry.stored_bytes, " stored bytes at byte ", data,
+             " as its directory says; expected them before the directory at byte ", end);
     }
     const bool is_possible = entry.method == ZIP_STORED ? entry.bytes == entry.stored_bytes
                                                         : entry.bytes / MAX_OUT_OF_A_BYTE <= entry.stored_bytes;
     if (!is_possible) {
         fail(name, ": has ", entry.stored_bytes, " stored bytes; expected enough for the ", entry.bytes,
-             " that the archive's directory promises");
+             " that the archive's directory states");
     }
     return data;
 }

@@ -29,7 +29,7 @@ struct End {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what)
 {
-    fail(path, ": ", what, "; expected a whole zip archive");
+    fail(path, ": ", what, "; expected a complete zip archive");
 }
 
 std::vector<char> read(const ReadAt& read_at, uint64_t offset, size_t count)
@@ -41,7 +41,7 @@ std::vector<char> read(const ReadAt& read_at, uint64_t offset, size_t count)
 
 void check_parts(const std::string& path, bool is_one_part)
 {
-    if (!is_one_part) fail(path, ": is a part of an archive of several files; expected one that is whole");
+    if (!is_one_part) fail(path, ": is one part of a multi-part archive; expected a single file: join the parts first");
 }
 
 /// Takes zip64's end record, if there is one before the end record at `end.at`.
@@ -52,7 +52,7 @@ void take_zip64(const std::string& path, const ReadAt& read_at, End& end)
     if (little_endian<uint32_t>(locator.data()) != LOCATOR_MARK) return;
     const auto at = little_endian<uint64_t>(locator.data() + 8);
     const bool is_inside = at <= end.at - LOCATOR_BYTES && end.at - LOCATOR_BYTES - at >= END64_BYTES;
-    if (!is_inside) refuse(path, sentence("its zip64 end record is said to be at byte ", at, ", where there is none"));
+    if (!is_inside) refuse(path, sentence("its zip64 locator points to byte ", at, ", where no zip64 end record lies"));
     const std::vector<char> record = read(read_at, at, END64_BYTES);
     if (little_endian<uint32_t>(record.data()) != END64_MARK)
         refuse(path, sentence("has no zip64 end record at byte ", at));
@@ -79,7 +79,7 @@ End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at
         take_zip64(path, read_at, end);
         return end;
     }
-    refuse(path, "does not end like a zip archive, or was cut short");
+    refuse(path, "has no end record: it is truncated, or not a zip archive");
 }
 
 /// Values of 64 bits that stand in an extra field where the entry has all ones, in this order.
@@ -140,13 +140,13 @@ ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, co
 {
     const End end = find_end(path, file_bytes, read_at);
     if (end.offset > end.at || end.bytes > end.at - end.offset) {
-        refuse(path, sentence("its directory is said to be ", end.bytes, " bytes at byte ", end.offset,
-                              ", which do not lie before its end"));
+        refuse(path, sentence("its end record states a directory of ", end.bytes, " bytes at byte ", end.offset,
+                              ", which overlaps the end record or lies behind it"));
     }
     if (end.bytes > MAX_DIRECTORY)
         fail(path, ": has a directory of ", end.bytes, " bytes; expected at most ", MAX_DIRECTORY);
     if (end.entries > end.bytes / ENTRY_BYTES) {
-        refuse(path, sentence("is said to have ", end.entries, " entries in a directory of ", end.bytes, " bytes"));
+        refuse(path, sentence("states ", end.entries, " entries in a directory of ", end.bytes, " bytes"));
     }
     ZipDirectory directory{.offset = end.offset, .bytes = read(read_at, end.offset, end.bytes)};
     std::vector<ZipEntry>& entries = directory.entries = entries_of(path, directory.bytes, end.entries);

@@ -17,6 +17,7 @@ public:
     virtual double value(const glm::dvec3& voxel) const = 0;
     virtual bool has_gradient() const { return true; }
     virtual glm::dvec3 gradient(const glm::dvec3& voxel) const = 0;
+    virtual std::optional<ProceduralTruth> truth() const { return std::nullopt; }
 
     /// Evaluates the rows of a box; fastest if z varies faster than y. Every value equals `value` at the voxel's
     /// centre, bit for bit.
@@ -39,5 +40,6 @@ std::unique_ptr<ProceduralKind> make_tubes(const Size3& size, uint32_t seed);
 std::unique_ptr<ProceduralKind> make_speckles(const Size3& size, uint32_t seed);
 std::unique_ptr<ProceduralKind> make_fog(const Size3& size, uint32_t seed);
 std::unique_ptr<ProceduralKind> make_checker(const Size3& size, uint32_t seed);
+std::unique_ptr<ProceduralKind> make_chirality(const Size3& size, uint32_t seed);
 
 }  // namespace shvr

@@ -168,8 +168,8 @@ TEST_CASE("a radius or position that makes no region is refused by its value")
     CHECK(refusal(middle, -2.5) == "brush radius is -2.5 voxels; expected a number above 0");
     CHECK(refusal(middle, INFINITE) == "brush radius is inf voxels; expected a number above 0");
     CHECK(contains(refusal(middle, std::nan("")), "expected a number above 0"));
-    CHECK(refusal({1, INFINITE, 1}, 1.0) == "brush position along y is inf; expected a number");
-    CHECK(refusal({1, 1, -INFINITE}, 1.0) == "brush position along z is -inf; expected a number");
+    CHECK(refusal({1, INFINITE, 1}, 1.0) == "brush position along y is inf; expected a finite number");
+    CHECK(refusal({1, 1, -INFINITE}, 1.0) == "brush position along z is -inf; expected a finite number");
     CHECK(refusal({1e308, 1e308, 1e308}, 1.0).empty());
     CHECK(refusal(middle, 128.0).empty());
     CHECK(refusal(middle, 128.75) ==

@@ -115,8 +115,8 @@ TEST_CASE("compressed bytes that are damaged, cut short or too few are an error 
     CHECK(refusal_of(packed, 3000001) ==
           at + ": holds 3000000 decompressed bytes; expected 3000001 for the voxels that its header states");
     CHECK(contains(refusal_of(packed.substr(0, packed.size() / 2), 3000000),
-                   "is cut short: its compressed data ends after"));
-    CHECK(contains(refusal_of(packed.substr(0, packed.size() - 1), 3000000), "is cut short"));
+                   "is truncated: its compressed data ends after"));
+    CHECK(contains(refusal_of(packed.substr(0, packed.size() - 1), 3000000), "is truncated"));
     std::string damaged = packed;
     damaged[damaged.size() - 6] = char(damaged[damaged.size() - 6] ^ 1);
     CHECK(contains(refusal_of(damaged, 3000000), "is damaged after 3000000 decompressed bytes: incorrect data check"));

@@ -219,10 +219,10 @@ TEST_CASE("what a pyramid saves is what it goes on with")
         const auto found = resumed->gather(level, Size3(0), 0);
         CHECK(std::equal(expected.begin(), expected.end(), found.begin(), found.end()));
     }
-    CHECK(contains(error_of([&] { reader.take(); }), "is damaged, or from another version"));
+    CHECK(contains(error_of([&] { reader.take(); }), "is damaged, or of another version"));
     const auto other = make_import_pyramid(Size3(80, 70, 200), VoxelType::uint16, 1);
     StateReader again(folder.path / "state");
-    CHECK(contains(error_of([&] { other->load(again); }), "is damaged, or from another version"));
+    CHECK(contains(error_of([&] { other->load(again); }), "is damaged, or of another version"));
 }
 
 TEST_CASE("a state that was cut short or changed is refused")
@@ -252,7 +252,7 @@ TEST_CASE("a state that was cut short or changed is refused")
             StateReader reader(folder.write("spoiled", spoiled));
             CHECK(reader.take_text() == "identity");
         } catch (const Error& error) {
-            CHECK(contains(error.what(), "is damaged, or from another version"));
+            CHECK(contains(error.what(), "is damaged, or of another version"));
         }
     }
 }

@@ -268,25 +268,25 @@ TEST_CASE("what another import left is not gone on with")
     CHECK_FALSE(report.was_resumed);
     REQUIRE(report.warnings.size() == 2);
     CHECK(contains(report.warnings[1],
-                   "project.part was begun from another file or with other options; it is made anew"));
+                   "project.part was started from another file or with other options; the import starts over"));
     CHECK(voxels_of<uint16_t>(*open_volume(folder.path / "project")) == voxels_of<uint16_t>(source));
     fs::remove_all(folder.path / "project");
 
     leave_part({});
     folder.write("project.part/shvr/import.state", "spoiled");
-    CHECK(contains(folder.import(source).warnings.at(1), "is damaged, or from another version"));
+    CHECK(contains(folder.import(source).warnings.at(1), "is damaged, or of another version"));
     fs::remove_all(folder.path / "project");
 
     // The source file was written again.
     folder.write("source.raw", "one");
     leave_part({});
     folder.write("source.raw", "another");
-    CHECK(contains(folder.import(source).warnings.at(1), "begun from another file"));
+    CHECK(contains(folder.import(source).warnings.at(1), "started from another file"));
     fs::remove_all(folder.path / "project");
 
     fs::create_directory(folder.path / "project.part");
     folder.write("project.part/mine.txt", "keep me");
-    CHECK(contains(folder.refusal(source), "project.part: is in the way; expected nothing there"));
+    CHECK(contains(folder.refusal(source), "project.part: is not the remainder of an import; expected no such folder"));
     CHECK(fs::exists(folder.path / "project.part/mine.txt"));
 }
 
@@ -297,7 +297,7 @@ TEST_CASE("what is there is not replaced, unless it is a project and that is wan
     const MemorySource other = noise<uint8_t>({20, 30, 20}, VoxelType::uint8, 7);
     fs::create_directory(folder.path / "project");
     folder.import(source);  // an empty folder counts as absent
-    CHECK(contains(folder.refusal(other), "project: is there already; expected a new name, or --overwrite"));
+    CHECK(contains(folder.refusal(other), "project: already exists; expected a new name, or --overwrite"));
     const Interrupted broken(other, 1, true);
     CHECK(!folder.refusal(broken, {.overwrites = true}).empty());
     CHECK(open_volume(folder.path / "project")->info().size.x == 40);  // still complete
@@ -308,11 +308,12 @@ TEST_CASE("what is there is not replaced, unless it is a project and that is wan
     fs::remove_all(folder.path / "project");
     fs::create_directory(folder.path / "project");
     folder.write("project/thesis.txt", "keep me");
-    CHECK(contains(folder.refusal(source, {.overwrites = true}),
-                   "project: is no project; --overwrite replaces nothing else"));
+    CHECK(contains(
+        folder.refusal(source, {.overwrites = true}),
+        "project: is not a project; expected one, since --overwrite replaces nothing else: choose a new name"));
     fs::remove_all(folder.path / "project");
     folder.write("project", "a file");
-    CHECK(contains(folder.refusal(source, {.overwrites = true}), "is no project"));
+    CHECK(contains(folder.refusal(source, {.overwrites = true}), "is not a project"));
     fs::remove(folder.path / "project");
     CHECK(contains(folder.refusal(source, {.preparation = {.crop = VoxelBox{{0, 0, 0}, {41, 30, 20}}}}),
                    "outside the volume"));
@@ -436,7 +437,7 @@ TEST_CASE("two imports do not work on one folder at once")
     };
     const Nested nested(source, folder);
     folder.import(nested, "project", {.threads = 1});
-    CHECK(contains(nested.said, "project.part: another process is working on it"));
+    CHECK(contains(nested.said, "project.part: another process is importing into it"));
 }
 
 TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")

@@ -107,7 +107,9 @@ public:
     {
         const ZipEntry* const entry = archive_.find(key);
         if (entry == nullptr) return std::nullopt;
-        if (entry->bytes > uint64_t{1} << 62) fail(path_of(key).string(), ": is said to hold ", entry->bytes, " bytes");
+        if (entry->bytes > uint64_t{1} << 62)
+            fail(path_of(key).string(), ": holds ", entry->bytes,
+                 " bytes by the archive's directory; expected at most 2^62");
         return int64_t(entry->bytes);
     }
 

@@ -227,6 +227,20 @@ Json codec_of(const ZarrCompressor& codec, size_t voxel_bytes)
     return nullptr;
 }
 
+/// `codecs`: of a chunk in a shard.
+Json sharding_of(const ZarrMetadata& metadata, const Json& codecs)
+{
+    const ZarrSharding& sharding = *metadata.sharding;
+    SHVR_CHECK(!sharding.is_big_endian && sharding.checksums == 1 && std::ranges::is_sorted(sharding.order));
+    const Json bytes = {{"name", "bytes"}, {"configuration", {{"endian", "little"}}}};
+    return {{"name", "sharding_indexed"},
+            {"configuration",
+             {{"chunk_shape", metadata.chunks},
+              {"codecs", codecs},
+              {"index_codecs", Json::array({bytes, {{"name", "crc32c"}}})},
+              {"index_location", sharding.is_index_first ? "start" : "end"}}}};
+}
+
 }  // namespace
 
 ZarrMetadata read_zarr_v3(const ZarrPlace& array)
@@ -254,14 +268,16 @@ ZarrMetadata read_zarr_v3(const ZarrPlace& array)
 
 std::string zarr_v3_text(const ZarrMetadata& metadata)
 {
-    SHVR_CHECK(!metadata.sharding && metadata.order.empty());
+    SHVR_CHECK(metadata.order.empty());
     const Json bytes = {{"name", "bytes"}, {"configuration", {{"endian", metadata.big_endian ? "big" : "little"}}}};
     Json codecs = Json::array({bytes});
     for (const ZarrCompressor& codec : metadata.codecs) {
         if (codec.kind != Kind::none) codecs.push_back(codec_of(codec, bytes_of(metadata.type)));
     }
+    if (metadata.sharding) codecs = Json::array({sharding_of(metadata, codecs)});
+    const std::vector<int64_t>& grid = metadata.sharding ? metadata.sharding->shape : metadata.chunks;
     Json document = {{"attributes", Json::object()},
-                     {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", metadata.chunks}}}}},
+                     {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", grid}}}}},
                      {"chunk_key_encoding",
                       {{"name", metadata.has_prefix ? "default" : "v2"},
                        {"configuration", {{"separator", std::string(1, metadata.separator)}}}}},

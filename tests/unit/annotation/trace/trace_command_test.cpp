@@ -80,7 +80,7 @@ TEST_CASE("selecting is no step of the history, and what is too far away is not 
     work.perform(DeselectOp{});
     CHECK(work.trace().selection().empty());
     CHECK(refusal(work, SelectOp{.near = {}, .number = 9, .is_internode = false, .within_voxels = {}}) ==
-          "there is no node 9; expected one that the trace has");
+          "node 9 does not exist; expected one of the trace");
     CHECK(refusal(work, DeleteOp{}) == "nothing is selected; expected a node, an internode or a segment");
 }
 

@@ -390,7 +390,7 @@ TEST_CASE("hostile SWC is refused in one sentence")
     CHECK(refusal("a.swc", "1 1 0 0 0 1 -2") == "a.swc:1: parent is \"-2\"; expected -1 or the number of a sample");
     CHECK(refusal("a.swc", "1 1 0 0 0 1 7") == "a.swc:1: parent is 7; expected -1 or a sample of the file");
     CHECK(refusal("a.swc", "1 1 0 0 0 1 -1\n1 1 0 0 0 1 -1") ==
-          "a.swc:2: sample 1 is there already; expected each number once");
+          "a.swc:2: sample 1 is defined twice; expected each number once");
     CHECK(refusal("a.swc", "1 1 0 0 0 1 1") == "a.swc:1: joins node 0 with itself; expected two different nodes");
     CHECK(contains(refusal("a.swc", "1 1 0 0 0 1 3\n2 1 1 0 0 1 1\n3 1 1 1 0 1 2"), "a.swc: the trace has 1 loops"));
     CHECK(refusal("a.swc", "# SCALE 2 2 1\n") ==
@@ -422,11 +422,12 @@ TEST_CASE("hostile GraphML is refused in one sentence")
     CHECK(refusal("a.graphml", graph(node("n0", "inf"))) ==
           "a.graphml: node \"n0\": x is \"inf\"; expected a number from -1e15 to 1e15");
     CHECK(refusal("a.graphml", graph(node("n3") + node("n3"))) ==
-          "a.graphml: node \"n3\": node 3 is there already; expected each node once");
+          "a.graphml: node \"n3\": node 3 is defined twice; expected each node once");
     CHECK(refusal("a.graphml", graph(node("a") + node("a"))) ==
-          "a.graphml: node \"a\": is there already; expected each id once");
+          "a.graphml: node \"a\": is defined twice; expected each id once");
     CHECK(refusal("a.graphml", graph("<edge id=\"e\" source=\"n0\" target=\"n1\"/>")) ==
-          "a.graphml: edge \"e\" from \"n0\" to \"n1\": there is no node \"n0\"; expected the id of one");
+          "a.graphml: edge \"e\" from \"n0\" to \"n1\": node \"n0\" does not exist; expected the id of a node of the "
+          "file");
     CHECK(contains(refusal("a.graphml", graph(node("n0") + "<edge source=\"n0\" target=\"n0\"/>")), "with itself"));
     CHECK(contains(refusal("a.graphml", graph("<hyperedge/>")), "holds a hyperedge"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"next_node\">4294967297</data>")),

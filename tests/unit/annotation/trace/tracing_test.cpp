@@ -138,12 +138,12 @@ TEST_CASE("two nodes are linked once, and none with itself")
     CHECK(desk.trace().internodes().size() == 3);  // a loop
     CHECK(desk.trace().selection().node() == 2u);
     CHECK(error_of([&] { link_selected(desk.trace(), 0); }) ==
-          "nodes 2 and 0 are linked already; expected two that are not");
+          "nodes 2 and 0 are already linked; expected two that are not");
     desk.select(0);
     CHECK(error_of([&] { link_selected(desk.trace(), 2); }) ==
-          "nodes 0 and 2 are linked already; expected two that are not");
+          "nodes 0 and 2 are already linked; expected two that are not");
     CHECK(error_of([&] { link_selected(desk.trace(), 0); }) ==
-          "node 0 would be linked with itself; expected another node");
+          "node 0 cannot be linked to itself; expected another node");
 }
 
 TEST_CASE("a node is deleted with its internodes, and comes back selected")

@@ -143,7 +143,7 @@ TEST_CASE("what is no journal, or a newer program's, is refused in words")
         const fs::path path = folder.write("b.journal", content);
         return error_of([&] { scan_journal(path); });
     };
-    CHECK(contains(refusal("SHVR journal?"), "begins with other bytes than SHVRJRNL; expected a journal"));
+    CHECK(contains(refusal("SHVR journal?"), "does not begin with SHVRJRNL; expected a journal"));
     std::string newer = sample.content;
     newer[8] = 2;
     CHECK(contains(refusal(newer), "is a journal of version 2; expected 1"));
@@ -155,9 +155,9 @@ TEST_CASE("what is no journal, or a newer program's, is refused in words")
     Journal(addition, {}).append(RecordKind(FIRST_ADDITION), "", {});
     CHECK(scan_journal(addition).records.size() == 1);
     fs::create_directory(folder.path / "e.journal");
-    CHECK(contains(error_of([&] { scan_journal(folder.path / "e.journal"); }), "is no regular file"));
+    CHECK(contains(error_of([&] { scan_journal(folder.path / "e.journal"); }), "is not a regular file"));
     REQUIRE(::mkfifo((folder.path / "f.journal").c_str(), 0600) == 0);
-    CHECK(contains(error_of([&] { scan_journal(folder.path / "f.journal"); }), "is no regular file"));
+    CHECK(contains(error_of([&] { scan_journal(folder.path / "f.journal"); }), "is not a regular file"));
     CHECK(contains(error_of([&] { Journal(folder.path / "no folder" / "g.journal", {}); }),
                    "g.journal: cannot be written: No such file or directory"));
 }

@@ -404,8 +404,8 @@ TEST_CASE("a journal whose checksums hold and whose records do not fit is taken 
         const auto work = desk.open();
         CAPTURE(std::string(why));
         CAPTURE(desk.said);
-        CHECK(contains(desk.said, std::string("record 6 cannot be taken: ") + why));
-        CHECK(contains(desk.said, "; what comes before is taken"));
+        CHECK(contains(desk.said, std::string("record 6 cannot be applied: ") + why));
+        CHECK(contains(desk.said, "; what comes before is used"));
         CHECK(work->document().mask.voxels_by_group()[1] == 2);
         CHECK(work->history().undoable() == 2);
         work->perform(dab(4));
@@ -415,7 +415,7 @@ TEST_CASE("a journal whose checksums hold and whose records do not fit is taken 
     };
     check(RecordKind::command, bytes_of(dab(1).changes), 0, "brick 0 does not hold group 0 at 1 ... 1");
     check(RecordKind::extension, std::vector(3, std::byte(99)), 0, "a change is of kind 99; expected 1 to 7");
-    check(RecordKind::redo, {}, 0, "more is done again than was undone");
+    check(RecordKind::redo, {}, 0, "more commands are redone than were undone");
     check(RecordKind::state, bytes_of(unannotated()), 7, "a state is of record 7 behind it");
     check(RecordKind::state, std::vector(1, std::byte(1)), 5, "it ends too early");
 }

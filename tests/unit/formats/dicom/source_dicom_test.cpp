@@ -321,7 +321,7 @@ TEST_CASE("missing, doubled and odd DICOM slices are told")
     }
     const TemporaryFolder moving;
     folder_of(moving, times);
-    CHECK(contains(refusal(moving.path), "holds 2 points in time; expected frame to choose one: 1 to 2"));
+    CHECK(contains(refusal(moving.path), "holds 2 time points; expected frame to choose one: 1 to 2"));
     CHECK((voxels_of<int16_t>(*open_volume(moving.path, {.frame = "2"}))[20] & 255) == 2);
     times.pop_back();
     const TemporaryFolder ragged;

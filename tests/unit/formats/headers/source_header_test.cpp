@@ -260,7 +260,7 @@ TEST_CASE("axes that run the other way are turned round, and the first voxel sta
     CHECK(open_volume(CHIRALITY / "left_handed.nrrd")->info().frame == "RAS");
 }
 
-TEST_CASE("one channel, or one point in time, is taken from voxels that have several")
+TEST_CASE("one channel, or one time point, is taken from voxels that have several")
 {
     const Folder folder;
     std::string mixed;
@@ -289,7 +289,7 @@ TEST_CASE("one channel, or one point in time, is taken from voxels that have sev
     const fs::path moving =
         folder.write("t.nhdr", with_line(with_line(times, "units:", ""),
                                          "spacings:", "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1) none"));
-    CHECK(contains(refusal(moving), "holds 3 points in time; expected frame to choose one: 1 to 3"));
+    CHECK(contains(refusal(moving), "holds 3 time points; expected frame to choose one: 1 to 3"));
     CHECK(first_of(*open_volume(moving, {.frame = "2"})) == expected(60));
     CHECK_FALSE(warns_of(*open_volume(moving, {.frame = "2"}), "bytes more"));
     folder.write("a.voxels", in_turn.substr(0, 179));

@@ -203,14 +203,14 @@ TEST_CASE("spacing, unit and axes of a NIfTI are those it states, and what it le
     CHECK(is_chirality_phantom(*oblique));
 }
 
-TEST_CASE("one point in time, component or colour of a NIfTI is chosen in words")
+TEST_CASE("one time point, component or colour of a NIfTI is chosen in words")
 {
     std::string bytes;
     for (int i = 0; i < 180; ++i) bytes += char(i);
     const auto second = [](const VolumeSource& source) { return voxels_of<uint8_t>(source)[1]; };
     Nifti moving;
     moving.datatype(2).dim({4, 5, 4, 3, 3}).voxels(bytes);
-    CHECK(contains(moving.refusal(), "holds 3 points in time; expected frame to choose one: 1 to 3"));
+    CHECK(contains(moving.refusal(), "holds 3 time points; expected frame to choose one: 1 to 3"));
     CHECK(second(*moving.open({.frame = "3"})) == 121);
     CHECK(contains(moving.refusal({.frame = "0"}), "frame is \"0\"; expected 1 to 3"));
     Nifti vector;

@@ -228,7 +228,7 @@ TEST_CASE("a raw file cut short while it is open is an error, not a signal")
     const auto source = open_raw(path, {Size3(64), VoxelType::uint8});
     fs::resize_file(path, 1000);
     CHECK(error_of([&] { voxels_of<uint8_t>(*source); }) ==
-          path.string() + ": ended after 1000 bytes; expected 262144: it was cut short while open");
+          path.string() + ": ended after 1000 bytes; expected 262144: it was truncated while open");
     CHECK(voxels_in<uint8_t>(*source, {Size3(0), Size3(8, 8, 1)}) == std::vector<uint8_t>(64, 'x'));
     fs::remove(path);
     CHECK(voxels_in<uint8_t>(*source, {Size3(0), Size3(8, 8, 1)}) == std::vector<uint8_t>(64, 'x'));

@@ -53,7 +53,7 @@ TEST_CASE("a colour TIFF names its channels, and gives the one that is chosen")
         CHECK(voxels_for(path, "3") == std::vector<uint8_t>{'b', 'B', 'u', 'U'});
         CHECK(refusal(path, {.channel = "alpha"}) == ": has no channel \"alpha\"; expected red, green or blue");
         CHECK(refusal(path, {.channel = "4"}) == ": has no channel \"4\"; expected red, green or blue");
-        CHECK(refusal(path, {.channel = "red", .frame = "2"}) == ": has no point in time \"2\"; expected 1");
+        CHECK(refusal(path, {.channel = "red", .frame = "2"}) == ": has no time point \"2\"; expected 1");
         CHECK(open_volume(path, {.channel = "red", .frame = "1"})->info().size == Size3(2, 1, 2));
     }
     spec.is_planar = false;

@@ -103,32 +103,33 @@ TEST_CASE("two series in one folder are not mixed")
     slices.add("b_1.tif", 'c');
     slices.add("b_2.tif", 'd');
     CHECK(slices.refusal() ==
-          ": holds 2 series of slices, from \"a_1.tif\" on and from \"b_1.tif\" on; expected one: give "
-          "each a folder of its own");
+          ": holds 2 series of slices, from \"a_1.tif\" on and from \"b_1.tif\" on; expected one: put each into a "
+          "folder of its own");
 
     const Slices times;
     for (const char* name : {"t1_z1.tif", "t1_z2.tif", "t2_z1.tif", "t2_z2.tif", "t3_z1.tif", "t3_z2.tif"})
         times.add(name, 'x');
     CHECK(times.refusal() ==
-          ": holds 3 series of slices, from \"t1_z1.tif\" on and from \"t2_z1.tif\" on among them; "
-          "expected one: give each a folder of its own");
+          ": holds 3 series of slices, from \"t1_z1.tif\" on and from \"t2_z1.tif\" on among them; expected one: put "
+          "each into a folder of its own");
 
     const Slices twice;
     twice.add("s1.tif", 'a');
     twice.add("s2.tif", 'b');
     twice.add("s02.tif", 'c');
-    CHECK(twice.refusal() == ": \"s02.tif\" and \"s2.tif\" have the same number; expected one file for each slice");
+    CHECK(twice.refusal() ==
+          ": \"s02.tif\" and \"s2.tif\" have the same number; expected one file for each slice: remove one of them");
 
     const Slices unnumbered;
     unnumbered.add("brain.tif", 'a');
     unnumbered.add("mask.tif", 'b');
     CHECK(unnumbered.refusal() ==
           ": holds 2 TIFFs without numbers in their names, \"brain.tif\" and \"mask.tif\" among "
-          "them; expected the numbered slices of one volume, or a file of its own");
+          "them; expected the numbered slices of one volume: number them, or open one of the files");
     const Slices same;
     same.add("brain.tif", 'a');
     same.add("brain.tiff", 'b');
-    CHECK(contains(same.refusal(), "have the same name but for its extension; expected one of them"));
+    CHECK(contains(same.refusal(), "differ only in their extension; expected one of them"));
     const Slices stray;
     stray.add("s1.tif", 'a');
     stray.add("s2.tif", 'b');
@@ -179,7 +180,7 @@ TEST_CASE("colours of the slices of a folder are chosen")
     CHECK(slices.refusal() ==
           ": has 3 channels (red, green, blue); expected one: choose with --channel red, green or blue");
     CHECK(voxels_of<uint8_t>(*open_volume(slices.path, {.channel = "green"})) == std::vector<uint8_t>{'g', 'G'});
-    CHECK(slices.refusal({.channel = "red", .frame = "2"}) == ": has no point in time \"2\"; expected 1");
+    CHECK(slices.refusal({.channel = "red", .frame = "2"}) == ": has no time point \"2\"; expected 1");
 }
 
 TEST_CASE("a folder of one TIFF is that TIFF, and one without TIFFs is no volume")
@@ -222,5 +223,6 @@ TEST_CASE("files of an OME-TIFF in several files are slices of a folder")
     CHECK(open_volume(slices.path)->info().spacing == glm::dvec3(0.5, 0.5, 2.0));
     spec.description = ome("2");
     slices.add("s1.ome.tif", 'a', spec);
-    CHECK(contains(slices.refusal(), "its first file speaks of 2 channels and 1 points in time; expected one of each"));
+    CHECK(contains(slices.refusal(),
+                   "the description of its first file states 2 channels and 1 time points; expected one of each"));
 }

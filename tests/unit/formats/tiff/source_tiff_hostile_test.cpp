@@ -225,7 +225,7 @@ TEST_CASE("a TIFF that lies about sizes is refused by field, before memory is ta
     // 10 TB in 1 KiB: uncompressed, and compressed.
     CHECK(hostile.refusal(
               {{256, 4, 1, 1048576}, {257, 4, 1, 1048576}, {258, 3, 1, 64}, {278, 4, 1, 1048576}, {339, 3, 1, 3}}) ==
-          ": holds 1024 bytes; expected enough for 1 page of 1048576x1048576 pixels of float64: it was cut short, or "
+          ": holds 1024 bytes; expected enough for 1 page of 1048576x1048576 pixels of float64: it is truncated, or "
           "ImageWidth and ImageLength are wrong");
     for (const uint32_t compression : {COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
                                        COMPRESSION_ZSTD, COMPRESSION_LZMA, COMPRESSION_JPEG}) {
@@ -299,8 +299,8 @@ TEST_CASE("chains of pages that do not end are refused")
         return tiff.bytes();
     };
     CHECK(hostile.refusal_of(chain(1, 0)) ==
-          ": page 2 is an earlier page once more, at byte 4104; expected a chain of pages that ends");
-    CHECK(contains(hostile.refusal_of(chain(3, 1)), "is an earlier page once more, at byte"));
+          ": page 2 starts where an earlier page does, at byte 4104; expected a chain of pages that ends");
+    CHECK(contains(hostile.refusal_of(chain(3, 1)), "starts where an earlier page does, at byte"));
     CHECK(contains(hostile.refusal_of(chain(1000, 500)), "expected"));
 
     HandMade empty(8);
@@ -317,7 +317,7 @@ TEST_CASE("chains of pages that do not end are refused")
     std::string bytes_of_woven = woven.bytes();
     for (size_t i = 10; i + 24 < bytes_of_woven.size(); i += 24) bytes_of_woven[i] = char(i);
     CHECK(contains(hostile.refusal_of(bytes_of_woven), "expected"));
-    CHECK(hostile.refusal_of(std::string("II*\0\0\0\0\0", 8)) == ": holds no page; expected at least one");
+    CHECK(hostile.refusal_of(std::string("II*\0\0\0\0\0", 8)) == ": has no pages; expected at least one");
     CHECK(hostile.refusal_of(std::string("MM\0*\0\0\1", 7)) == ": holds 7 bytes; expected a TIFF's header of 8");
     CHECK(hostile.refusal_of("") == ": begins with \"\"; expected the first bytes of a TIFF, II or MM");
     CHECK(contains(hostile.refusal_of(std::string("II*\0\xff\xff\xff\xff", 8)),

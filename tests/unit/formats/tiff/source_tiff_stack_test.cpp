@@ -91,10 +91,9 @@ TEST_CASE("ImageJ's stacks above 4 GiB, one directory for all slices, are read w
         const TemporaryFolder folder;
         const std::string whole = bytes_of_file(FIXTURES / name);
         const fs::path cut = folder.write("a.tif", whole.substr(0, whole.size() - 1));
-        CHECK(
-            refusal(cut) ==
-            ": its ImageJ description counts 3 images, but it holds one page and 119 bytes of voxels; expected 120: it "
-            "was cut short, or pages are missing");
+        CHECK(refusal(cut) ==
+              ": its ImageJ description counts 3 images, but it holds one page and 119 bytes of voxels; expected 120: "
+              "it is truncated, or pages are missing");
     }
     const TemporaryFolder folder;
     TiffSpec spec{.width = 20, .height = 20, .bits = 8, .compression = COMPRESSION_LZW};
@@ -103,30 +102,31 @@ TEST_CASE("ImageJ's stacks above 4 GiB, one directory for all slices, are read w
                    "counts 5 images, but it holds one page that is compressed; expected a page for each image"));
 }
 
-TEST_CASE("channels and points in time of an ImageJ hyperstack are chosen")
+TEST_CASE("channels and time points of an ImageJ hyperstack are chosen")
 {
     const TemporaryFolder folder;
     const std::string description = "ImageJ=1.53t\nimages=12\nchannels=2\nslices=3\nframes=2\nhyperstack=true\n";
     const fs::path path = numbered(folder.path / "a.tif", 12, description);
     CHECK(refusal(path) ==
-          ": has 2 channels (1, 2) and 2 points in time; expected one of each: choose with --channel 1 or 2 and "
+          ": has 2 channels (1, 2) and 2 time points; expected one of each: choose with --channel 1 or 2 and "
           "--frame 1 "
           "or 2");
-    CHECK(refusal(path, {.channel = "1"}) == ": has 2 points in time; expected one: choose with --frame 1 or 2");
+    CHECK(refusal(path, {.channel = "1"}) == ": has 2 time points; expected one: choose with --frame 1 or 2");
     CHECK(refusal(path, {.frame = "2"}) == ": has 2 channels (1, 2); expected one: choose with --channel 1 or 2");
     CHECK(refusal(path, {.channel = "3", .frame = "1"}) == ": has no channel \"3\"; expected 1 or 2");
     CHECK(refusal(path, {.channel = "red", .frame = "1"}) == ": has no channel \"red\"; expected 1 or 2");
-    CHECK(refusal(path, {.channel = "1", .frame = "0"}) == ": has no point in time \"0\"; expected 1 or 2");
+    CHECK(refusal(path, {.channel = "1", .frame = "0"}) == ": has no time point \"0\"; expected 1 or 2");
     CHECK(pages_of(path, {"1", "1"}) == std::vector<uint8_t>{1, 3, 5});
     CHECK(pages_of(path, {"2", "1"}) == std::vector<uint8_t>{2, 4, 6});
     CHECK(pages_of(path, {"1", "2"}) == std::vector<uint8_t>{7, 9, 11});
     CHECK(pages_of(path, {"2", "2"}) == std::vector<uint8_t>{8, 10, 12});
 
     CHECK(refusal(numbered(path, 11, description)) ==
-          ": its ImageJ description counts 2 channels of 3 slices at 2 points in time; expected 12 pages, but it holds "
+          ": its ImageJ description counts 2 channels of 3 slices at 2 time points; expected 12 pages, but it holds "
           "11");
     CHECK(refusal(numbered(path, 12, "ImageJ=1.53t\nimages=12\nchannels=2\nslices=5\n")) ==
-          ": its ImageJ description counts 12 images but 2 x 5 x 1 channels, slices and frames; expected as many");
+          ": its ImageJ description counts 12 images but 2 x 5 x 1 channels, slices and frames; expected equal counts: "
+          "save it again, for example from Fiji");
     CHECK(refusal(numbered(path, 2, "ImageJ=1.53t\nimages=-3\n")) ==
           ": its ImageJ description: images is \"-3\"; expected a whole number from 1 to 1048576");
     CHECK(
@@ -194,7 +194,8 @@ TEST_CASE("spacing and unit of ImageJ files, in all spellings")
     CHECK(warns_of(*no_unit, "spacing is stated without a unit; voxel assumed"));
     const auto odd = open_volume(
         numbered(folder.path / "a.tif", 2, start + "unit=furlong\nzunit=um\nspacing=2\n", {.x_resolution = 1.0}));
-    CHECK(warns_of(*odd, "spacing along z is stated in \"um\" and was left out"));
+    CHECK(
+        warns_of(*odd, "spacing along z is stated in \"um\", which does not convert to \"furlong\", and was ignored"));
     CHECK(odd->info().unit == "furlong");
 }
 
@@ -229,7 +230,7 @@ TEST_CASE("resolution fields give the spacing where no program states it, unless
     }
     const auto screen =
         open_volume(numbered(folder.path / "a.tif", 2, "", {.x_resolution = 72.0, .resolution_unit = RESUNIT_INCH}));
-    CHECK(warns_of(*screen, "its 72 pixels for each inch are a screen's or a printer's and were left out"));
+    CHECK(warns_of(*screen, "its 72 pixels for each inch are those of a screen or printer, and were ignored"));
     CHECK(warns_of(*screen, "no spacing stated; 1 voxel assumed"));
     CHECK(spacing_of({.x_resolution = 2.0, .y_resolution = 1.0}, &unit) == glm::dvec3(1.0, 2.0, 1.0));
     CHECK(unit == "voxel");
@@ -293,28 +294,27 @@ TEST_CASE("an OME-TIFF that is not whole says so")
     const fs::path path = folder.path / "a.tif";
     const std::string one = R"(SizeZ="3" SizeC="1" SizeT="1" DimensionOrder="XYZCT")";
     const auto refused = [&](const std::string& description) { return refusal(numbered(path, 3, description)); };
-    CHECK(
-        refused(ome(one, R"(<TiffData IFD="0"><UUID FileName="a.ome.tif">1</UUID></TiffData>)"
-                         R"(<TiffData FirstZ="1" IFD="0"><UUID FileName="b.ome.tif">2</UUID></TiffData>)")) ==
-        ": its OME-XML spreads the stack over several files, \"a.ome.tif\" and \"b.ome.tif\" among them; expected one: "
-        "save it as one file, for example from Fiji");
+    CHECK(refused(ome(one, R"(<TiffData IFD="0"><UUID FileName="a.ome.tif">1</UUID></TiffData>)"
+                           R"(<TiffData FirstZ="1" IFD="0"><UUID FileName="b.ome.tif">2</UUID></TiffData>)")) ==
+          ": its OME-XML describes a stack in several files, \"a.ome.tif\" and \"b.ome.tif\" among them; expected one: "
+          "save it as one file, for example from Fiji");
     CHECK(contains(refused(R"(<OME><BinaryOnly MetadataFile="a.companion.ome" UUID="u"/></OME>)"),
                    ": its OME-XML is in another file, \"a.companion.ome\"; expected it in this one"));
     CHECK(refused(ome(R"(SizeZ="4" SizeC="1" SizeT="1" DimensionOrder="XYZCT")")) ==
-          ": its OME-XML names page 4; expected at most the 3 pages the file holds: it was cut short, or is one of "
-          "several files");
+          ": its OME-XML names page 4; expected at most the 3 pages the file holds: it is truncated, or one of several "
+          "files");
     CHECK(refused(ome(one, R"(<TiffData IFD="0"/>)")) ==
           ": its OME-XML names no page for slice 2; expected one for each slice");
     CHECK(refused(ome(R"(SizeZ="0" SizeC="1" SizeT="1" DimensionOrder="XYZCT")")) ==
           ": its OME-XML: SizeZ is \"0\"; expected a whole number from 1 to 1048576");
     CHECK(contains(refused(ome(R"(SizeZ="1048576" SizeC="1048576" SizeT="1048576" DimensionOrder="XYZCT")")),
-                   "slices, channels and points in time; expected at most 1048576 pages"));
+                   "slices, channels and time points; expected at most 1048576 pages"));
     CHECK(contains(refused(ome(R"(SizeZ="3" SizeC="1" SizeT="1" DimensionOrder="XYZZT")")),
                    "DimensionOrder is \"XYZZT\"; expected"));
     CHECK(contains(refused(ome(one, R"(<TiffData FirstZ="3"/>)")), "FirstZ is 3; expected less than the 3 there are"));
     CHECK(contains(refused(ome(one, R"(<TiffData IFD="-1"/>)")), "IFD is \"-1\"; expected"));
     CHECK(contains(refused("<?xml version=\"1.0\"?><OME><Image>"), "its OME-XML cannot be read: "));
-    CHECK(contains(refused("<OME></OME>"), "has no Image with Pixels; expected one"));
+    CHECK(contains(refused("<OME></OME>"), "has no Image with Pixels; expected at least one"));
     std::string many;
     for (int i = 0; i < 3000; ++i) many += R"(<TiffData IFD="0" PlaneCount="1000000"/>)";
     CHECK(contains(refused(ome(one, many)), "planes; expected the 3 there are"));

@@ -307,10 +307,10 @@ TEST_CASE("pages that are stored mirrored are mirrored back, and turned ones are
     TiffSpec turned = CHIRALITY_SPEC;
     turned.orientation = ORIENTATION_RIGHTTOP;
     const fs::path path = write_tiff(folder.path / "a.tif", turned, chirality_pages());
-    CHECK(error_of([&] { open_volume(path); }) ==
-          path.string() +
-              ": page 1: Orientation is 6: rows and columns are exchanged; expected 1 to 4: save it again "
-              "without turning it");
+    CHECK(
+        error_of([&] { open_volume(path); }) ==
+        path.string() +
+            ": page 1: Orientation is 6, rows and columns exchanged; expected 1 to 4: save it again without rotation");
 }
 
 TEST_CASE("JPEG inside TIFF is decoded, grey and colour")
@@ -390,11 +390,11 @@ TEST_CASE("what libtiff decodes but this reader does not is refused in words")
         return error_of([&] { open_volume(path); }).substr(path.string().size());
     };
     CHECK(refused({.bits = 64}) ==
-          ": page 1: its samples are integers without sign of 64 bits; expected integers of 8, 16 or 32 bits (1 to 16 "
-          "without sign) or floats of 16, 32 or 64 bits");
-    CHECK(contains(refused({.bits = 24}), "integers without sign of 24 bits; expected"));
-    CHECK(contains(refused({.bits = 4, .format = SAMPLEFORMAT_INT}), "integers with sign of 4 bits; expected"));
-    CHECK(contains(refused({.bits = 32, .format = SAMPLEFORMAT_COMPLEXIEEEFP}), "numbers of no known kind"));
+          ": page 1: its samples are unsigned integers of 64 bits; expected integers of 8, 16 or 32 bits, unsigned "
+          "ones of 1 to 16 bits, or floats of 16, 32 or 64 bits");
+    CHECK(contains(refused({.bits = 24}), "unsigned integers of 24 bits; expected"));
+    CHECK(contains(refused({.bits = 4, .format = SAMPLEFORMAT_INT}), "signed integers of 4 bits; expected"));
+    CHECK(contains(refused({.bits = 32, .format = SAMPLEFORMAT_COMPLEXIEEEFP}), "numbers of unknown kind"));
     CHECK(contains(refused({.bits = 8, .samples = 3, .photometric = PHOTOMETRIC_CIELAB}),
                    "PhotometricInterpretation is 8; expected grey, RGB, CMYK or a palette"));
     CHECK(contains(refused({.bits = 8, .samples = 3, .photometric = PHOTOMETRIC_YCBCR}), "(YCbCr without JPEG)"));

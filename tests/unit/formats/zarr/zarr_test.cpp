@@ -213,7 +213,7 @@ TEST_CASE("zarr: what cannot be read is no missing chunk")
     const Copy gone("dots");
     const auto source = open_volume(gone.root);
     fs::remove_all(gone.root);
-    CHECK(contains(error_of([&] { voxels_of<int16_t>(*source); }), "dots/.zarray: cannot be found any more"));
+    CHECK(contains(error_of([&] { voxels_of<int16_t>(*source); }), "dots/.zarray: no longer exists"));
 
     const Copy nested("slashes");
     fs::remove_all(nested.root / "1");
@@ -265,7 +265,7 @@ TEST_CASE("zarr: a blosc header that lies about its sizes is refused before it i
             CAPTURE(field);
             CAPTURE(lie);
             const std::string said = copy.refusal();
-            if (field == 4) CHECK(contains(said, "its blosc header promises"));
+            if (field == 4) CHECK(contains(said, "its blosc header states"));
             if (field == 12) CHECK(contains(said, "as its blosc header says"));
         }
     }
@@ -504,7 +504,7 @@ TEST_CASE("ome-zarr: a gap of NaN has an empty range, and gaps are known however
     CHECK(Sparse(256, 16, "<i2", {0, 0, 0}).range(2, {0, 0, 0}).value() == ValueRange{0.0, 0.0});
 }
 
-TEST_CASE("ome-zarr: channels and points in time are chosen by name or number, and never silently")
+TEST_CASE("ome-zarr: channels and time points are chosen by name or number, and never silently")
 {
     for (const fs::path& path : forms_of("image_tczyx")) {
         CAPTURE(path);
@@ -534,14 +534,14 @@ TEST_CASE("ome-zarr: what is no image of version 0.1 to 0.5 is refused in words"
     CHECK(contains(Copy("image_05").refusal(), "multiscales.0.version is \"0.5\"; expected one of \"0.1\", \"0.2\""));
     for (const fs::path& path : forms_of("image_2d")) {
         CHECK(contains(error_of([&] { open_volume(path); }),
-                       "expected a z axis too: pictures of two dimensions are no volumes"));
+                       "expected a z axis too: two-dimensional images are not volumes"));
     }
     const Copy group("series");
     fs::rename(group.root / "0", group.root / "other");
     CHECK(contains(group.refusal(), "multiscales is missing; expected an OME-Zarr image"));
     const Copy several("series");
     fs::copy(several.root / "0", several.root / "1", fs::copy_options::recursive);
-    CHECK(contains(several.refusal(), "holds several images; expected one of them, as in "));
+    CHECK(contains(several.refusal(), "holds several images; expected one of them, for example "));
     CHECK(contains(Copy("series").refusal_of(".zattrs", "plate", Json::object()), "is a plate of many images"));
     const TemporaryFolder empty;
     CHECK(contains(error_of([&] { open_volume(empty.path); }), "is a folder without shvr/session.json and without"));
