@@ -7,18 +7,6 @@
 
 namespace shvr::ui {
 
-namespace {
-
-std::string painted_sentence(const PaintOp& brush, int64_t voxels)
-{
-    if (brush.erases()) return sentence("Erased ", voxels, " voxels");
-    if (!brush.density) return sentence("Painted ", voxels, " voxels in group ", int(brush.group));
-    const std::string groups = brush.paints_group ? sentence(" and of group ", int(brush.group)) : std::string();
-    return sentence("Painted ", voxels, " changes of density", groups);
-}
-
-}  // namespace
-
 void App::apply(const ProbeTo& action)
 {
     const Pane& seen = pane(action.pane);
@@ -147,12 +135,8 @@ void App::extend_stroke()
 
 void App::stroke_ended()
 {
-    const int64_t voxels = document_->annotator.last_stroke_voxels();
-    if (voxels == 0)
-        return say(
-            "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted "
-            "already");
-    say(painted_sentence(document_->stroke(), voxels));
+    say(sentence_of(document_->annotator.last_stroke(),
+                    [&](uint8_t group) { return group_of(document_->session.groups, group).name; }));
 }
 
 /// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.
