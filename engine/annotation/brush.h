@@ -2,6 +2,7 @@
 // Brushes, and the description of one stroke, shared by scripts, the window and a stylus.
 
 #include <array>
+#include <bitset>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -58,6 +59,9 @@ constexpr std::span<const Spelling<RegionShape>> spellings_of(RegionShape)
     return REGION_SHAPES;
 }
 
+/// Groups by number.
+using GroupSet = std::bitset<256>;
+
 /// The user's settings of the brush.
 struct BrushSettings {
     Brush brush = Brush::flood;
@@ -68,7 +72,8 @@ struct BrushSettings {
     int connectivity = 6;               ///< 6 or 26
     /// Density painting: the brush raises intensities, beside painting its group or instead of it.
     std::optional<DensityBrush> density{};
-    bool paints_group = true;  ///< false, with `density` set: offsets only
+    bool paints_group = true;     ///< false, with `density` set: offsets only
+    bool only_unpainted = false;  ///< it gives unpainted voxels its group, and takes none from another
     bool operator==(const BrushSettings&) const = default;
 };
 
@@ -83,7 +88,9 @@ struct PaintOp {
     std::vector<glm::dvec3> path;  ///< voxel coordinates
     /// Offsets for the selected voxels; group 0 removes theirs.
     std::optional<DensityBrush> density{};
-    bool paints_group = true;  ///< false: offsets only
+    bool paints_group = true;     ///< false: offsets only
+    bool only_unpainted = false;  ///< as in BrushSettings
+    GroupSet locked{};            ///< these lose and gain no voxel; [0] is not set. Neither bears on offsets
     bool operator==(const PaintOp&) const = default;
 
     /// Removes voxels from their group; also their offsets, if it paints offsets.
@@ -94,9 +101,11 @@ struct PaintOp {
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
     // A new member does not compile until it is here.
-    const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group] = settings;
-    return {brush,           region,  group,       own_threshold.value_or(threshold), radius_voxels, connectivity,
-            std::move(path), density, paints_group};
+    const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group,
+                 only_unpainted] = settings;
+    return {brush,         region,        group,           own_threshold.value_or(threshold),
+            radius_voxels, connectivity,  std::move(path), density,
+            paints_group,  only_unpainted};
 }
 
 }  // namespace shvr

@@ -62,17 +62,6 @@ void refuse_size(double radius_voxels, const Size3& size)
              " (256 x 256 x 256), each row filled up to a multiple of 32");
 }
 
-/// Appends the runs that give voxels `first` ... `end` - 1 of a brick `group`.
-void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, uint8_t group)
-{
-    while (first < end) {
-        size_t next = first + 1;
-        while (next < end && before[next] == before[first]) ++next;
-        append_run(runs, first, next - 1, before[first], group);
-        first = next;
-    }
-}
-
 }  // namespace
 
 bool BrushRegion::contains(const Size3& voxel) const
@@ -199,29 +188,6 @@ int64_t VoxelSelection::count() const
     for (const auto& [index, bits] : bricks_)
         for (const uint32_t word : bits) sum += std::popcount(word);
     return sum;
-}
-
-std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group)
-{
-    static constexpr MaskBrick UNPAINTED{};
-    std::vector<MaskBrickChange> changes;
-    for (const auto& [index, bits] : selection.bricks()) {
-        const MaskBrick* painted = mask.brick(index).get();
-        if (!painted && group == 0) continue;
-        MaskBrickChange change{.brick = index, .runs = {}};
-        for (size_t row = 0; row < bits.size(); ++row)
-            for (uint32_t left = bits[row]; left != 0;) {
-                const int first = std::countr_zero(left), length = std::countr_one(left >> first);
-                append_runs(change.runs, painted ? *painted : UNPAINTED, 32 * row + size_t(first),
-                            32 * row + size_t(first + length), group);
-                // A shift by 32 would be undefined.
-                left = first + length == 32 ? 0 : left >> (first + length) << (first + length);
-            }
-        if (change.runs.empty()) continue;
-        change.runs.shrink_to_fit();  // the history keeps it
-        changes.push_back(std::move(change));
-    }
-    return changes;
 }
 
 }  // namespace shvr

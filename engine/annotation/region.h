@@ -60,7 +60,4 @@ private:
     std::map<int64_t, Bits> bricks_;
 };
 
-/// The records that give every selected voxel `group`, without voxels that have it already.
-std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, uint8_t group);
-
 }  // namespace shvr

@@ -30,9 +30,11 @@ std::string label_of(const PaintOp& op)
 
 }  // namespace
 
-PaintOp with_offset(PaintOp op, const TransferFunction& function)
+PaintOp in_session(PaintOp op, const Session& session)
 {
-    if (op.density && !op.density->offset) op.density->offset = automatic_offset(function.lower(), op.threshold);
+    if (op.density && !op.density->offset)
+        op.density->offset = automatic_offset(session.transfer_function.lower(), op.threshold);
+    op.locked = locked_groups(session.groups);
     return op;
 }
 
@@ -112,13 +114,18 @@ Annotator::Answered Annotator::ask(const PaintOp& op)
     return answered;
 }
 
-std::vector<Change> Annotator::changes_of(const PaintOp& op, const Answered& answered) const
+Annotator::Records Annotator::records_of(const PaintOp& op, const Answered& answered) const
 {
-    std::vector<Change> changes;
-    if (op.paints_group) changes = as_changes(paint_changes(document().mask, answered.selection, op.group));
-    if (answered.density)
-        for (DensityBrickChange& change : answered.density->changes(document().density))
-            changes.emplace_back(std::move(change));
+    Records records;
+    if (op.paints_group) records.groups = paint_changes(document().mask, answered.selection, rule_of(op));
+    if (answered.density) records.offsets = answered.density->changes(document().density);
+    return records;
+}
+
+std::vector<Change> Annotator::changes_of(Records records)
+{
+    std::vector<Change> changes = as_changes(std::move(records.groups));
+    for (DensityBrickChange& change : records.offsets) changes.emplace_back(std::move(change));
     return changes;
 }
 
@@ -134,7 +141,7 @@ PaintPreview Annotator::preview_of_answer(const PaintOp& op, const Answered& ans
     const PaintPreview::Kind kind = op.erases()       ? PaintPreview::Kind::erase
                                     : op.paints_group ? PaintPreview::Kind::group
                                                       : PaintPreview::Kind::density;
-    return preview_of(changes_of(op, answered), document().mask.size(), kind);
+    return preview_of(changes_of(records_of(op, answered)), document().mask.size(), kind);
 }
 
 PaintPreview Annotator::preview(const PaintOp& op)
@@ -154,11 +161,14 @@ PaintPreview Annotator::preview(const PaintOp& op, std::span<const RegionAnswer>
 int64_t Annotator::paint(const PaintOp& op)
 {
     SHVR_CHECK(!stroke_);
-    const Command* const command = work_.perform({label_of(op), changes_of(op, ask(op))});
-    if (!command) return 0;
-    const Touched touched = touched_by(document(), command->changes);
-    show(touched);
-    return touched.voxels;
+    const Answered answered = ask(op);
+    Records records = records_of(op, answered);
+    StrokeTally tally(op);
+    tally.add(document().mask, answered.selection, records.groups, records.offsets);
+    const Command* const command = work_.perform({label_of(op), changes_of(std::move(records))});
+    if (command) show(touched_by(document(), command->changes));
+    last_stroke_ = tally.result();
+    return last_stroke_.voxels();
 }
 
 void Annotator::begin_stroke(const PaintOp& brush)
@@ -186,7 +196,7 @@ void Annotator::end_stroke()
 
 void Annotator::drop_stroke()
 {
-    if (stroke_) last_stroke_voxels_ = stroke_->voxels;
+    if (stroke_) last_stroke_ = stroke_->result;
     stroke_.reset();
 }
 
@@ -215,7 +225,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
             return changed;  // its bricks are being loaded
         stroke.next = frame.end;
     } else if (stroke.has_ended) {
-        last_stroke_voxels_ = stroke.voxels;
+        last_stroke_ = stroke.result;
         stroke_.reset();
     }
     return changed;
@@ -227,14 +237,19 @@ std::optional<VoxelBox> Annotator::paint_answer()
     const std::vector<RegionAnswer> answers = stroke.query.answer();
     Answered answered = nothing_yet(stroke.brush);
     add(answered, stroke.brush, answers);
-    std::vector<Change> changes = changes_of(stroke.brush, answered);
-    if (changes.empty()) return std::nullopt;
+    Records records = records_of(stroke.brush, answered);
+    stroke.tally.add(document().mask, answered.selection, records.groups, records.offsets);
+    std::vector<Change> changes = changes_of(std::move(records));
+    if (changes.empty()) {
+        stroke.result = stroke.tally.result();
+        return std::nullopt;
+    }
     const Touched touched = touched_by(document(), changes);
-    stroke.voxels += touched.voxels;
     if (std::exchange(stroke.is_recorded, true))
         work_.extend(std::move(changes));
     else
         work_.perform({label_of(stroke.brush), std::move(changes)});
+    stroke.result = stroke.tally.result();
     VoxelBox box = answers.front().region.box;
     for (const RegionAnswer& answer : answers) box = united(box, answer.region.box);
     show(touched, box);

@@ -4,11 +4,14 @@
 //
 //   PaintOp -> positions along the stroke -> RegionQuery (device) -> VoxelSelection -> records -> Work -> device
 //
+// The device says what a brush selects; which of that changes is decided where the records are made (painting.h).
+//
 // A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
 // answers, as one command however many answers that takes. One thread, the renderer's.
 
 #include <optional>
 
+#include "engine/annotation/stroke_result.h"
 #include "engine/annotation/work/paint_preview.h"
 #include "engine/annotation/work/work.h"
 #include "engine/live/region_query.h"
@@ -16,8 +19,9 @@
 
 namespace shvr {
 
-/// `op`, with a number in place of an automatic offset.
-PaintOp with_offset(PaintOp op, const TransferFunction& function);
+/// `op` as a session has it painted: with a number in place of an automatic offset, and with the groups that are
+/// locked. Everything that is painted or previewed for a person comes through here.
+PaintOp in_session(PaintOp op, const Session& session);
 
 /// The files in which a session keeps its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
@@ -51,12 +55,12 @@ public:
     PaintPreview preview(const PaintOp& op);
     /// The same, from the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
-    /// Paints, as one command. Returns how many voxels changed their group plus how many changed their offset. All
-    /// regions of a stroke see the volume as it was before it.
+    /// Paints, as one command. Returns how many voxels changed their group plus how many changed their offset;
+    /// `last_stroke` says more. All regions of a stroke see the volume as it was before it.
     int64_t paint(const PaintOp& op);
 
     /// Begins a stroke by hand; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see offsets
-    /// that earlier ones have painted.
+    /// that earlier ones have painted. The locks are those of `brush` to the stroke's end.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
     void end_stroke();
@@ -69,8 +73,8 @@ public:
     /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the
     /// stroke cannot go on (the brush is too large, or bricks or the journal fail); then the rest of it is dropped.
     std::optional<VoxelBox> advance();
-    /// The number of voxels that the last finished stroke changed, counted as in `paint`.
-    int64_t last_stroke_voxels() const { return last_stroke_voxels_; }
+    /// What the last finished stroke did, by hand or by `paint`.
+    const StrokeResult& last_stroke() const { return last_stroke_; }
 
     /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
     /// until the history changes; null where `changes` is empty.
@@ -97,12 +101,19 @@ private:
         std::optional<glm::dvec3> last{};  ///< the last position of the hand
         bool has_ended = false;
         bool is_recorded = false;  ///< the last command of the history is this stroke's
-        int64_t voxels = 0;
+        StrokeTally tally{brush};
+        StrokeResult result = tally.result();  ///< of what is painted
+    };
+    /// The records of an answer.
+    struct Records {
+        std::vector<MaskBrickChange> groups{};
+        std::vector<DensityBrickChange> offsets{};
     };
     Answered nothing_yet(const PaintOp& op) const;
     static void add(Answered& answered, const PaintOp& op, std::span<const RegionAnswer> answers);
     Answered ask(const PaintOp& op);
-    std::vector<Change> changes_of(const PaintOp& op, const Answered& answered) const;
+    Records records_of(const PaintOp& op, const Answered& answered) const;
+    static std::vector<Change> changes_of(Records records);
     std::optional<VoxelBox> advance_stroke();
     PaintPreview preview_of_answer(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
@@ -111,7 +122,7 @@ private:
 
     Renderer& renderer_;
     std::optional<Stroke> stroke_;
-    int64_t last_stroke_voxels_ = 0;
+    StrokeResult last_stroke_;
     uint64_t revision_ = 0;
     Work work_;
 };

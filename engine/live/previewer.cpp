@@ -16,7 +16,7 @@ std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer,
     std::optional<ProbeLook> look = shown_probe(session, volume, renderer.statistics());
     if (look && session.probe.preview)
         look->preview = std::make_shared<PaintPreview>(
-            annotator.preview(with_offset(dab_of(session, volume, renderer.statistics()), session.transfer_function)));
+            annotator.preview(in_session(dab_of(session, volume, renderer.statistics()), session)));
     return look;
 }
 

@@ -11,7 +11,7 @@
 namespace shvr {
 
 /// The brush of a session's probe, for one dab at the probe's position. Missing settings are chosen for the volume,
-/// except an automatic offset (with_offset).
+/// except an automatic offset; `in_session` gives it that, and the locks.
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
 /// What pictures of a session show of its probe, its brush's preview included. Waits for the device.
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator);
@@ -20,8 +20,8 @@ class Previewer {
 public:
     explicit Previewer(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
-    /// Sets the wanted preview: of one dab of `brush` at the single position of its path, with its offset chosen
-    /// (with_offset); null: none. Call it in every frame: it costs a comparison where nothing has changed.
+    /// Sets the wanted preview: of one dab of `brush` at the single position of its path, as `in_session` makes
+    /// it; null: none. Call it in every frame: it costs a comparison where nothing has changed.
     void want(const std::optional<PaintOp>& brush);
     /// Collects a finished answer and submits the next query.
     void advance();

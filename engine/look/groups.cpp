@@ -47,6 +47,22 @@ ColorGroup group_of(const Groups& groups, uint8_t group)
     return look;
 }
 
+bool is_locked(const Groups& groups, uint8_t group)
+{
+    for (; group != 0; group = parent_of(groups, group)) {
+        const auto found = groups.find(group);
+        if (found != groups.end() && found->second.locked) return true;
+    }
+    return false;
+}
+
+std::bitset<256> locked_groups(const Groups& groups)
+{
+    std::bitset<256> locked;
+    for (const auto& [group, settings] : groups) locked[group] = is_locked(groups, group);
+    return locked;
+}
+
 bool is_within(const Groups& groups, uint8_t group, uint8_t above)
 {
     for (; group != 0; group = parent_of(groups, group))

@@ -1,7 +1,9 @@
 #pragma once
 // Colour groups override the transfer function where a voxel is painted. They form a tree: a group inherits what it
-// does not set from its parent, and hiding a group hides all below it. Changing a group changes no voxel.
+// does not set from its parent, and hiding or locking a group does so to all below it. Changing a group changes no
+// voxel.
 
+#include <bitset>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -18,6 +20,7 @@ struct GroupSettings {
     std::optional<glm::dvec3> color;  ///< linear light; default: the parent's, or one of ten in turn
     std::optional<double> opacity;    ///< per reference length; default: the parent's, or 1
     bool visible = true;              ///< false: neither its voxels nor those of groups below it are drawn
+    bool locked = false;              ///< true: no brush changes which voxels are in it, nor in groups below it
     bool operator==(const GroupSettings&) const = default;
 };
 using Groups = std::map<uint8_t, GroupSettings>;  ///< 1 ... 255; a group without an entry has nothing set
@@ -34,6 +37,11 @@ struct ColorGroup {
 /// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);
+
+/// Whether the group or one above it is locked.
+bool is_locked(const Groups& groups, uint8_t group);
+/// `is_locked` of every group; [0], for what is unpainted, is never set.
+std::bitset<256> locked_groups(const Groups& groups);
 
 /// 0 if the group has no parent.
 uint8_t parent_of(const Groups& groups, uint8_t group);

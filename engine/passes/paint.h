@@ -1,6 +1,7 @@
 #pragma once
-// Brushes on a region of the volume: which voxels would they paint? The answer is one bit per voxel of the region, the
-// same for preview, painting and tests. The number of passes is fixed, whatever the region contains.
+// Brushes on a region of the volume: which voxels do they select, by density? The answer is one bit per voxel of the
+// region, the same for preview, painting and tests; who may have them is decided where the mask is
+// (engine/annotation/painting.h). The number of passes is fixed, whatever the region contains.
 
 #include <span>
 

@@ -1,7 +1,7 @@
 #pragma once
 // The looks of colour groups in the label image that a mask is kept in (OME-Zarr, image-label: colors and
 // properties). Colours are sRGB of 8 bits a channel there, alpha the opacity; the format cannot hold the tree of groups
-// nor which groups are hidden.
+// nor which groups are hidden or locked.
 
 #include <filesystem>
 #include <string>

@@ -177,6 +177,8 @@ void transfer_fields(Fields& f, Session& session)
 void group_fields(Fields& f, GroupSettings& group)
 {
     f.flag("visible", group.visible, {"false: neither its voxels nor those of groups below it are drawn"});
+    f.flag("locked", group.locked,
+           {"true: no brush changes which voxels are in it, nor in groups below it; undo and redo do"});
     f.text("name", group.name, {.meaning = "what a person calls it", .allowed = "text", .standard = "`\"group N\"`"});
     std::optional<int64_t> parent = group.parent == 0 ? std::nullopt : std::optional<int64_t>(group.parent);
     f.any_whole("parent", parent, 0, 255,
@@ -272,6 +274,8 @@ void fields(Fields& f, ProbeSettings& probe)
     f.whole("connectivity", brush.connectivity, 6, 26,
             {.meaning = "neighbours of a voxel, for flood and speckle", .allowed = "6 or 26"});
     f.check("connectivity", brush.connectivity == 6 || brush.connectivity == 26, "6 or 26");
+    f.flag("only_unpainted", brush.only_unpainted,
+           {"true: it paints unpainted voxels alone, and takes none from any group; offsets are changed all the same"});
     f.vector("voxel", probe.voxel, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
              {.meaning = "where the probe is", .unit = "voxels", .standard = "the volume's middle"});
     f.number("paint_threshold", brush.threshold, INTENSITY,

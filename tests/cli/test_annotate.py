@@ -8,7 +8,7 @@ import unittest
 
 from harness import ENVIRONMENT, SHVR, CliTest, Volume
 
-KEYS = ["commands", "voxels_changed", "nodes", "internodes", "journal_bytes"]
+KEYS = ["commands", "voxels_changed", "voxels_taken_from", "voxels_kept_locked", "voxels_kept_painted", "nodes", "internodes", "journal_bytes"]
 
 
 def paint(brush, region, group, threshold, radius, path, connectivity=6):

@@ -56,7 +56,8 @@ class Script(CliTest):
                           "3 commands, 1 voxels changed, 0 steps not saved"])
         self.assertEqual(self.annotate([self.dab(2)], "--quiet").stderr, "")
         said = self.annotate(operations, "--verbose").stderr
-        self.assertIn("script.jsonl:1: 0 voxels painted in group 1", said)
+        self.assertIn("script.jsonl:1: The stroke changed nothing: no voxel here is at or above the paint threshold, or "
+                      "all are painted already", said)
         self.assertIn("script.jsonl:2: node 1 in group 1", said)
 
     def test_undo_of_more_than_there_is_undoes_nothing(self):

@@ -519,6 +519,10 @@ def make_text():
         '{"op":"paint","brush":"fill","region":"box","group":255,"threshold":-1.5,"radius":3,"path":[[1,2,3]]}',
         '{"op":"paint","brush":"speckle","connectivity":26,"group":0,"threshold":7,"radius":127.5,"path":[[1,2,3],[4,5,6.5]]}',
         '{"op":"undo","count":2}', '{"op":"redo"}', '{"op":"expect","voxels":{"1":20}}', '{"op":"save"}']))
+    seed("script", "only_unpainted", "".join(line + "\n" for line in [
+        '{"op":"paint","brush":"fill","group":3,"only_unpainted":true,"threshold":1,"radius":3,"path":[[1,2,3]]}',
+        '{"op":"density","brush":"flood","group":3,"only_unpainted":false,"threshold":1,"radius":3,"path":[[1,2,3]]}',
+        '{"op":"paint","brush":"fill","group":0,"only_unpainted":true,"threshold":1,"radius":3,"path":[[1,2,3]]}']))
     seed("script", "claims_stroke", '{"op":"paint","group":1,"threshold":1,"radius":1,"path":[[0,0,0],[1e300,1e300,1e300]]}')
     for name, lines in {
             "render": ["render.size=[64,48]", "render.size.0=32", "render.step_voxels=0.25", "render.background=#10203040"],

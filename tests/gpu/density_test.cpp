@@ -219,7 +219,7 @@ TEST_CASE("a stroke by hand paints what a script paints")
     for (const glm::dvec3& at : op.path) hand.extend_stroke(at);
     hand.end_stroke();
     while (hand.stroke_is_running()) hand.advance();
-    CHECK(hand.last_stroke_voxels() == voxels);
+    CHECK(hand.last_stroke().voxels() == voxels);
     REQUIRE(hand.document().density.painted_bricks() == expected.painted_bricks());
     for (const int64_t brick : expected.painted_bricks())
         CHECK((*hand.document().density.brick(brick) == *expected.brick(brick)));

@@ -105,7 +105,7 @@ struct Studio {
         annotator.emplace(renderer);
         for (const ScriptLine& line : golden.script) {
             if (const auto* paint = std::get_if<PaintOp>(&line.op)) {
-                if (annotator->paint(with_offset(*paint, golden.opened.session.transfer_function)) == 0)
+                if (annotator->paint(in_session(*paint, golden.opened.session)) == 0)
                     fail(golden.name, ": script line ", line.number, " paints nothing");
             } else if (const auto* undo = std::get_if<UndoOp>(&line.op)) {
                 for (int i = 0; i < undo->count; ++i)

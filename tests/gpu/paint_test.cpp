@@ -541,7 +541,7 @@ TEST_CASE("a stroke by hand paints what a script's stroke paints, and is one com
     while (by_hand.stroke_is_running())
         if (const auto box = by_hand.advance()) reported += box->size().x * box->size().y * box->size().z;
     CHECK(reported > 0);
-    CHECK(by_hand.last_stroke_voxels() == painted);
+    CHECK(by_hand.last_stroke().voxels() == painted);
     CHECK(by_hand.document().mask.voxels_by_group() == by_script.document().mask.voxels_by_group());
     for (const int64_t brick : by_script.document().mask.painted_bricks())
         CHECK(*by_hand.document().mask.brick(brick) == *by_script.document().mask.brick(brick));

@@ -29,6 +29,8 @@ uint64_t hash_of_bricks(const Field& field, uint64_t hash)
     return hash;
 }
 
+constexpr const char* LOCKS = "locks";  // the setting; its text is a digit, 0 for none
+
 }  // namespace
 
 VolumeInfo annotated_volume()
@@ -89,6 +91,15 @@ uint64_t hash_of(const Document& document)
     return hash;
 }
 
+GroupSet locks_of(const Document& document)
+{
+    GroupSet locked;
+    const auto found = document.settings.values().find(LOCKS);
+    if (found == document.settings.values().end() || found->second == "0") return locked;
+    for (size_t group = 1; group < locked.size(); ++group) locked[group] = group % 4 == size_t(found->second[0] - '1');
+    return locked;
+}
+
 Command random_painting(const Document& document, std::mt19937& random)
 {
     const auto uniform = [&](double low, double high) {
@@ -112,7 +123,8 @@ Command random_painting(const Document& document, std::mt19937& random)
     }
     const auto group = uint8_t(random() % 3 == 0 ? 0 : random() % 256);
     Command command{"random", {}};
-    if (what != 1) command.changes = as_changes(paint_changes(document.mask, selection, group));
+    const PaintRule rule{.group = group, .only_unpainted = random() % 4 == 0, .locked = locks_of(document)};
+    if (what != 1) command.changes = as_changes(paint_changes(document.mask, selection, rule));
     if (what != 0)
         for (DensityBrickChange& change : density.changes(document.density))
             command.changes.emplace_back(std::move(change));
@@ -163,10 +175,12 @@ Command random_tracing(const Document& document, std::mt19937& random)
 Command random_setting(const Document& document, std::mt19937& random)
 {
     const SettingValues& values = document.settings.values();
-    const std::string name = sentence("section ", random() % 3);
+    const auto section = random() % 4;
+    const std::string name = section == 3 ? LOCKS : sentence("section ", section);
     const auto found = values.find(name);
     const std::string before = found == values.end() ? std::string() : found->second;
-    const std::string after = sentence("{\"value\":", random() % 4, "}");
+    const auto value = random() % 5;
+    const std::string after = section == 3 ? sentence(value) : sentence("{\"value\":", value % 4, "}");
     if (before == after) return {"nothing", {}};
     return {"setting", {SettingChange{name, before, after}}};
 }

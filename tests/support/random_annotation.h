@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <random>
 
+#include "engine/annotation/painting.h"
 #include "engine/annotation/work/work.h"
 
 namespace shvr::test {
@@ -25,11 +26,14 @@ uint64_t hash_of(const DensityField& field);
 uint64_t hash_of(const TraceGraph& trace);
 uint64_t hash_of(const Document& document);
 
-/// Paints or erases random parts of a random region: groups, offsets, or both in one command. May change nothing.
+/// The groups that the document's settings lock: none, or a quarter of all.
+GroupSet locks_of(const Document& document);
+/// Paints or erases random parts of a random region: groups, offsets, or both in one command, by a brush that is held
+/// to unpainted voxels or not, and with the locks there are. May change nothing.
 Command random_painting(const Document& document, std::mt19937& random);
 /// Adds, links, moves or deletes whatever is nearest to a random position, or sets its group or size.
 Command random_tracing(const Document& document, std::mt19937& random);
-/// Sets one of a few sections to one of a few texts.
+/// Sets one of a few sections to one of a few texts; one of them, the locks.
 Command random_setting(const Document& document, std::mt19937& random);
 /// Painting, tracing or setting.
 Command random_command(const Document& document, std::mt19937& random);

@@ -190,7 +190,7 @@ void many_strokes(const Folder& folder)
                 selection.add(region, std::vector<uint32_t>(size_t(region.words_per_row()) * region.rows.size(), ~0u));
             }
             Command command{"fill, group 3",
-                            as_changes(paint_changes(work->document().mask, selection, uint8_t(1 + stroke % 7)))};
+                            as_changes(paint_changes(work->document().mask, selection, {uint8_t(1 + stroke % 7)}))};
             for (const Change& change : command.changes) voxels += std::get<MaskBrickChange>(change).voxels();
             work->perform(std::move(command));
         }

@@ -26,7 +26,9 @@ public:
     Opened& opened;
     const AnnotateCommandOptions& options;
     int64_t voxels_changed = 0;
-    std::string at;  ///< "file:line"
+    StrokeResult::ByGroup taken_from{};
+    int64_t kept_locked = 0, kept_painted = 0;  ///< voxels
+    std::string at;                             ///< "file:line"
 
 private:
     /// A line for a command, where that is asked for.
@@ -59,14 +61,18 @@ private:
 public:
     void operator()(const PaintOp& op)
     {
-        const PaintOp chosen = with_offset(op, opened.session.transfer_function);
-        const int64_t voxels = opened.annotator->paint(chosen);
-        voxels_changed += voxels;
-        if (!chosen.density)
-            tell(voxels, " voxels painted in group ", int(op.group));
+        opened.annotator->paint(in_session(op, opened.session));
+        const StrokeResult& result = opened.annotator->last_stroke();
+        voxels_changed += result.voxels();
+        for (const auto& [group, voxels] : result.taken_from) taken_from[group] += voxels;
+        kept_locked += result.kept_by_locks();
+        kept_painted += result.kept_painted;
+        const std::string said =
+            sentence_of(result, [&](uint8_t group) { return group_of(opened.session.groups, group).name; });
+        if (result.kept_locked_out > 0)
+            warn({sentence(at, ": ", said)}, options.common);  // the line does not do what it is there for
         else
-            tell(voxels, " changes of offsets", chosen.paints_group ? " and groups" : "", ", by at most ",
-                 *chosen.density->offset);
+            tell(said);
     }
     template <class Op>
     requires std::constructible_from<TraceOp, Op>
@@ -166,13 +172,19 @@ void run_annotate(const AnnotateCommandOptions& options)
     }
     opened.annotator->work().flush();
     check_validation(opened);
+    const std::string kept = replay.kept_locked > 0 ? sentence(replay.kept_locked, " kept by locks, ") : std::string();
+    Json taken_from = Json::object();
+    for (const auto& [group, voxels] : replay.taken_from) taken_from[std::to_string(group)] = voxels;
     if (!options.common.json)
         say(options.common, sentence(name, ": ", script.size(), script.size() == 1 ? " command, " : " commands, ",
-                                     replay.voxels_changed, " voxels changed, ", opened.annotator->work().unsaved(),
-                                     " steps not saved"));
+                                     replay.voxels_changed, " voxels changed, ", kept,
+                                     opened.annotator->work().unsaved(), " steps not saved"));
     else
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},
+               {"voxels_taken_from", taken_from},
+               {"voxels_kept_locked", replay.kept_locked},
+               {"voxels_kept_painted", replay.kept_painted},
                {"nodes", opened.annotator->document().trace.nodes().size()},
                {"internodes", opened.annotator->document().trace.internodes().size()},
                {"journal_bytes", opened.annotator->work().journal().bytes}});

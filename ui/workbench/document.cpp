@@ -273,7 +273,7 @@ void Document::name_trace()
 
 PaintOp Document::stroke() const
 {
-    return with_offset(stroke_of(brush(), *brush().threshold), session.transfer_function);
+    return in_session(stroke_of(brush(), *brush().threshold), session);
 }
 
 PaintOp Document::dab() const

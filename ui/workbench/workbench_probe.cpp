@@ -7,18 +7,6 @@
 
 namespace shvr::ui {
 
-namespace {
-
-std::string painted_sentence(const PaintOp& brush, int64_t voxels)
-{
-    if (brush.erases()) return sentence("Erased ", voxels, " voxels");
-    if (!brush.density) return sentence("Painted ", voxels, " voxels in group ", int(brush.group));
-    const std::string groups = brush.paints_group ? sentence(" and of group ", int(brush.group)) : std::string();
-    return sentence("Painted ", voxels, " changes of density", groups);
-}
-
-}  // namespace
-
 void Workbench::perform(const ProbeTo& action)
 {
     const Pane& seen = pane(action.pane);
@@ -104,8 +92,8 @@ void Workbench::perform(const PaintOp& op)
 {
     if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
     record_settings();
-    const int64_t voxels = document_->annotator.paint(with_offset(op, document_->session.transfer_function));
-    say(painted_sentence(op, voxels));
+    document_->annotator.paint(in_session(op, document_->session));
+    stroke_ended();
 }
 
 void Workbench::extend_stroke()
@@ -118,12 +106,10 @@ void Workbench::extend_stroke()
 
 void Workbench::stroke_ended()
 {
-    const int64_t voxels = document_->annotator.last_stroke_voxels();
-    if (voxels == 0)
-        return say(
-            "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted "
-            "already");
-    say(painted_sentence(document_->stroke(), voxels));
+    const StrokeResult& result = document_->annotator.last_stroke();
+    const bool is_as_meant = result.taken_from.empty() && result.kept_by_locks() == 0;
+    say(sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; }),
+        is_as_meant ? Weight::done : Weight::warning);
 }
 
 /// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.

@@ -148,20 +148,35 @@ RadiusOp read_radius(const JsonNode& line)
     return op;
 }
 
+bool read_only_unpainted(const JsonNode& line, const PaintOp& op)
+{
+    const bool only_unpainted = line["only_unpainted"].flag(op.only_unpainted);
+    if (only_unpainted && !op.paints_group)
+        line.refuse_because("key only_unpainted is true without group; expected a group, since offsets heed no paint");
+    if (only_unpainted && op.group == 0)
+        line.refuse_because(
+            "key only_unpainted is true with group 0; expected a group from 1, since what is unpainted "
+            "cannot be erased");
+    return only_unpainted;
+}
+
 PaintOp read_paint(const JsonNode& line)
 {
-    allow(line, {"brush", "region", "group", "threshold", "radius", "connectivity", "path"});
+    allow(line, {"brush", "region", "group", "threshold", "radius", "connectivity", "path", "only_unpainted"});
     PaintOp op = read_brush(line);
     op.group = read_group(line["group"]);
+    op.only_unpainted = read_only_unpainted(line, op);
     return op;
 }
 
 PaintOp read_density(const JsonNode& line)
 {
-    allow(line, {"brush", "region", "group", "threshold", "radius", "connectivity", "path", "offset", "falloff"});
+    allow(line, {"brush", "region", "group", "threshold", "radius", "connectivity", "path", "only_unpainted", "offset",
+                 "falloff"});
     PaintOp op = read_brush(line);
     op.paints_group = line["group"].exists();
     if (op.paints_group) op.group = read_group(line["group"]);
+    op.only_unpainted = read_only_unpainted(line, op);
     op.density.emplace();
     op.density->falloff = line["falloff"].choice_or(op.density->falloff);
     const JsonNode offset = line["offset"];

@@ -60,6 +60,7 @@ std::string line(const PaintOp& op)
         line.word("falloff", spelled(op.density->falloff));
         line.number("offset", op.density->offset);
     }
+    if (op.only_unpainted) line.raw("only_unpainted", "true");
     return line.raw("path", text_of(op.path));
 }
 

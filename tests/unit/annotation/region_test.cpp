@@ -1,5 +1,4 @@
 #include "engine/annotation/region.h"
-#include "engine/annotation/work/history.h"
 
 #include <cmath>
 #include <limits>
@@ -8,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/annotation/painting.h"
+#include "engine/annotation/work/history.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -282,7 +283,7 @@ TEST_CASE("painting gives every selected voxel the group, by the fewest records 
             VoxelSelection selection(size);
             selection.add(sample.region, sample.words);
             const auto group = uint8_t(random() % 3);
-            const std::vector<Change> changes = as_changes(paint_changes(document.mask, selection, group));
+            const std::vector<Change> changes = as_changes(paint_changes(document.mask, selection, {group}));
 
             int64_t expected = 0, found = 0, wrong = 0;
             for_each_voxel(size, [&](const Size3& voxel) {
@@ -314,7 +315,7 @@ TEST_CASE("painting gives every selected voxel the group, by the fewest records 
                 wrong += document.mask.at(voxel) != (selection.contains(voxel) ? group : old);
             });
             CHECK(wrong == 0);
-            CHECK(paint_changes(document.mask, selection, group).empty());
+            CHECK(paint_changes(document.mask, selection, {group}).empty());
         }
     }
 }

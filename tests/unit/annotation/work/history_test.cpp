@@ -93,7 +93,7 @@ TEST_CASE("10 000 random operations: every state that undo or redo comes to is t
         Document document = unannotated();
         History history;
         std::vector<uint64_t> states{hash_of(document)};  // after 0, 1, ... commands
-        size_t at = 0, wrong = 0, performed = 0;
+        size_t at = 0, wrong = 0, performed = 0, painted_beside_locks = 0;
         for (int operation = 0; operation < 10000; ++operation) {
             const auto choice = random() % 8;
             if (choice < 3) {
@@ -102,11 +102,16 @@ TEST_CASE("10 000 random operations: every state that undo or redo comes to is t
                 at += history.redo(document) != nullptr;
             } else {
                 Command command = random_command(document, random);
+                const GroupSet locked = locks_of(document);
+                const std::array<int64_t, 256> voxels = document.mask.voxels_by_group();
                 if (!command.changes.empty()) {
                     states.resize(++at);
                     ++performed;
                 }
                 history.perform(document, std::move(command));
+                painted_beside_locks += locked.any() && voxels != document.mask.voxels_by_group();
+                for (size_t group = 1; group < voxels.size(); ++group)
+                    wrong += locked[group] && voxels[group] != document.mask.voxels_by_group()[group];
                 if (states.size() == at) states.push_back(hash_of(document));
             }
             wrong += hash_of(document) != states[at] || history.undoable() != at ||
@@ -114,6 +119,7 @@ TEST_CASE("10 000 random operations: every state that undo or redo comes to is t
         }
         CHECK(wrong == 0);
         CHECK(performed > 3000);
+        CHECK(painted_beside_locks > 500);
 
         while (history.redo(document)) ++at;
         CHECK(at == states.size() - 1);

@@ -79,6 +79,17 @@ TEST_CASE("a line of paint without region and connectivity means a ball and 6")
     CHECK(op_of<PaintOp>(paint({{"region", "\"ball\""}, {"group", "0"}, {"radius", "127.5"}})).radius_voxels == 127.5);
 }
 
+TEST_CASE("a line of paint or density may be held to unpainted voxels")
+{
+    CHECK_FALSE(op_of<PaintOp>(paint({})).only_unpainted);
+    CHECK_FALSE(op_of<PaintOp>(paint({{"only_unpainted", "false"}, {"group", "0"}})).only_unpainted);
+    CHECK(op_of<PaintOp>(paint({{"only_unpainted", "true"}})).only_unpainted);
+    CHECK(op_of<PaintOp>(paint({{"op", "\"density\""}, {"only_unpainted", "true"}})).only_unpainted);
+    CHECK_FALSE(
+        op_of<PaintOp>(paint({{"op", "\"density\""}, {"only_unpainted", "false"}, {"group", ""}})).only_unpainted);
+    CHECK(op_of<PaintOp>(paint({})).locked.none());  // locks are the session's
+}
+
 TEST_CASE("undo and redo count, once where nothing is said")
 {
     CHECK(op_of<UndoOp>(R"({"op":"undo"})").count == 1);
@@ -144,6 +155,15 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {paint({{"connectivity", "18"}}), {"key connectivity is 18", "6 or 26"}},
         {paint({{"connectivity", "6.5"}}), {"key connectivity is 6.5"}},
         {paint({{"connectivity", "27"}}), {"key connectivity is 27"}},
+        {paint({{"only_unpainted", "1"}}), {"key only_unpainted is 1", "true or false"}},
+        {paint({{"only_unpainted", "\"true\""}}), {"key only_unpainted is \"true\"", "true or false"}},
+        {paint({{"only_unpainted", "null"}}), {"key only_unpainted is null", "true or false"}},
+        {paint({{"only_unpainted", "true"}, {"group", "0"}}),
+         {"only_unpainted is true with group 0", "a group from 1"}},
+        {paint({{"op", "\"density\""}, {"only_unpainted", "true"}, {"group", ""}}),
+         {"only_unpainted is true without group", "expected a group"}},
+        {paint({{"op", "\"density\""}, {"only_unpainted", "0"}}), {"key only_unpainted is 0", "true or false"}},
+        {paint({{"only_unpaint", "true"}}), {"unknown key only_unpaint", "only_unpainted"}},
         {paint({{"path", ""}}), {"key path is missing"}},
         {paint({{"path", "[]"}}), {"key path is []", "at least one point"}},
         {paint({{"path", "[1,2,3]"}}), {"key path.0 is 1", "[x, y, z]"}},
