@@ -354,6 +354,15 @@ void lasting_fields(Fields& f, Session& session)
     f.section("cut", session.cut);
 }
 
+void kept_fields(Fields& f, Session& session)
+{
+    f.section("cameras", [&](Fields& cameras) { camera_fields(cameras, session); });
+    f.section("render", session.render);
+    f.section("view", session.view);
+    f.section("interaction", session.interaction);
+    f.section("probe", session.probe);
+}
+
 void fields(Fields& f, Session& session)
 {
     int64_t version = 1;

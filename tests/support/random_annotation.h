@@ -25,12 +25,17 @@ uint64_t hash_of(const DensityField& field);
 uint64_t hash_of(const TraceGraph& trace);
 uint64_t hash_of(const Document& document);
 
+/// What going back from one document to the other changes; none where they are equal.
+std::vector<Change> all_changes_between(const Document& from, const Document& to);
+
 /// Paints or erases random parts of a random region: groups, offsets, or both in one command. May change nothing.
 Command random_painting(const Document& document, std::mt19937& random);
 /// Adds, links, moves or deletes whatever is nearest to a random position, or sets its group or size.
 Command random_tracing(const Document& document, std::mt19937& random);
 /// Sets one of a few sections to one of a few texts.
 Command random_setting(const Document& document, std::mt19937& random);
+/// One of a few sections as one of a few texts, to be kept.
+SettingValues random_kept(std::mt19937& random);
 /// Painting, tracing or setting.
 Command random_command(const Document& document, std::mt19937& random);
 
