@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/volume/grid.h"
 
@@ -53,6 +54,13 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std
     WorkFiles files = work_files(session, volume);
     files.settings = without_overridden(lasting_settings(session), overridden);
     files.normalized = normalized_settings;
+    return files;
+}
+
+WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden)
+{
+    files.kept = without_overridden(kept_settings(session), overridden);
+    files.normalized_kept = normalized_kept_settings;
     return files;
 }
 
@@ -289,6 +297,13 @@ const Command* Annotator::undo()
 const Command* Annotator::redo()
 {
     const Command* command = stroke_ ? nullptr : work_.redo();
+    if (command) show(*command);
+    return command;
+}
+
+const Command* Annotator::revert()
+{
+    const Command* command = stroke_ ? nullptr : work_.revert();
     if (command) show(*command);
     return command;
 }

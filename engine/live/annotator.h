@@ -28,6 +28,8 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume);
 /// And the lasting settings of an `OpenedSession`, but for those that the "key=value" settings in `overridden` set this
 /// time only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
+/// The kept settings, too, for callers that take Work::kept_settings() and tell Work::keep_settings what has changed.
+WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
@@ -86,6 +88,8 @@ public:
     /// The command undone or redone; null where there is none left, or a stroke is running.
     const Command* undo();
     const Command* redo();
+    /// As Work::revert; null also while a stroke is running.
+    const Command* revert();
 
 private:
     /// Accumulates the answers of a stroke.

@@ -58,7 +58,13 @@ void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
     if (!colors.empty()) label["colors"] = colors;
     if (!properties.empty()) label["properties"] = properties;
     if (!labels.source.empty()) label["source"] = {{"image", labels.source}};
-    if (!labels.painted_on.empty()) attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
+    if (labels.painted_on.empty()) return;
+    Json& ours = attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
+    if (!labels.journal) return;
+    // A file's name need not be UTF-8.
+    const Json name = Json::parse(Json(labels.journal->name).dump(-1, ' ', false, Json::error_handler_t::replace));
+    ours["journal"] = {
+        {"name", name}, {"record", labels.journal->record}, {"checksum", labels.journal->checksum_digits()}};
 }
 
 /// The attributes of IMAGE/labels; empty if there is no such group.
@@ -98,6 +104,13 @@ Json signatures_of(const fs::path& origin)
 }
 
 }  // namespace
+
+std::string LabelImage::Journal::checksum_digits() const
+{
+    std::string digits;
+    for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[(checksum >> shift) & 15];
+    return digits;
+}
 
 ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
                         const ZarrCompressor& compressor, bool has_shards)

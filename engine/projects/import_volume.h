@@ -47,6 +47,15 @@ struct LabelImage {
     /// The hash of that image's voxels (content_hash.h), which distinguishes a mask from masks of other images of the
     /// same size; empty: not stated.
     std::string painted_on{};
+    /// Of a person's work that it was saved with: the file's name, and number and checksum of the last record then.
+    struct Journal {
+        std::string name;
+        uint64_t record = 0, checksum = 0;
+        bool operator==(const Journal&) const = default;
+        /// 16 hexadecimal digits, for JSON, whose readers may know no whole numbers of 64 bits.
+        std::string checksum_digits() const;
+    };
+    std::optional<Journal> journal{};  ///< stated where `painted_on` is
 };
 
 struct ImportOptions {

@@ -4,11 +4,16 @@
 
 namespace shvr {
 
-void set_lasting_settings(Session& session, const SettingValues& values)
+std::string text_of_sections(const SettingValues& values)
 {
     std::string text;
     for (const auto& [name, value] : values) text += sentence(text.empty() ? "{" : ",", '"', name, "\":", value);
-    const Session read = read_lasting(session_document(text.empty() ? "{}" : text + "}", "settings"));
+    return text.empty() ? "{}" : text + "}";
+}
+
+void set_lasting_settings(Session& session, const SettingValues& values)
+{
+    const Session read = read_lasting(session_document(text_of_sections(values), "settings"));
     const auto has = [&](const char* name) { return values.contains(name); };
     if (has("transfer_function")) session.transfer_function = read.transfer_function;
     if (has("groups")) session.groups = read.groups;
@@ -28,7 +33,10 @@ SettingValues normalized_settings(const SettingValues& values)
 
 SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings)
 {
-    for (const std::string& setting : settings) values.erase(setting.substr(0, setting.find_first_of(".=")));
+    for (const std::string& setting : settings) {
+        const std::string name = setting.substr(0, setting.find_first_of(".="));
+        values.erase(name == "camera" ? "cameras" : name);  // which holds both (kept_settings.h)
+    }
     return values;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // What of a session is a person's work and undone like paint: the transfer function, groups, light, blending and cuts.
-// Cameras, panes and the probe are not. Any thread.
+// Cameras, panes and the probe are not (kept_settings.h). Any thread.
 
 #include "engine/annotation/settings.h"
 #include "engine/session/session.h"
@@ -13,7 +13,7 @@ SettingValues lasting_settings(const Session& session);
 void set_lasting_settings(Session& session, const SettingValues& values);
 /// `values` as this version of the program writes them. Fails like set_lasting_settings.
 SettingValues normalized_settings(const SettingValues& values);
-/// `values` but for the sections that these "key=value" settings set.
+/// `values`, lasting or kept ones, but for the sections that these "key=value" settings set.
 SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings);
 /// What differs, in words: "light: ambient 0.2 to 0.3", "groups: 3 color" or "transfer function".
 std::string difference_of(const SettingValues& before, const SettingValues& after);

@@ -361,13 +361,29 @@ void lasting_fields(Fields& f, Session& session)
     f.section("cut", session.cut);
 }
 
-void setting_fields(Fields& f, Session& session)
+namespace {
+
+/// What a person sets that is neither work nor a camera.
+void passing_fields(Fields& f, Session& session)
 {
-    lasting_fields(f, session);
     f.section("render", session.render);
     f.section("view", session.view);
     f.section("interaction", session.interaction);
     f.section("probe", session.probe);
+}
+
+}  // namespace
+
+void kept_fields(Fields& f, Session& session)
+{
+    f.section("cameras", [&](Fields& cameras) { camera_fields(cameras, session); });
+    passing_fields(f, session);
+}
+
+void setting_fields(Fields& f, Session& session)
+{
+    lasting_fields(f, session);
+    passing_fields(f, session);
 }
 
 void fields(Fields& f, Session& session)

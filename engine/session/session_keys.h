@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "engine/annotation/settings.h"
 #include "engine/session/fields.h"
 #include "engine/session/session.h"
 
@@ -19,6 +20,8 @@ void fields(Fields& f, Session& session);
 void lasting_fields(Fields& f, Session& session);
 /// The sections of session_patch.h.
 void setting_fields(Fields& f, Session& session);
+/// Those of kept_settings.h; `camera` and `cameras` are one, since one names what is in the other.
+void kept_fields(Fields& f, Session& session);
 void fields(Fields& f, Groups& groups);
 void fields(Fields& f, SurfaceLook& surface);
 void fields(Fields& f, ProbeSettings& probe);
@@ -58,10 +61,14 @@ inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
 CameraSpec read_camera(const JsonNode& node);
+/// An object with these sections.
+std::string text_of_sections(const SettingValues& values);
 /// Reads the sections that `lasting_fields` visits into a new session; the others keep their defaults.
 Session read_lasting(const JsonDocument& document);
 /// Likewise those of `setting_fields`.
 Session read_settings(const JsonDocument& document);
+/// The same for `kept_fields`.
+Session read_kept(const JsonDocument& document);
 /// Whether a camera is given as an object, not by name.
 bool is_camera_object(const std::string& name_or_json);
 glm::dvec3 read_color(const JsonNode& node);

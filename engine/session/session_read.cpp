@@ -254,6 +254,13 @@ Session read_settings(const JsonDocument& document)
     return session;
 }
 
+Session read_kept(const JsonDocument& document)
+{
+    Session session;
+    Reader::read(document.root(), {}, [&](Fields& f) { kept_fields(f, session); });
+    return session;
+}
+
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings)
 {

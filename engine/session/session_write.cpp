@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/look/session_color.h"
+#include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/session_keys.h"
 
@@ -157,6 +158,13 @@ std::string difference_of(std::string name, const std::string& before, const std
     return sentence(name, ": ", path, from.empty() ? "" : " ", from, to.empty() ? "" : from.empty() ? " " : " to ", to);
 }
 
+SettingValues sections_of(const OrderedJson& object)
+{
+    SettingValues values;
+    for (const auto& section : object.items()) values[section.key()] = section.value().dump();
+    return values;
+}
+
 }  // namespace
 
 std::string write_fields(const std::filesystem::path& folder, const Fields::Visit& visit)
@@ -171,10 +179,15 @@ std::string write_fields(const std::filesystem::path& folder, const Fields::Visi
 SettingValues lasting_settings(const Session& session)
 {
     Session written = session;  // fields take a mutable session
-    const OrderedJson sections = Writer::write({}, [&](Fields& f) { lasting_fields(f, written); });
-    SettingValues values;
-    for (const auto& section : sections.items()) values[section.key()] = section.value().dump();
-    return values;
+    return sections_of(Writer::write({}, [&](Fields& f) { lasting_fields(f, written); }));
+}
+
+SettingValues kept_settings(const Session& session)
+{
+    // A copy, as above, but not of surfaces, of which there may be many: this is asked for often.
+    Session written;
+    take_kept_sections(written, session);
+    return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));
 }
 
 std::string difference_of(const SettingValues& before, const SettingValues& after)

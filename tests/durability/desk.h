@@ -21,25 +21,50 @@ inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said
     return work;
 }
 
-/// A command, an undo or a redo; false if it did nothing. For `Work` or a model of it.
-template <class Undo, class Redo, class Perform>
-bool random_step(const Document& document, std::mt19937& random, const Undo& undo, const Redo& redo,
-                 const Perform& perform)
+/// A command, an undo, a redo or a revert; or settings are kept, which is no step. False if it made none. For `Work` or
+/// a model of it.
+template <class Model>
+bool random_step_of(Model& model, const Document& document, std::mt19937& random)
 {
-    const auto choice = random() % 8;
-    if (choice == 0) return undo();
-    if (choice == 1) return redo();
+    const auto choice = random() % 20;
+    if (choice < 2) return model.undo();
+    if (choice < 4) return model.redo();
+    if (choice == 4) return model.revert();
+    if (choice < 8) {
+        model.keep_settings(random_kept(random));
+        return false;
+    }
     Command command = random_command(document, random);
     if (command.changes.empty()) return false;
-    perform(std::move(command));
+    model.perform(std::move(command));
     return true;
 }
 
 inline bool random_step(Work& work, std::mt19937& random)
 {
-    return random_step(
-        work.document(), random, [&] { return work.undo() != nullptr; }, [&] { return work.redo() != nullptr; },
-        [&](Command command) { work.perform(std::move(command)); });
+    struct Steps {
+        bool undo() const { return work.undo() != nullptr; }
+        bool redo() const { return work.redo() != nullptr; }
+        bool revert() const
+        {
+            try {
+                return work.revert() != nullptr;
+            } catch (const Error&) {  // nothing was ever saved, or the disk refuses
+                return false;
+            }
+        }
+        void keep_settings(const SettingValues& values) const { work.keep_settings(values); }
+        void perform(Command command) const { work.perform(std::move(command)); }
+        Work& work;
+    };
+    Steps steps{work};
+    return random_step_of(steps, work.document(), random);
+}
+
+/// With the session, which is nothing here.
+inline Work::Saved save(Work& work)
+{
+    return work.save({}, [] {});
 }
 
 /// The number of steps in a journal.

@@ -5,9 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <map>
+#include <optional>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -24,6 +27,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t MAX_STEPS = 4096;
+constexpr size_t SAVE_EVERY = 50;
 
 /// The child's reports before it is killed.
 struct Told {
@@ -45,7 +49,7 @@ int64_t now_ns()
         if (!random_step(*work, random)) continue;
         told.done_ns[step] = now_ns();
         told.steps = ++step;
-        if (step % 50 == 0) work->save();
+        if (step % SAVE_EVERY == 0) save(*work);
         std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     for (;;) ::pause();
@@ -56,15 +60,54 @@ class Model {
 public:
     void steps(uint32_t seed, size_t count)
     {
-        std::mt19937 random(seed);
-        for (size_t done = 0; done < count;)
-            done += random_step(
-                document, random, [&] { return history.undo(document) != nullptr; },
-                [&] { return history.redo(document) != nullptr; },
-                [&](Command command) { history.perform(document, std::move(command)); });
+        random.seed(seed);
+        for (size_t done = 0; done < count;) {
+            if (!random_step_of(*this, document, random)) continue;
+            ++all_steps;
+            if (++done % SAVE_EVERY == 0) saves.insert_or_assign(all_steps, *(saved = document));
+        }
     }
+    /// What may be kept now, and up to the next step.
+    std::vector<SettingValues> kept_until_next_step() const
+    {
+        Model next = *this;
+        std::vector<SettingValues> all{kept};
+        while (!random_step_of(next, next.document, next.random)) all.push_back(next.kept);
+        return all;
+    }
+    /// The journal says which save was the last that came to its end.
+    void note_last_save(const JournalScan& scan)
+    {
+        size_t count = 0, at_save = 0;
+        for (const JournalRecord& record : scan.records) {
+            count += record.kind == RecordKind::command || record.kind == RecordKind::undo ||
+                     record.kind == RecordKind::redo;
+            if (record.kind == RecordKind::saved) at_save = count;
+        }
+        saved = at_save == 0 ? std::nullopt : std::optional(saves.at(at_save));
+    }
+
+    bool undo() { return history.undo(document) != nullptr; }
+    bool redo() { return history.redo(document) != nullptr; }
+    bool revert()
+    {
+        return saved && history.perform(document, {"revert", all_changes_between(document, *saved)}) != nullptr;
+    }
+    void keep_settings(const SettingValues& values)
+    {
+        for (const auto& [name, value] : values) kept[name] = value;
+    }
+    void perform(Command command) { history.perform(document, std::move(command)); }
+
     Document document = unannotated();
     History history;
+    SettingValues kept;
+    std::optional<Document> saved;
+
+private:
+    std::mt19937 random;
+    size_t all_steps = 0;
+    std::map<size_t, Document> saves;  ///< by the number of steps before them
 };
 
 }  // namespace
@@ -78,7 +121,7 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
     REQUIRE(told != MAP_FAILED);
     std::mt19937 random(1);
     Model model;
-    size_t lost = 0, steps = 0, wrong = 0, kept_before = 0, opened_with_loss = 0;
+    size_t lost = 0, steps = 0, wrong = 0, wrong_views = 0, reverts = 0, kept_before = 0, opened_with_loss = 0;
     int64_t longest_lost_ns = 0, longest_opening_ns = 0;
     for (uint32_t round = 0; round < 200; ++round) {
         told->steps = 0;
@@ -101,12 +144,19 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
         model.steps(round, kept);
         std::string said;
         const int64_t opening_ns = now_ns();
+        model.note_last_save(scan_journal(files.journal));
         const auto work = open_work(files, said);
         longest_opening_ns = std::max(longest_opening_ns, now_ns() - opening_ns);
         wrong += hash_of(work->document()) != hash_of(model.document) ||
                  work->history().undoable() != model.history.undoable() ||
                  work->history().redoable() != model.history.redoable() || contains(said, "was changed") ||
                  contains(said, "is missing");
+        std::vector<SettingValues> views = model.kept_until_next_step();
+        if (kept_now == 0) views.emplace_back();
+        wrong_views += std::ranges::find(views, work->kept_settings()) == views.end();
+        model.kept = work->kept_settings();
+        reverts += size_t(std::ranges::count(scan_journal(files.journal).records, "reverted to the last save",
+                                             &JournalRecord::label)) > 0;
         if (kept < done) {
             ++opened_with_loss;
             lost += done - kept;
@@ -117,6 +167,8 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
     }
     ::munmap(told, sizeof(Told));
     CHECK(wrong == 0);
+    CHECK(wrong_views == 0);
+    CHECK(reverts > 50);  // of 200 rounds, those after the first
     CHECK(steps >= 200);  // the exact number depends on the machine
     MESSAGE(steps, " steps, ", lost, " lost in ", opened_with_loss, " of 200 kills, at most of the last ",
             double(longest_lost_ns) * 1e-6, " ms; opened in at most ", double(longest_opening_ns) * 1e-6, " ms");

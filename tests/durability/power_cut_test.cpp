@@ -21,16 +21,22 @@ namespace fs = std::filesystem;
 /// The calls made, and the states in between.
 struct Record {
     std::vector<FileCall> calls;
-    std::vector<uint64_t> states;              ///< after 0, 1, ... steps
+    struct State {
+        size_t steps = 0;
+        uint64_t hash = 0;
+        SettingValues kept;
+        bool operator==(const State&) const = default;
+    };
+    std::vector<State> states;                 ///< at the beginning, and after each step or change of what is kept
     std::set<uint64_t> masks, traces, fields;  ///< saved ones, and the empty one
 };
 
-/// Notes among the calls hold the number of steps acknowledged so far.
+/// Notes among the calls hold the number of the last state that is acknowledged.
 Record work_of_a_day(const fs::path& folder)
 {
     Record record;
     std::mt19937 random(5);
-    record.states.push_back(hash_of(unannotated()));
+    record.states.push_back({0, hash_of(unannotated()), {}});
     record.masks.insert(hash_of(Mask(ANNOTATED_SIZE)));
     record.traces.insert(hash_of(TraceGraph()));
     record.fields.insert(hash_of(DensityField(ANNOTATED_SIZE, ANNOTATED_TYPE)));
@@ -39,8 +45,12 @@ Record work_of_a_day(const fs::path& folder)
     for (int day = 0; day < 3; ++day) {
         auto work = open_work(files_in(folder), said);
         for (int i = 0; i < 60; ++i) {
-            if (random_step(*work, random)) record.states.push_back(hash_of(work->document()));
-            if (random() % 6 == 0) {
+            const Record::State before = record.states.back();
+            const size_t steps = before.steps + size_t(random_step(*work, random));
+            const Record::State now{steps, hash_of(work->document()), work->kept_settings()};
+            if (now != before) record.states.push_back(now);
+            // The journal begins with the first step.
+            if (random() % 6 == 0 && now.steps > 0) {
                 work->flush();
                 note(record.states.size() - 1);
             }
@@ -48,7 +58,7 @@ Record work_of_a_day(const fs::path& folder)
             record.masks.insert(hash_of(work->document().mask));
             record.traces.insert(hash_of(work->document().trace));
             record.fields.insert(hash_of(work->document().density));
-            work->save();
+            save(*work);
             note(record.states.size() - 1);
         }
         work.reset();
@@ -71,10 +81,13 @@ std::string fault_of(const fs::path& folder, const Disk& disk, const Record& rec
     std::string said;
     try {
         const auto work = open_work(files, said);
-        const size_t steps = steps_in(files.journal);
-        if (steps < acknowledged) return sentence("acknowledged ", acknowledged, " steps, found ", steps);
-        if (steps >= record.states.size()) return sentence("found ", steps, " steps that nobody made");
-        if (hash_of(work->document()) != record.states[steps]) return sentence("step ", steps, " is of another state");
+        const Record::State found{steps_in(files.journal), hash_of(work->document()), work->kept_settings()};
+        const auto state = std::find(record.states.begin(), record.states.end(), found);
+        if (state == record.states.end()) return sentence("after ", found.steps, " steps is a state that never was");
+        // The same state may have been twice.
+        if (std::find(record.states.begin() + ptrdiff_t(acknowledged), record.states.end(), found) ==
+            record.states.end())
+            return sentence("acknowledged state ", acknowledged, ", found ", state - record.states.begin());
         if ((contains(said, "was changed") || contains(said, "is missing"))) return said;
         // The files without the journal, each as one save left it.
         files.journal.clear();
@@ -121,7 +134,7 @@ TEST_CASE("2000 power cuts at any moment leave what was acknowledged, and nothin
     const Faults faults = faults_of(record, folder.path / "cut", 2000, true);
     CAPTURE(faults.first);
     CHECK(faults.count == 0);
-    MESSAGE(record.calls.size(), " calls, ", record.states.size() - 1, " steps, ", record.masks.size() - 1, " saves");
+    MESSAGE(record.calls.size(), " calls, ", record.states.back().steps, " steps, ", record.masks.size() - 1, " saves");
 
     const Faults without_syncs = faults_of(record, folder.path / "cut", 300, false);
     CHECK(without_syncs.count > 100);

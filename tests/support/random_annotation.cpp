@@ -100,6 +100,18 @@ GroupSet locks_of(const Document& document)
     return locked;
 }
 
+std::vector<Change> all_changes_between(const Document& from, const Document& to)
+{
+    std::vector<Change> changes;
+    for (const Part part : PARTS)
+        for (Change& change : changes_between(part, from, to)) changes.push_back(std::move(change));
+    SettingValues before = from.settings.values(), after = to.settings.values();
+    for (const auto& [name, value] : to.settings.values()) before.try_emplace(name, "");
+    for (const auto& [name, value] : before)
+        if (after[name] != value) changes.emplace_back(SettingChange{name, value, after[name]});
+    return changes;
+}
+
 Command random_painting(const Document& document, std::mt19937& random)
 {
     const auto uniform = [&](double low, double high) {
@@ -183,6 +195,12 @@ Command random_setting(const Document& document, std::mt19937& random)
     const std::string after = section == 3 ? sentence(value) : sentence("{\"value\":", value % 4, "}");
     if (before == after) return {"nothing", {}};
     return {"setting", {SettingChange{name, before, after}}};
+}
+
+SettingValues random_kept(std::mt19937& random)
+{
+    const std::string name = sentence("view ", random() % 3);
+    return {{name, sentence("{\"value\":", random() % 4, "}")}};
 }
 
 Command random_command(const Document& document, std::mt19937& random)

@@ -28,6 +28,9 @@ uint64_t hash_of(const Document& document);
 
 /// The groups that the document's settings lock: none, or a quarter of all.
 GroupSet locks_of(const Document& document);
+/// What going back from one document to the other changes; none where they are equal.
+std::vector<Change> all_changes_between(const Document& from, const Document& to);
+
 /// Paints or erases random parts of a random region: groups, offsets, or both in one command, by a brush that is held
 /// to unpainted voxels or not, and with the locks there are. May change nothing.
 Command random_painting(const Document& document, std::mt19937& random);
@@ -35,6 +38,8 @@ Command random_painting(const Document& document, std::mt19937& random);
 Command random_tracing(const Document& document, std::mt19937& random);
 /// Sets one of a few sections to one of a few texts; one of them, the locks.
 Command random_setting(const Document& document, std::mt19937& random);
+/// One of a few sections as one of a few texts, to be kept.
+SettingValues random_kept(std::mt19937& random);
 /// Painting, tracing or setting.
 Command random_command(const Document& document, std::mt19937& random);
 

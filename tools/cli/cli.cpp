@@ -8,6 +8,7 @@
 #include "engine/annotation/work/hold.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
+#include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/volume/unit.h"
 #include "shaders/counters.h"
@@ -263,9 +264,12 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
                           shows_occlusion(opened.session.light), work.begin("loading " + path));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     opening.belief = common.belief;
-    warn(opened.annotator->open(work_files(opened.session, opened.source->info(), common.settings), opening), common);
-    opened.annotator->work().expect_choice();
-    set_lasting_settings(opened.session, without_overridden(opened.annotator->work().settings(), common.settings));
+    const WorkFiles files = work_files(opened.session, opened.source->info(), common.settings);
+    warn(opened.annotator->open(with_kept_settings(files, opened.session, common.settings), opening), common);
+    const Work& left = opened.annotator->work();
+    left.expect_choice();
+    set_lasting_settings(opened.session, without_overridden(left.settings(), common.settings));
+    set_kept_settings(opened.session, without_overridden(left.kept_settings(), common.settings));
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
     return opened;

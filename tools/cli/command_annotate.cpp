@@ -113,6 +113,11 @@ public:
         for (const std::filesystem::path& path : saved.files)
             say(options.common, sentence(at, ": saved ", path.string()));
     }
+    void operator()(const RevertOp&)
+    {
+        const Command* const reverted = in_words([&] { return opened.annotator->revert(); });
+        tell(reverted ? reverted->label : "nothing differs from the last save");
+    }
     void operator()(const ExpectOp& op)
     {
         const std::array<int64_t, 256> counts = opened.annotator->document().mask.voxels_by_group();

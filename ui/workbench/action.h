@@ -101,6 +101,14 @@ struct DragNode {  ///< the selected node follows the probe until released, as o
 struct Screenshot {
     bool is_large = false;  ///< larger than the window, by the session's interaction.screenshot_scale
 };
+/// Goes on under another name, with the whole history; the files so far stay as they are.
+struct SaveAs {
+    std::filesystem::path path;  ///< of the session
+};
+/// Writes all that is shown into files of another name, and goes on as before. An empty path: beside the session.
+struct CopySession {
+    std::filesystem::path path;
+};
 struct Open {
     std::filesystem::path path;
 };
@@ -138,8 +146,8 @@ using Action = std::variant<
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp,
     // the work, the window
-    UndoOp, RedoOp, SaveOp, Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen,
-    Quit>;
+    UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys,
+    BindKeys, ShowHelp, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -137,6 +137,16 @@ std::string why(const Model& model, const SaveOp&)
     return why_not_edited(model);
 }
 
+std::string why(const Model& model, const RevertOp&)
+{
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+}
+
+std::string why(const Model& model, const SaveAs&)
+{
+    return why_not_edited(model);
+}
+
 std::string why(const Model& model, const ChooseBelief&)
 {
     return model.disputes.empty() ? "no saved file was changed by another program" : "";

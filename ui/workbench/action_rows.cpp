@@ -50,6 +50,9 @@ constexpr ActionRow ROWS[] = {
     {"undo", "Undo", WORK, "takes the last steps of the history back"},
     {"redo", "Redo", WORK, "does the steps again that were undone last"},
     {"save", "Save", WORK, "writes mask, offsets, trace and session for other programs"},
+    {"revert", "Revert", WORK, "goes back to what was saved last, as a step that undo takes back"},
+    {"save_as", "Save as", WORK, "goes on under another name, with the whole history"},
+    {"copy_session", "Copy the session", WORK, "writes all that is shown into files of another name"},
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
     {"open", "Open", WORK, "opens a volume, a session or a project folder"},
     {"choose_belief", "Files or journal", WORK, "says whether changed files or the journal are right"},
@@ -164,6 +167,14 @@ void fields(Fields& f, Paint& a)
 void fields(Fields& f, DragNode& a)
 {
     f.flag("on", a.on, {.is_required = true});
+}
+void fields(Fields& f, SaveAs& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, CopySession& a)
+{
+    f.path("path", a.path, {});
 }
 void fields(Fields& f, Screenshot& a)
 {

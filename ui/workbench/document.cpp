@@ -1,11 +1,13 @@
 #include "ui/workbench/document.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/live/trace_marks.h"
+#include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 
@@ -78,7 +80,7 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
 
 void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
 {
-    const WorkFiles files = work_files(session, volume(), overridden_);
+    const WorkFiles files = with_kept_settings(work_files(session, volume(), overridden_), session, overridden_);
     std::vector<Notice> notices;
     try {
         notices = annotator.open(files, {.hold = std::move(hold), .program = "shvr view"});
@@ -89,7 +91,27 @@ void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
     }
     for (Notice& notice : notices) messages.push_back(std::move(notice.text));
     set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
+    take_kept_settings();
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+}
+
+/// The view and the probe come back as they were left, even where nobody could save them.
+void Document::take_kept_settings()
+{
+    const SettingValues kept = without_overridden(annotator.work().kept_settings(), overridden_);
+    if (kept.empty()) return;
+    set_kept_settings(session, kept);
+    camera = camera_named(session, session.camera_name, volume());
+    ProbeSettings& probe = session.probe;
+    if (!probe.brush.threshold) probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
+    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
+}
+
+void Document::keep_settings()
+{
+    if (!only_looks())
+        annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
 }
 
 void Document::show_again(Renderer& renderer)
@@ -213,6 +235,7 @@ std::vector<Notice> Document::save()
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
     name_trace();
     annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+    keep_settings();
     std::optional<Notice> session_notice;
     std::vector<Notice> notices =
         annotator.work()
@@ -230,29 +253,74 @@ void Document::save_settings()
     note_saved();
 }
 
-std::filesystem::path Document::save_copy() const
+namespace {
+
+std::filesystem::path beside(const std::filesystem::path& session_file, const char* extension)
 {
-    const std::string stem = std::filesystem::path(session_path).replace_extension().string() + "-copy";
-    const auto named = [&](int number, const char* extension) {
-        return std::filesystem::path(number == 1 ? stem + extension : sentence(stem, number, extension));
-    };
-    const auto is_free = [&](int number) {
-        for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
-            if (is_there(named(number, extension))) return false;
-        return true;
-    };
-    int number = 1;
-    while (!is_free(number)) ++number;
-    Session copied = saved_session();
-    copied.mask_path = named(number, ".mask");
-    copied.trace_path = named(number, ".graphml");
-    copied.density_path = named(number, ".offset");
-    const std::filesystem::path copy = named(number, ".json");
-    copied.journal_path = journal_beside(copy);
+    return std::filesystem::path(session_file).replace_extension(extension);
+}
+
+/// The session under another name, with files of that name.
+Session renamed(Session session, const std::filesystem::path& path)
+{
+    session.mask_path = beside(path, ".mask");
+    session.trace_path = beside(path, ".graphml");
+    session.density_path = beside(path, ".offset");
+    session.journal_path = journal_beside(path);
+    return session;
+}
+
+/// Fails where it is no name of a session, or taken.
+std::filesystem::path new_session_path(const std::filesystem::path& path)
+{
+    if (path.extension() != ".json")
+        fail(path.string(), ": is no name for a session; expected one that ends in .json");
+    for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
+        if (is_there(beside(path, extension)))
+            fail(beside(path, extension).string(), ": exists already; expected a name that is free");
+    return std::filesystem::absolute(path).lexically_normal();
+}
+
+std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
+{
+    const std::string stem = beside(session_file, "").string() + "-copy";
+    for (int number = 1;; ++number) {
+        const std::filesystem::path path = number == 1 ? stem + ".json" : sentence(stem, number, ".json");
+        const auto is_taken = [&](const char* extension) { return is_there(beside(path, extension)); };
+        if (std::ranges::none_of(std::array{".json", ".mask", ".graphml", ".offset", ".journal"}, is_taken))
+            return path;
+    }
+}
+
+}  // namespace
+
+std::filesystem::path Document::save_copy(const std::filesystem::path& path) const
+{
+    const std::filesystem::path copy = path.empty() ? free_copy_path(session_path) : new_session_path(path);
+    const Session copied = renamed(saved_session(), copy);
     annotator.work().save_copy(work_files(copied, volume()), label_looks(session.groups, annotator.document().mask));
     const std::string text = to_text(copied, std::filesystem::absolute(copy).parent_path());
     write_file_atomically(copy, std::as_bytes(std::span(text)));
     return copy;
+}
+
+std::vector<Notice> Document::save_as(const std::filesystem::path& path)
+{
+    const std::filesystem::path next = new_session_path(path);
+    keep_settings();
+    const Session moved = renamed(saved_session(), next);
+    const std::string text = to_text(moved, next.parent_path());
+    std::vector<Notice> notices =
+        annotator.work()
+            .save_as(work_files(moved, volume()), label_looks(session.groups, annotator.document().mask), next,
+                     [&] { write_file_atomically(next, std::as_bytes(std::span(text))); })
+            .notices;
+    session = renamed(std::move(session), next);
+    session_path = next;
+    session_text_ = text;
+    overridden_.clear();  // what was set for this time only is in the new file
+    note_saved();
+    return notices;
 }
 
 /// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left

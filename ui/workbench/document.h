@@ -71,6 +71,8 @@ struct Document {
     /// Call after anything that may have changed the session, except the camera and the probe's position: clears the
     /// cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
+    /// Puts view, probe and the like into the journal, where there is one; no step of the history.
+    void keep_settings();
     /// Makes a step of the history of what was set since the last one. Not while a stroke is running.
     void record_settings();
     /// Takes the settings of the work, after undo and redo.
@@ -80,9 +82,12 @@ struct Document {
     std::vector<Notice> save();
     /// The session alone.
     void save_settings();
-    /// Writes mask, offsets, trace and session under new names beside those of this document, which stay as they are.
-    /// Returns the path of the new session.
-    std::filesystem::path save_copy() const;
+    /// Writes mask, offsets, trace and session into new files, and goes on with those there are. `path`: of the session;
+    /// empty: beside this one. Returns the path of the new session. Fails where a file of that name exists.
+    std::filesystem::path save_copy(const std::filesystem::path& path = {}) const;
+    /// Goes on under another name, with the whole history; the files so far stay as they are. Fails where a file of
+    /// that name exists; then nothing has changed.
+    std::vector<Notice> save_as(const std::filesystem::path& path);
     /// Writes the session if only the camera and the probe's position changed and it already has a file. So just
     /// looking at a volume creates no file. A file that cannot be written stays as it is.
     void keep_view();
@@ -91,6 +96,7 @@ private:
     Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
              const View::Options& view_options, const std::vector<std::string>& overridden);
     void load_work(Renderer& renderer, std::shared_ptr<Hold> hold);
+    void take_kept_settings();
     void name_trace();
     std::optional<Notice> write_session();
     bool edits_are_saved() const;

@@ -159,6 +159,7 @@ void Workbench::open(const std::filesystem::path& path, const std::vector<std::s
     prefer(std::move(preferences));
     ++openings_;
     settings_to_record_ = was_set_in_this_turn_ = false;
+    to_keep_since_s_.reset();
     session_before_hand_.reset();
     journal_failure_.clear();
     std::string device_said;
@@ -245,6 +246,7 @@ void Workbench::advance()
     if (!document_) return;
     attempt(touching_, [this] { follow_touch(); });
     attempt(recording_, [this] { follow_settings(); });
+    attempt(keeping_, [this] { follow_view(); });
     attempt(painting_, [this] { follow_stroke(); });
     attempt(previewing_, [this] { follow_preview(); });
     attempt(looking_, [this] { follow_look(); });

@@ -132,6 +132,9 @@ private:
     void perform(const UndoOp& action);
     void perform(const RedoOp& action);
     void perform(const SaveOp& action);
+    void perform(const RevertOp& action);
+    void perform(const SaveAs& action);
+    void perform(const CopySession& action);
     void perform(const Screenshot& action);
     void perform(const Open& action);
     void perform(const ChooseBelief& action);
@@ -163,6 +166,8 @@ private:
     std::string sentence_about(const Session& before) const;
     void note_edit();
     void record_settings();
+    void note_to_keep();
+    void follow_view();
 
     // Annotation
     void trace(const TraceOp& op);
@@ -192,11 +197,13 @@ private:
     bool are_preferences_kept_ = false;
     Screenshots screenshots_;
     std::function<void(const std::string&)> log_;
-    Attempt touching_, recording_, painting_, previewing_, looking_, photographing_;
+    Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, photographing_;
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     bool is_hand_down_ = false, is_still_ = true;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
+    std::optional<double> to_keep_since_s_;  ///< since when the journal does not hold the view as it is
+    double last_change_s_ = 0.0;             ///< of what is to be kept
     std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
     bool device_paints_ = false;                  ///< its paint button is down
     glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to

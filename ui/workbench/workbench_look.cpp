@@ -27,6 +27,7 @@ void Workbench::look_from(const Camera& camera)
 {
     document_->camera = camera;
     camera_moved_ = true;
+    note_to_keep();
 }
 
 void Workbench::perform(const Orbit& action)

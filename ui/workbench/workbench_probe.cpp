@@ -53,6 +53,7 @@ void Workbench::move_probe(const glm::dvec3& point, bool jumps)
         document_->touch.place(point);
     else
         document_->touch.wish(point);
+    note_to_keep();
     extend_stroke();
 }
 

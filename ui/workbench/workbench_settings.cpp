@@ -114,8 +114,25 @@ void Workbench::settings_changed(const Session& before)
     }
 }
 
+/// View, probe and the like go into the journal when the hand rests, and every few seconds while it does not.
+void Workbench::note_to_keep()
+{
+    last_change_s_ = options_.now_s();
+    if (!to_keep_since_s_) to_keep_since_s_ = last_change_s_;
+}
+
+void Workbench::follow_view()
+{
+    constexpr double REST_S = 0.2, LONGEST_S = 5.0;
+    const double now = options_.now_s();
+    if (!to_keep_since_s_ || (now - last_change_s_ < REST_S && now - *to_keep_since_s_ < LONGEST_S)) return;
+    to_keep_since_s_.reset();
+    document_->keep_settings();
+}
+
 void Workbench::note_edit()
 {
+    note_to_keep();
     document_->note_edit();
     settings_to_record_ = was_set_in_this_turn_ = true;
 }

@@ -53,6 +53,35 @@ void Workbench::perform(const SaveOp&)
     save();
 }
 
+void Workbench::perform(const RevertOp&)
+{
+    record_settings();
+    const Command* const command = document_->annotator.revert();
+    if (!command) fail(document_->annotator.stroke_is_running() ? "A stroke is being painted" : "Nothing has changed since the last save");
+    show_changes(*command);
+    say("Reverted to the last save; undo takes that back");
+}
+
+void Workbench::perform(const SaveAs& action)
+{
+    const std::string unpainted = finish_stroke();
+    record_settings();
+    std::string kept;
+    for (const Notice& notice : document_->save_as(action.path)) kept += "; " + notice.text;
+    say("Saved as " + document_->session_path.string() +
+        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted) + kept);
+    Preferences preferences = preferences_;
+    preferences.note_opened(document_->session_path);
+    prefer(std::move(preferences));
+}
+
+void Workbench::perform(const CopySession& action)
+{
+    record_settings();
+    say("Copied to " + document_->save_copy(action.path).string() + "; this window goes on with " +
+        document_->session_path.string());
+}
+
 void Workbench::perform(const Screenshot& action)
 {
     if (!action.is_large) {

@@ -1,7 +1,6 @@
 #include "engine/annotation/files/mask_image.h"
 
 #include <charconv>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -16,13 +15,6 @@ namespace {
 
 constexpr int64_t LARGEST_RECORD = int64_t{1} << 16;
 constexpr int VERSION = 1;
-
-std::string hex_of(uint64_t number)
-{
-    char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(number));
-    return digits;
-}
 
 std::optional<uint64_t> number_of_hex(const std::string& digits)
 {
@@ -54,23 +46,35 @@ void save_mask_image(const std::filesystem::path& mask, const std::string& conte
     nlohmann::ordered_json record = {{"shvr_mask", VERSION}, {"image", content_hash}};
     if (journal)
         record["journal"] = {
-            {"name", journal->name}, {"record", journal->record}, {"checksum", hex_of(journal->checksum)}};
+            {"name", journal->name}, {"record", journal->record}, {"checksum", journal->checksum_digits()}};
     // A name need not be UTF-8.
     const std::string text = record.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     write_file_atomically(mask_image_path(mask), std::as_bytes(std::span(text)));
 }
 
+std::filesystem::path journal_is_named_in(const std::filesystem::path& mask)
+{
+    return is_folder(mask) ? mask : mask_image_path(mask);
+}
+
 std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask)
 {
-    const std::filesystem::path path = mask_image_path(mask);
-    std::error_code ignored;
-    if (mask.empty() || !std::filesystem::exists(path, ignored)) return std::nullopt;
-    try {
-        const JsonDocument document = read_zarr_json(path, LARGEST_RECORD);
-        const JsonNode journal = document.root()["journal"];
+    const auto named_by = [](const JsonNode& journal) -> std::optional<MaskJournal> {
         if (!journal.exists()) return std::nullopt;
         return MaskJournal{journal["name"].text(), uint64_t(journal["record"].whole(1, int64_t{1} << 53)),
                            journal["checksum"].parsed(number_of_hex, "16 hexadecimal digits")};
+    };
+    std::error_code ignored;
+    if (mask.empty()) return std::nullopt;
+    try {
+        if (is_folder(mask)) {
+            const std::optional<ZarrNode> node = read_zarr_node(mask);
+            return node ? named_by(node->attributes()["shvr"]["journal"]) : std::nullopt;
+        }
+        const std::filesystem::path path = mask_image_path(mask);
+        if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+        const JsonDocument document = read_zarr_json(path, LARGEST_RECORD);
+        return named_by(document.root()["journal"]);
     } catch (const Error&) {
         return std::nullopt;
     }

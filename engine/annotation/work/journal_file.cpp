@@ -176,9 +176,9 @@ JournalScan scan_journal(const fs::path& path)
         if (read_at(file, path, scan.end + HEADER_BYTES, body) < body.size()) break;
         record.checksum = checksum_of(scan.checksum(), header, body);
         if (record.checksum != get(&header[CHECKSUM_AT], 8)) break;
-        if (kind > uint32_t(RecordKind::saved) && kind < FIRST_ADDITION)
+        if (kind > uint32_t(LAST_KIND) && kind < FIRST_ADDITION)
             fail(path.string(), ": record ", scan.records.size() + 1, " is of kind ", kind,
-                 ", which this program does not know; expected 1 to ", uint32_t(RecordKind::saved),
+                 ", which this program does not know; expected 1 to ", uint32_t(LAST_KIND),
                  ": a newer program wrote it");
         record.label.assign(reinterpret_cast<const char*>(body.data()), label_bytes);
         scan.records.push_back(std::move(record));

@@ -30,11 +30,21 @@ enum class RecordKind : uint32_t {
     undo,
     redo,
     saving,  ///< from here on each saved file may be the old or the new one
-    saved,   ///< SavedFiles
-    /// SavedFiles: a choice was made about files that others had changed; from here on they are known as they are.
-    /// Older programs skip it, and ask (or take the files) again.
+    /// SavedFiles. `about`: the `kept` record up to which the session's file held the kept settings; 0: not known.
+    saved,
+    /// JournalSpace: from here on positions are in another spacing; those before are converted when they are read.
+    /// Older programs would mix the two, so that they refuse it.
+    respaced,
+    /// SavedFiles, `about` as in `saved`: a choice was made about files that others had changed; from here on they are
+    /// known as they are. Older programs skip it, and ask (or take the files) again.
     known = 128,
+    /// SettingValues: kept settings that were changed since the record `about`, or (0) all of them. Older programs skip
+    /// them, and show what the session's file says.
+    kept = 129,
+    /// JournalSpace, once: of the positions in this journal. Older programs skip it, and take any spacing.
+    space = 130,
 };
+constexpr RecordKind LAST_KIND = RecordKind::respaced;  ///< of those that are no additions
 constexpr uint32_t FIRST_ADDITION = 128;
 
 struct JournalRecord {

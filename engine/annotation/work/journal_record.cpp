@@ -1,6 +1,7 @@
 #include "engine/annotation/work/journal_record.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -359,6 +360,67 @@ JournalSubject subject_of(std::span<const std::byte> bytes)
     return subject;
 }
 
+std::vector<std::byte> bytes_of(const JournalSpace& space)
+{
+    Writer out;
+    for (int axis = 0; axis < 3; ++axis) out.real(space.spacing[axis]);
+    out.text(space.unit);
+    return out.take();
+}
+
+JournalSpace space_of(std::span<const std::byte> bytes)
+{
+    Reader in(bytes);
+    JournalSpace space;
+    for (int axis = 0; axis < 3; ++axis) {
+        space.spacing[axis] = in.real();
+        if (!(space.spacing[axis] > 0.0 && space.spacing[axis] < INFINITY))
+            fail("a voxel's side is ", space.spacing[axis], "; expected a number above 0");
+    }
+    space.unit = in.text();
+    in.expect_end();
+    return space;
+}
+
+// ---- Saved files and settings ----
+
+namespace {
+
+void write(Writer& out, const SettingValues& values)
+{
+    out.whole(values.size());
+    for (const auto& [name, value] : values) {
+        out.text(name);
+        out.text(value);
+    }
+}
+
+SettingValues read_settings(Reader& in)
+{
+    SettingValues values;
+    for (size_t count = in.count(2); count > 0; --count) {
+        std::string name = in.text();
+        values[std::move(name)] = in.text();
+    }
+    in.expect_end();
+    return values;
+}
+
+}  // namespace
+
+std::vector<std::byte> bytes_of(const SettingValues& values)
+{
+    Writer out;
+    write(out, values);
+    return out.take();
+}
+
+SettingValues setting_values_of(std::span<const std::byte> bytes)
+{
+    Reader in(bytes);
+    return read_settings(in);
+}
+
 std::vector<std::byte> bytes_of(const SavedFiles& files)
 {
     Writer out;
@@ -366,13 +428,7 @@ std::vector<std::byte> bytes_of(const SavedFiles& files)
         out.byte(file ? 1 : 0);
         out.fixed(file.value_or(0), 8);
     }
-    if (files.settings) {
-        out.whole(files.settings->size());
-        for (const auto& [name, value] : *files.settings) {
-            out.text(name);
-            out.text(value);
-        }
-    }
+    if (files.settings) write(out, *files.settings);
     return out.take();
 }
 
@@ -385,13 +441,7 @@ SavedFiles saved_files_of(std::span<const std::byte> bytes)
         const uint64_t digest = in.fixed(8);
         if (is_there) *file = digest;
     }
-    if (in.at_end()) return files;
-    files.settings.emplace();
-    for (size_t count = in.count(2); count > 0; --count) {
-        std::string name = in.text();
-        (*files.settings)[std::move(name)] = in.text();
-    }
-    in.expect_end();
+    if (!in.at_end()) files.settings = read_settings(in);
     return files;
 }
 
@@ -426,13 +476,14 @@ std::vector<std::byte> bytes_of(const Document& document)
     return out.take();
 }
 
-Document document_of(std::span<const std::byte> bytes, Document empty)
+Document document_of(std::span<const std::byte> bytes, Document empty, const std::function<void(Change&)>& convert)
 {
     Reader in(bytes);
     constexpr uint64_t MAX_NUMBERS = LAST_NUMBER + 1;
     const uint64_t next_node = in.whole(MAX_NUMBERS), next_internode = in.whole(MAX_NUMBERS);
     while (!in.at_end()) {
-        const Change change = read_change(in);
+        Change change = read_change(in);
+        if (convert) convert(change);
         apply_if_it_fits(empty, std::span(&change, 1), Direction::forwards);
     }
     empty.trace.reserve_numbers(next_node, next_internode);

@@ -6,6 +6,7 @@
 // still not fit a document (Mask::why_it_does_not_fit and the same of other kinds).
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/annotation/work/history.h"
+#include "engine/annotation/work/respacing.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {
@@ -25,6 +27,10 @@ struct JournalSubject {
     bool operator==(const JournalSubject&) const = default;
 };
 
+/// The label of the first `saved` record of work that was begun empty beside the files of earlier work, so that they
+/// are no save of it.
+inline constexpr char AFRESH[] = "afresh";
+
 /// The files that hold the annotation between sessions, as they were when the journal last saw them; nothing: no file.
 struct SavedFiles {
     std::optional<uint64_t> mask, trace, density;  ///< file_digest
@@ -33,16 +39,21 @@ struct SavedFiles {
 };
 
 std::vector<std::byte> bytes_of(const JournalSubject& subject);
+std::vector<std::byte> bytes_of(const JournalSpace& space);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
+std::vector<std::byte> bytes_of(const SettingValues& values);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
 /// The whole document, as the changes that make it from nothing, and the next numbers of the trace.
 std::vector<std::byte> bytes_of(const Document& document);
 
 /// Fail with what is wrong, without the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
+JournalSpace space_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
+SettingValues setting_values_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);
-/// `empty`: an empty document of the same volume.
-Document document_of(std::span<const std::byte> bytes, Document empty);
+/// `empty`: an empty document of the same volume. `convert` is called for each of its changes before it is applied.
+Document document_of(std::span<const std::byte> bytes, Document empty,
+                     const std::function<void(Change&)>& convert = {});
 
 }  // namespace shvr

@@ -109,6 +109,16 @@ std::optional<uint64_t>& digest_of(SavedFiles& digests, Part part)
     return part == Part::mask ? digests.mask : part == Part::trace ? digests.trace : digests.density;
 }
 
+bool holds_any(const Document& document, Part part)
+{
+    switch (part) {
+        case Part::mask: return !document.mask.painted_bricks().empty();
+        case Part::trace: return !document.trace.nodes().empty();
+        case Part::offsets: return document.density.voxels() > 0;
+    }
+    return false;
+}
+
 bool is_there(const fs::path& path)
 {
     std::error_code ignored;

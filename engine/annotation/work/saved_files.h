@@ -25,6 +25,9 @@ struct WorkFiles {
     /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails
     /// where it cannot read them.
     std::function<SettingValues(const SettingValues&)> normalized{};
+    /// The same for kept settings (Work::keep_settings); empty where the caller keeps none.
+    SettingValues kept{};
+    std::function<SettingValues(const SettingValues&)> normalized_kept{};
 };
 
 enum class Part { mask, trace, offsets };
@@ -38,6 +41,9 @@ inline const std::optional<uint64_t>& digest_of(const SavedFiles& digests, Part 
 {
     return digest_of(const_cast<SavedFiles&>(digests), part);
 }
+
+/// Whether there is anything of a part to be saved.
+bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);
 

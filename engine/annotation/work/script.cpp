@@ -263,6 +263,7 @@ constexpr OpReader OPS[] = {
     {"undo", [](const JsonNode& line) -> ScriptOp { return UndoOp{read_count(line)}; }},
     {"redo", [](const JsonNode& line) -> ScriptOp { return RedoOp{read_count(line)}; }},
     {"save", [](const JsonNode& line) -> ScriptOp { return read_bare<SaveOp>(line); }},
+    {"revert", [](const JsonNode& line) -> ScriptOp { return read_bare<RevertOp>(line); }},
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 

@@ -22,6 +22,8 @@ struct RedoOp {
     int count = 1;
 };
 struct SaveOp {};
+/// To what was last saved.
+struct RevertOp {};
 struct ExpectOp {
     std::map<uint8_t, int64_t> voxels_in_group;
     std::optional<int64_t> voxels_with_offset{};
@@ -29,7 +31,7 @@ struct ExpectOp {
     std::optional<int64_t> internodes;
 };
 using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
-                              RadiusOp, UndoOp, RedoOp, SaveOp, ExpectOp>;
+                              RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>;
 
 struct ScriptLine {
     int number = 0;  ///< from 1

@@ -142,6 +142,10 @@ std::string line(const SaveOp&)
 {
     return Line("save");
 }
+std::string line(const RevertOp&)
+{
+    return Line("revert");
+}
 
 }  // namespace
 

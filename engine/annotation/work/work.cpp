@@ -4,7 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "engine/annotation/files/mask_export.h"
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/offset_import.h"
@@ -15,16 +14,6 @@ namespace shvr {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool holds_any(const Document& document, Part part)
-{
-    switch (part) {
-        case Part::mask: return !document.mask.painted_bricks().empty();
-        case Part::trace: return !document.trace.nodes().empty();
-        case Part::offsets: return document.density.voxels() > 0;
-    }
-    return false;
-}
 
 }  // namespace
 
@@ -53,7 +42,7 @@ void Work::begin_history()
 
 void Work::fetch_from_journal(History& history) const
 {
-    history.fetch_from([this](RecordNumber number) { return changes_of(content_of(number)); });
+    history.fetch_from([this](RecordNumber number) { return changes_at(number); });
 }
 
 std::vector<std::byte> Work::content_of(RecordNumber number) const
@@ -75,19 +64,59 @@ void Work::begin_journal()
 {
     refuse_if_only_looking();
     expect_choice();  // what is disputed would fit no longer
-    if (journal_) return keep_journal_in_place();
+    if (journal_)
+        keep_journal_in_place();
+    else
+        open_journal();
+    record_settings_from_outside();
+}
+
+void Work::open_journal()
+{
     if (files_.journal.empty()) return;
     if (is_to_set_aside_) set_journal_aside();
     const bool is_new = scan_.records.empty();
     journal_ = std::make_unique<Journal>(files_.journal, scan_);
     scanned_.reset();
-    if (!is_new) return record_settings_from_outside();
+    if (is_new)
+        begin_records();
+    else
+        continue_records();
+    write_kept();
+}
+
+void Work::begin_records()
+{
+    spaces_.clear();
+    space_to_note_.reset();
+    journaled_kept_.clear();
+    kept_from_outside_ = false;
     journal_->append(RecordKind::subject, {}, bytes_of(JournalSubject{size_, type_, files_.volume_hash}));
+    journal_->append(RecordKind::space, {}, bytes_of(JournalSpace{files_.volume.spacing, files_.volume.unit}));
     // Makes the journal readable without the files.
     std::vector<std::byte> state = bytes_of(document_);
     state_bytes_ = state.size();
     journal_->append(RecordKind::state, {}, std::move(state), 1);
-    journal_->append(RecordKind::saved, {}, bytes_of(known_));
+    if (!files_.kept.empty()) {
+        append_kept(files_.kept, 0);
+        known_kept_ = last_kept_;
+    }
+    record_files(RecordKind::saved, is_fresh_ ? AFRESH : "");
+}
+
+/// What opening has found goes in before anything is done.
+void Work::continue_records()
+{
+    if (space_to_note_) {
+        const SpaceSince& own = spaces_.back();
+        const RecordNumber number = journal_->append(*space_to_note_, {}, bytes_of(own.space));
+        SHVR_CHECK(number == own.since, number, " is not ", own.since);
+        space_to_note_.reset();
+    }
+    if (!std::exchange(kept_from_outside_, false)) return;
+    append_kept(files_.kept, 0);
+    known_kept_ = last_kept_;
+    record_files(RecordKind::known);
 }
 
 /// Where somebody removed the file, or put another one in its place, what is written to it would be gone with this
@@ -120,6 +149,12 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
     since_state_bytes_ += content.size();
     ++since_state_steps_;
     return journal_->append(kind, std::move(label), std::move(content));
+}
+
+/// What is known of the saved files.
+void Work::record_files(RecordKind kind, std::string label)
+{
+    if (journal_) journal_->append(kind, std::move(label), bytes_of(known_), known_kept_);
 }
 
 void Work::touch(std::span<const Change> changes)
@@ -192,6 +227,7 @@ void Work::keep_state()
         state_bytes_ = state.size();
         // Larger states are not journalled.
         if (state.size() <= MAX_RECORD_BYTES) journal_->append(RecordKind::state, {}, std::move(state), state_about_);
+        if (!kept_.empty()) append_kept(kept_, 0);
         return;
     }
     if (since_state_bytes_ < std::max(limits_.bytes_between_states, 2 * state_bytes_) &&
@@ -218,13 +254,13 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
     }
 }
 
-void Work::expect_names() const
+void Work::expect_names(const WorkFiles& files) const
 {
-    if (files_.mask.empty() && (files_.trace.empty() || holds_any(document_, Part::mask)))
+    if (files.mask.empty() && (files.trace.empty() || holds_any(document_, Part::mask)))
         fail("the session names no file for the mask; expected the key annotation.mask");
-    if (files_.trace.empty() && holds_any(document_, Part::trace))
+    if (files.trace.empty() && holds_any(document_, Part::trace))
         fail("the session names no file for the trace; expected the key annotation.trace");
-    if (files_.density.empty() && holds_any(document_, Part::offsets))
+    if (files.density.empty() && holds_any(document_, Part::offsets))
         fail("the session names no file for density offsets; expected the key annotation.density");
 }
 
@@ -253,25 +289,29 @@ bool Work::is_foreign(Part part) const
 
 void Work::note_file(Part part)
 {
-    const fs::path& file = file_of(files_, part);
     Seen& seen = seen_[size_t(part)];
-    seen = {};
-    seen.stamp = stamp_of(file);
-    seen.digest = file_digest(file);
+    seen = {.stamp = stamp_of(file_of(files_, part))};  // also where it cannot be read
+    seen = seen_at(file_of(files_, part));
 }
 
-void Work::write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks) const
+Work::Seen Work::seen_at(const fs::path& file)
+{
+    const std::optional<FileStamp> stamp = stamp_of(file);
+    return {.digest = file_digest(file), .stamp = stamp};
+}
+
+/// `journal`: the one that the mask names, beside `files`; null where there is none.
+void Work::write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks, const Journal* journal) const
 {
     switch (part) {
         case Part::mask: {
-            std::optional<MaskJournal> journal;
-            if (const auto [number, checksum] =
-                    journal_ ? journal_->last_durable() : std::pair<RecordNumber, uint64_t>();
+            std::optional<MaskJournal> named;
+            if (const auto [number, checksum] = journal ? journal->last_durable() : std::pair<RecordNumber, uint64_t>();
                 number > 0)
-                journal = {files_.journal.filename().string(), number, checksum};
+                named = {files.journal.filename().string(), number, checksum};
             save_mask_as(files.mask, document_.mask, files.volume,
-                         {.colors = std::move(looks), .painted_on = files.volume_hash});
-            save_mask_image(files.mask, files.volume_hash, journal);
+                         {.colors = std::move(looks), .painted_on = files.volume_hash, .journal = named});
+            save_mask_image(files.mask, files.volume_hash, named);
             return;
         }
         case Part::trace: save_trace(files.trace, document_.trace, space_of(files.volume)); return;
@@ -283,7 +323,7 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function
 {
     refuse_if_only_looking();
     expect_choice();
-    expect_names();
+    expect_names(files_);
     // Also where another process has begun a journal since this one looked: then this one is refused.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) {
@@ -302,7 +342,7 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function
                                      true});
         }
         try {
-            write(part, files_, looks);
+            write(part, files_, looks, journal_.get());
         } catch (const Error&) {
             note_file(part);  // whatever of it was done is this process's
             throw;
@@ -311,12 +351,14 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function
         digest_of(known_, part) = seen_[size_t(part)].digest;
         saved.files.push_back(file);
     }
-    if (save_session) save_session();
-    known_.settings = document_.settings.values();
-    if (journal_) {
-        journal_->append(RecordKind::saved, {}, bytes_of(known_));
-        journal_->flush();
+    if (save_session) {
+        save_session();
+        known_.settings = document_.settings.values();
+        known_kept_ = keeps_settings_ ? last_kept_ : 0;
     }
+    record_files(RecordKind::saved);
+    flush();
+    if (save_session && keeps_settings_) files_.kept = kept_;
     unsaved_ = 0;
     misses_files_ = false;
     touched_ = {};
@@ -326,7 +368,8 @@ Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function
 void Work::save_copy(const WorkFiles& to, std::vector<LabelImage::Color> looks) const
 {
     for (const Part part : PARTS)
-        if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document_, part))) write(part, to, looks);
+        if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document_, part)))
+            write(part, to, looks, nullptr);
 }
 
 bool Work::is_kept() const

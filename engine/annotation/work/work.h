@@ -94,6 +94,8 @@ public:
     /// The session's lasting settings: the journal's or, where the session's file was changed since it was saved, the
     /// file's. The first command then records that change as a step of its own.
     SettingValues settings() const;
+    /// The settings that come back as they were left, but are no work: as they were last kept.
+    const SettingValues& kept_settings() const { return kept_; }
     const History& history() const { return history_; }
 
     /// As History's, but written to the journal first. Fail, with nothing done, if the journal cannot be started, is
@@ -104,18 +106,34 @@ public:
     const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
+    /// Goes back to what was last saved, or taken from a saved file, as one command; null where nothing differs. That
+    /// is read from the journal, so it does not matter what has become of the files since. Fails if nothing was ever
+    /// saved, or the journal cannot be read; then nothing has changed.
+    const Command* revert();
+    /// Keeps those sections that differ: no command and no reason to save. Written where there is a journal, which the
+    /// first command begins; until then, and where it cannot be written, they are in memory and go with the next
+    /// record. Never fails. Sections that are set for this time only ("key=value") are not to be given.
+    void keep_settings(const SettingValues& values);
     /// Not a step of the history. What is selected must exist.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
     /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
     /// and offsets are written only if they have changed or are missing. A file that holds what the journal does not is
     /// kept under another name first. Fails if one cannot be written (a retry may succeed), or if there is something to
-    /// save and no file named for it. `save_session` writes the session's file, which then holds `settings()`.
+    /// save and no file named for it. `save_session` writes the session's file, which then holds `settings()` and
+    /// `kept_settings()`.
     struct Saved {
         std::vector<std::filesystem::path> files;
         std::vector<Notice> notices;
     };
     Saved save(std::vector<LabelImage::Color> looks = {}, const std::function<void()>& save_session = {});
+    /// Goes on under other names, none of which may exist yet, with the whole history; what was written before stays as
+    /// it is and is let go. In this order, each on disk before the next: a copy of the journal, the mark that a save
+    /// begins, the files, what they are, and `save_session`, which writes `session`: what is killed before that leaves
+    /// files that nothing names, and after it a whole project. Fails with nothing changed, and removes what it
+    /// has made. Where there is no history yet, the new journal begins with the first command.
+    Saved save_as(const WorkFiles& to, const std::vector<LabelImage::Color>& looks,
+                  const std::filesystem::path& session = {}, const std::function<void()>& save_session = {});
     /// Writes the document into other files, which must not exist yet, and changes nothing else.
     void save_copy(const WorkFiles& to, std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
@@ -165,8 +183,13 @@ private:
         Document document;
         History history;
     };
-    Replayed replayed(RecordNumber last, RecordNumber& at) const;
+    Replayed replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const;
     std::vector<std::byte> content_of(RecordNumber number) const;
+    /// The changes of a record, in the volume's spacing.
+    std::vector<Change> changes_at(RecordNumber number) const;
+    void bring_to_spacing(Change& change, RecordNumber number) const;
+    void read_spaces(RecordNumber& at);
+    void tell_spacing(std::vector<Notice>& notices);
     void fetch_from_journal(History& history) const;
     void begin_history();
     void look_at_files(std::vector<Notice>& notices);
@@ -178,22 +201,36 @@ private:
     bool lacks_record_of_mask() const;
     void compare_settings(std::vector<Notice>& notices);
     void record_settings_from_outside();
+    void compare_kept_settings(std::vector<Notice>& notices);
+    SettingValues kept_at(RecordNumber number) const;
 
     // Working
     void begin_journal();
+    void open_journal();
+    void begin_records();
+    void continue_records();
     void keep_journal_in_place();
     void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
+    void record_files(RecordKind kind, std::string label = {});
+    void append_kept(const SettingValues& values, RecordNumber about);
+    void write_kept();
     void touch(std::span<const Change> changes);
     const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
     void note_step();
     void keep_state();
 
     // Saving
-    void expect_names() const;
+    /// The record of the last save that each part is of; 0: it was never saved.
+    struct LastSave {
+        std::array<RecordNumber, 3> of{};
+    };
+    LastSave last_save(const JournalScan& scan) const;
+    std::vector<Change> settings_since_save(const Document& saved) const;
+    void expect_names(const WorkFiles& files) const;
     bool is_to_write(Part part) const;
     bool is_foreign(Part part) const;
-    void write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks) const;
+    void write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks, const Journal* journal) const;
     void note_file(Part part);
 
     Size3 size_;
@@ -205,16 +242,35 @@ private:
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
+    bool is_fresh_ = false;  ///< begun empty beside files of earlier work
+    std::string program_;    ///< as in Holder
     std::shared_ptr<Hold> hold_;
     std::vector<Dispute> disputes_;
     std::vector<Change> settings_from_outside_;  ///< differences of the session's file, to be recorded
-    SavedFiles known_;                           ///< the files as the journal last knew them
+    SettingValues kept_;                         ///< as it is now
+    SettingValues journaled_kept_;               ///< as the journal holds it
+    RecordNumber last_kept_ = 0;                 ///< its last record of them
+    RecordNumber known_kept_ = 0;                ///< its record as of which the session's file holds them; 0: not known
+    size_t kept_since_whole_ = 0;                ///< records since the last with all sections
+    bool keeps_settings_ = false;                ///< the caller keeps some
+    bool kept_from_outside_ = false;             ///< the session's file is to be noted as what is known
+    bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command says why
+    /// From record `since` on positions are in this space; those before the first are, too.
+    struct SpaceSince {
+        RecordNumber since = 0;
+        JournalSpace space;
+    };
+    std::vector<SpaceSince> spaces_;           ///< up to the volume's own
+    std::optional<RecordKind> space_to_note_;  ///< how its own goes into the journal
+    SavedFiles known_;                         ///< the files as the journal last knew them
     /// A file as this process last saw it.
     struct Seen {
         std::optional<uint64_t> digest{};
         std::optional<FileStamp> stamp{};
         bool is_foreign = false;  ///< the journal does not hold what it holds
     };
+    static Seen seen_at(const std::filesystem::path& file);
+    class SavingAs;
     std::array<Seen, 3> seen_;
     std::unique_ptr<Journal> journal_;
     size_t unsaved_ = 0;

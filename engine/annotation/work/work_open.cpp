@@ -63,7 +63,7 @@ std::optional<Notice> note_missing_journal(const WorkFiles& files)
 {
     if (files.journal.empty() || is_there(files.journal) || !names_journal(files)) return std::nullopt;
     return Notice{sentence(files.journal.string(), ": is missing; expected the history and what was not saved, since ",
-                           mask_image_path(files.mask).string(),
+                           journal_is_named_in(files.mask).string(),
                            " names it; the saved files are taken; put it back before anything is painted, or go on "
                            "without"),
                   true};
@@ -76,6 +76,9 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     SHVR_CHECK(!journal_ && history_.undoable() == 0, "work has begun");
     files_ = files;
     only_looks_ = opening.only_look;
+    program_ = opening.program;
+    keeps_settings_ = !files.kept.empty();
+    kept_ = files.kept;
     const bool is_given = opening.hold && plain(opening.hold->journal()) == plain(files.journal);
     if (!only_looks_) hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
     if (opening.start == Start::fresh) {
@@ -98,6 +101,11 @@ std::vector<Notice> Work::open_once()
     begin_history();
     disputes_.clear();
     settings_from_outside_.clear();
+    journaled_kept_.clear();
+    last_kept_ = known_kept_ = 0;
+    kept_from_outside_ = false;
+    spaces_.clear();
+    space_to_note_.reset();
     touched_ = {};
     unsaved_ = 0;
     misses_files_ = is_to_set_aside_ = false;
@@ -120,8 +128,10 @@ std::vector<Notice> Work::open_once()
     if (unsaved_ > 0)
         notices.push_back({sentence(name, ": holds ", unsaved_, unsaved_ == 1 ? " step that was" : " steps that were",
                                     " not saved; none of them is lost")});
+    tell_spacing(notices);
     look_at_files(notices);
     compare_settings(notices);
+    compare_kept_settings(notices);
     return notices;
 }
 
@@ -138,6 +148,7 @@ void Work::read_journal()
 void Work::open_fresh()
 {
     read_journal();
+    is_fresh_ = true;
     is_to_set_aside_ = scan_.file_bytes > 0;
     touched_.fill(true);
     document_.settings = Settings(files_.settings);
@@ -212,7 +223,8 @@ std::string Work::replay()
     for (;;) {
         RecordNumber at = 0;
         try {
-            Replayed whole = replayed(scan_.records.size(), at);
+            read_spaces(at);
+            Replayed whole = replayed(scan_, scan_.records.size(), at);
             document_ = std::move(whole.document);
             history_ = std::move(whole.history);
             return damage;
@@ -225,18 +237,18 @@ std::string Work::replay()
 }
 
 /// The work after record `last`. Where it fails, `at` is the record that cannot be taken.
-Work::Replayed Work::replayed(RecordNumber last, RecordNumber& at) const
+Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const
 {
     Replayed work{empty_document(), {}};
     fetch_from_journal(work.history);
     at = last;
-    while (at > 0 && scan_.records[at - 1].kind != RecordKind::state) --at;
+    while (at > 0 && scan.records[at - 1].kind != RecordKind::state) --at;
     const RecordNumber state = at;
     const auto replay_one = [&](RecordNumber known) {
-        const JournalRecord& record = scan_.records[at - 1];
+        const JournalRecord& record = scan.records[at - 1];
         const bool is_noted = at <= known;
         const auto apply = [&] {
-            if (!is_noted) apply_if_it_fits(work.document, changes_of(content_of(at)), Direction::forwards);
+            if (!is_noted) apply_if_it_fits(work.document, changes_at(at), Direction::forwards);
         };
         switch (record.kind) {
             case RecordKind::command:
@@ -264,9 +276,10 @@ Work::Replayed Work::replayed(RecordNumber last, RecordNumber& at) const
     };
     RecordNumber known = 0;
     if (state > 0) {
-        known = scan_.records[state - 1].about;
+        known = scan.records[state - 1].about;
         if (known >= state) fail("a state is of record ", known, " behind it");
-        work.document = document_of(content_of(state), empty_document());
+        work.document =
+            document_of(content_of(state), empty_document(), [&](Change& change) { bring_to_spacing(change, state); });
     }
     for (at = 1; at <= last; ++at) replay_one(known);
     return work;
@@ -280,6 +293,7 @@ void Work::look_at_files(std::vector<Notice>& notices)
     for (RecordNumber number = scan_.records.size(); number > 0; --number)
         if (tells_files(scan_.records[number - 1].kind)) {
             try {
+                known_kept_ = scan_.records[number - 1].about;
                 known_ = saved_files_of(content_of(number));
             } catch (const Error&) {  // then every file is compared with the work itself
             }
@@ -352,7 +366,7 @@ std::vector<Document> Work::documents_at_saves() const
         const RecordKind kind = scan_.records[number - 1].kind;
         if (kind != RecordKind::saving && kind != RecordKind::saved) continue;
         RecordNumber at = 0;
-        documents.push_back(replayed(number, at).document);
+        documents.push_back(replayed(scan_, number, at).document);
         if (kind == RecordKind::saved) break;
     }
     return documents;
@@ -372,7 +386,7 @@ std::string Work::what_happened_to(Part part) const
 {
     if (part == Part::mask && lacks_record_of_mask())
         return sentence("was saved by a later state of the journal, or with another one, as ",
-                        mask_image_path(files_.mask).string(), " says");
+                        journal_is_named_in(files_.mask).string(), " says");
     size_t saves = 0;
     for (RecordNumber number = scan_.records.size(); number > 0; --number) {
         if (scan_.records[number - 1].kind != RecordKind::saved) continue;
@@ -432,7 +446,7 @@ Work::Choice Work::choose(Belief belief)
         digest_of(known_, dispute.part) = seen.digest;
         seen.is_foreign = false;
     }
-    record(RecordKind::known, {}, bytes_of(known_));
+    record_files(RecordKind::known);
     return choice;
 }
 

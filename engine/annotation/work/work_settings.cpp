@@ -57,6 +57,10 @@ void Work::record_settings_from_outside()
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     history_.perform(document_, std::move(command), number);
     ++unsaved_;
+    // Or it would be taken for a change once more after the next one.
+    if (!known_.settings) known_.settings.emplace();
+    for (const auto& [name, value] : files_.settings) (*known_.settings)[name] = value;
+    record_files(RecordKind::known);
 }
 
 const Command* Work::change_settings(std::string label, const SettingValues& values)

@@ -148,9 +148,9 @@ TEST_CASE("what is no journal, or a newer program's, is refused in words")
     newer[8] = 2;
     CHECK(contains(refusal(newer), "is a journal of version 2; expected 1"));
     const fs::path unknown = folder.path / "c.journal";
-    Journal(unknown, {}).append(RecordKind(9), "", {});
-    CHECK(
-        contains(error_of([&] { scan_journal(unknown); }), "record 1 is of kind 9, which this program does not know"));
+    Journal(unknown, {}).append(RecordKind(10), "", {});
+    CHECK(contains(error_of([&] { scan_journal(unknown); }),
+                   "record 1 is of kind 10, which this program does not know; expected 1 to 9"));
     const fs::path addition = folder.path / "d.journal";
     Journal(addition, {}).append(RecordKind(FIRST_ADDITION), "", {});
     CHECK(scan_journal(addition).records.size() == 1);
@@ -219,6 +219,10 @@ TEST_CASE("records are read as they were written; cut or turned, they are refuse
     CHECK(read.trace.next_node() == document.trace.next_node());
     const JournalSubject subject{ANNOTATED_SIZE, VoxelType::uint16, "xxh3-128:0"};
     CHECK((subject_of(bytes_of(subject)) == subject));
+    const SettingValues kept{{"view", "{}"}, {"", ""}};
+    CHECK(setting_values_of(bytes_of(kept)) == kept);
+    const JournalSpace space{{0.1, 2.0, 1e-7}, "um"};
+    CHECK((space_of(bytes_of(space)) == space));
     for (const auto& settings :
          {std::optional<SettingValues>(), std::optional<SettingValues>(SettingValues{{"light", "{}"}})}) {
         const SavedFiles files{1, std::nullopt, 3, settings};

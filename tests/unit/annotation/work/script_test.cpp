@@ -97,6 +97,7 @@ TEST_CASE("undo and redo count, once where nothing is said")
     CHECK(op_of<RedoOp>(R"({"op":"redo"})").count == 1);
     CHECK(op_of<RedoOp>(R"({"op":"redo","count":1000000000})").count == 1000000000);
     op_of<SaveOp>(R"({"op":"save"})");
+    op_of<RevertOp>(R"({"op":"revert"})");
 }
 
 TEST_CASE("an expectation holds what is written and nothing else")

@@ -108,13 +108,40 @@ TEST_CASE("a session's file that was changed since it was saved is taken, as a s
         work.reset();
         CHECK(desk.open(RED)->settings() == DIM);
     }
-    SUBCASE("redo of what it came after is gone")
+    SUBCASE("taken once, it is no news, whatever is done afterwards")
     {
         work->undo();
         work->undo();
         work.reset();
         work = desk.open(blue);
+        CHECK(!contains(desk.said, "were changed"));
+        CHECK(work->settings() == RED);
+        CHECK(work->redo()->label == "dim");
+        work->change_settings("bright", with(DIM, "transfer_function", "\"bright\""));
+        work.reset();
+        work = desk.open(blue);
+        CHECK(!contains(desk.said, "were changed"));
+        CHECK(work->settings().at("transfer_function") == "\"bright\"");
+    }
+    SUBCASE("redo of what it came after is gone")
+    {
+        work->undo();
+        work->undo();
+        work.reset();
+        work = desk.open(with(RED, "transfer_function", "\"green\""));
         CHECK(work->redo() == nullptr);
+    }
+    SUBCASE("a save that writes no session leaves its file as it was known")
+    {
+        work->save();
+        work.reset();
+        work = desk.open(blue);
+        CHECK(!contains(desk.said, "were changed"));
+        CHECK(work->settings() == blue_and_dim);
+        work->change_settings("dim", DIM);
+        work->save();
+        work.reset();
+        CHECK(desk.open(blue)->settings() == DIM);
     }
 }
 

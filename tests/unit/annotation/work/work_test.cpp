@@ -52,12 +52,14 @@ TEST_CASE(
         const Desk desk;
         std::mt19937 random(seed);
         std::vector<uint64_t> states{hash_of(unannotated())};
-        size_t at = 0, wrong = 0, reopened = 0, saved = 0;
+        size_t at = 0, wrong = 0, reopened = 0, saved = 0, reverted = 0, kept_often = 0;
+        std::optional<uint64_t> saved_state;
+        SettingValues kept;
         auto work = desk.open();
         for (int step = 0; step < 1500; ++step) {
             // Memory for few commands, and frequent states, so that most undone commands are before the last state.
             work->set_limits({.history_bytes = 20000, .bytes_between_states = 3000, .steps_between_states = 40});
-            const auto choice = random() % 40;
+            const auto choice = random() % 46;
             if (choice < 11) {
                 at -= work->undo() != nullptr;
             } else if (choice < 17) {
@@ -65,11 +67,27 @@ TEST_CASE(
             } else if (choice == 17) {
                 work.reset();
                 work = desk.open();
+                if (states.size() == 1) kept.clear();  // nothing was done yet
                 ++reopened;
             } else if (choice == 18) {
-                work->save();
+                work->save({}, [] {});
                 CHECK(work->unsaved() == 0);
+                saved_state = hash_of(work->document());
                 ++saved;
+            } else if (choice == 19) {
+                if (!saved_state) {
+                    CHECK(error_of([&] { work->revert(); }).empty() == (states.size() == 1));
+                } else if (work->revert() != nullptr) {
+                    states.resize(++at);
+                    states.push_back(*saved_state);
+                    ++reverted;
+                }
+                wrong += saved_state && hash_of(work->document()) != *saved_state;
+            } else if (choice >= 40) {
+                const SettingValues next = random_kept(random);
+                for (const auto& [name, value] : next) kept[name] = value;
+                work->keep_settings(next);
+                ++kept_often;
             } else {
                 Command command = random_command(work->document(), random);
                 if (command.changes.empty()) continue;
@@ -84,11 +102,13 @@ TEST_CASE(
                 states.push_back(hash_of(work->document()));
             }
             wrong += hash_of(work->document()) != states[at] || work->history().undoable() != at ||
-                     work->history().redoable() != states.size() - 1 - at;
+                     work->history().redoable() != states.size() - 1 - at || work->kept_settings() != kept;
         }
         CHECK(wrong == 0);
         CHECK(reopened > 10);
         CHECK(saved > 10);
+        CHECK(reverted > 5);
+        CHECK(kept_often > 50);
         work.reset();
         work = desk.open();
         while (work->redo()) wrong += hash_of(work->document()) != states[++at];
@@ -404,7 +424,7 @@ TEST_CASE("a journal whose checksums hold and whose records do not fit is taken 
         const auto work = desk.open();
         CAPTURE(std::string(why));
         CAPTURE(desk.said);
-        CHECK(contains(desk.said, std::string("record 6 cannot be applied: ") + why));
+        CHECK(contains(desk.said, std::string("record 7 cannot be applied: ") + why));
         CHECK(contains(desk.said, "; what comes before is used"));
         CHECK(work->document().mask.voxels_by_group()[1] == 2);
         CHECK(work->history().undoable() == 2);
@@ -416,6 +436,7 @@ TEST_CASE("a journal whose checksums hold and whose records do not fit is taken 
     check(RecordKind::command, bytes_of(dab(1).changes), 0, "brick 0 does not hold group 0 at 1 ... 1");
     check(RecordKind::extension, std::vector(3, std::byte(99)), 0, "a change is of kind 99; expected 1 to 7");
     check(RecordKind::redo, {}, 0, "more commands are redone than were undone");
-    check(RecordKind::state, bytes_of(unannotated()), 7, "a state is of record 7 behind it");
+    check(RecordKind::state, bytes_of(unannotated()), 8, "a state is of record 8 behind it");
     check(RecordKind::state, std::vector(1, std::byte(1)), 5, "it ends too early");
+    check(RecordKind::respaced, std::vector(24, std::byte(0)), 0, "a voxel's side is 0; expected a number above 0");
 }
