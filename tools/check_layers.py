@@ -39,6 +39,7 @@ MAY_INCLUDE = {
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
+    "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/projects",
     "engine/session": "engine/base engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
@@ -49,12 +50,12 @@ MAY_INCLUDE = {
     "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
     "engine/session engine/picture shaders",
     "haptics": "engine/base",
-    "ui/workbench": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session engine/picture "
+    "ui/workbench": "engine/base engine/look engine/annotation/script engine/annotation/trace engine/annotation/work engine/session engine/picture "
     "engine/live haptics",
     "ui": "engine/base engine/gpu engine/live haptics ui/workbench",
     "tests": "*",
     "tools": "engine/base engine/volume engine/graph engine/components engine/formats/export engine/projects "
-    "engine/annotation/files engine/annotation/measures engine/annotation/trace engine/annotation/work engine/session "
+    "engine/annotation/files engine/annotation/measures engine/annotation/script engine/annotation/trace engine/annotation/work engine/session "
     "engine/picture engine/live shaders ui ui/workbench",
 }
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.

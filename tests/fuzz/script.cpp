@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/annotation/work/script.h"
+#include "engine/annotation/script/script.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -15,7 +15,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/annotation/work/script.h"
+#include "engine/annotation/script/script.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"

@@ -73,6 +73,17 @@ bool visible_cell(const ColorGroup& look, GroupSettings& settings)
     return changed;
 }
 
+/// A locked group neither gains nor loses voxels.
+bool locked_cell(bool is_locked, GroupSettings& settings)
+{
+    ImGui::TableNextColumn();
+    const bool changed = ImGui::Checkbox("##locked", &settings.locked);
+    hint(is_locked && !settings.locked
+             ? "Locked together with its parent group."
+             : "Locked: no brush takes voxels from this group or its subgroups, or adds any.");
+    return changed;
+}
+
 /// Chooses another parent, which must not be below this group.
 bool parent_menu(uint8_t group, const Model& model, GroupSettings& settings)
 {
@@ -160,12 +171,12 @@ void show_row(const Row& row, const Model& model, Actions& actions)
     const auto found = model.session.groups.find(row.group);
     GroupSettings settings = found == model.session.groups.end() ? GroupSettings{} : found->second;
     if (row.group == 0) {
-        ImGui::TableNextColumn();
-        ImGui::TableNextColumn();
+        for (int empty = 0; empty < 3; ++empty) ImGui::TableNextColumn();
         name_cell(row, model, look, settings, actions);
     } else {
         bool changed = color_cell(look, settings);
         changed |= visible_cell(look, settings);
+        changed |= locked_cell(is_locked(model.session.groups, row.group), settings);
         changed |= name_cell(row, model, look, settings, actions);
         changed |= opacity_cell(look, settings);
         count_cell(model.voxels_by_group[row.group]);
@@ -191,12 +202,14 @@ void other_group(const Model& model, Actions& actions)
 
 void groups_panel(const Model& model, Actions& actions)
 {
-    if (ImGui::BeginTable("groups", 5, ImGuiTableFlags_SizingFixedFit)) {
-        ImGui::TableSetupColumn("color");
-        ImGui::TableSetupColumn("visible");
-        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
-        ImGui::TableSetupColumn("opacity");
-        ImGui::TableSetupColumn("voxels");
+    if (ImGui::BeginTable("groups", 6, ImGuiTableFlags_SizingFixedFit)) {
+        ImGui::TableSetupColumn("##color");
+        ImGui::TableSetupColumn("See");
+        ImGui::TableSetupColumn("Lock");
+        ImGui::TableSetupColumn("Group", ImGuiTableColumnFlags_WidthStretch);
+        ImGui::TableSetupColumn("Opacity");
+        ImGui::TableSetupColumn("Voxels");
+        ImGui::TableHeadersRow();
         for (const Row& row : listed_groups(model)) show_row(row, model, actions);
         ImGui::EndTable();
     }

@@ -11,6 +11,7 @@
 
 #include "engine/base/error.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/keymap.h"
 #include "ui/workbench/preferences.h"
@@ -29,6 +30,14 @@ void item(const char* id, const Model& model, Actions& actions, bool is_checked 
     const std::string why = why_not(model, *shortcut);
     if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
         actions.push_back(shortcut->action(model, 1.0));
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
+}
+
+/// The menu item of an action that has no key.
+void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
+{
+    const std::string why = why_not(model, action);
+    if (ImGui::MenuItem(name, nullptr, false, why.empty())) actions.push_back(action);
     if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
 }
 
@@ -60,6 +69,10 @@ void file_menu(const Model& model, Actions& actions)
         ImGui::EndMenu();
     }
     item("save", model, actions);
+    if (ImGui::MenuItem("Save as...", nullptr, false, model.is_open && model.holder.empty())) ask_for_name(model);
+    if (ImGui::MenuItem("Copy the session", nullptr, false, model.is_open)) actions.push_back(CopySession{});
+    action_item("Revert to the last save", RevertOp{}, model, actions);
+    ImGui::Separator();
     item("screenshot", model, actions);
     item("large_screenshot", model, actions);
     ImGui::Separator();
@@ -239,6 +252,7 @@ void menu_bar(const Model& model, Actions& actions)
         ImGui::EndMainMenuBar();
     }
     open_dialog(actions);
+    save_as_dialog(actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window)

@@ -161,6 +161,17 @@ void preview(const Model& model, Actions& actions)
         ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
 }
 
+/// Which voxels the brush leaves alone.
+bool heeding(BrushSettings& brush)
+{
+    label("Heeds");
+    ImGui::BeginDisabled(!brush.paints_group || brush.group == 0);
+    const bool changed = ImGui::Checkbox("only unpainted voxels", &brush.only_unpainted);
+    ImGui::EndDisabled();
+    hint("Takes no voxel from another group. Single groups can be locked in the list of groups.");
+    return changed;
+}
+
 void painting(const Model& model, Actions& actions)
 {
     BrushSettings brush = model.brush();
@@ -171,6 +182,7 @@ void painting(const Model& model, Actions& actions)
     ImGui::BeginDisabled(!row_of(brush.brush).is_connected);
     changed |= connectivity(brush);
     ImGui::EndDisabled();
+    changed |= heeding(brush);
     changed |= density(model, brush);
     if (changed) set(actions, model, [&](Session& s) { s.probe.brush = brush; });
     preview(model, actions);

@@ -34,6 +34,9 @@ void menu_bar(const Model& model, Actions& actions);
 /// Shows the dialog that asks for a file, from the next frame on.
 void ask_for_file();
 void open_dialog(Actions& actions);
+/// The same for the dialog that asks for another name to go on under.
+void ask_for_name(const Model& model);
+void save_as_dialog(Actions& actions);
 /// What is there while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window);

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/annotation/work/script.h"
+#include "engine/annotation/script/script.h"
 #include "engine/session/session.h"
 
 namespace shvr::ui {

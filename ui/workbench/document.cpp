@@ -110,8 +110,7 @@ void Document::take_kept_settings()
 
 void Document::keep_settings()
 {
-    if (!only_looks())
-        annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
+    if (!only_looks()) annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
 }
 
 void Document::show_again(Renderer& renderer)
@@ -273,8 +272,7 @@ Session renamed(Session session, const std::filesystem::path& path)
 /// Fails where it is no name of a session, or taken.
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
-    if (path.extension() != ".json")
-        fail(path.string(), ": is no name for a session; expected one that ends in .json");
+    if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
     for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
         if (is_there(beside(path, extension)))
             fail(beside(path, extension).string(), ": exists already; expected a name that is free");

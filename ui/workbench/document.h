@@ -82,8 +82,8 @@ struct Document {
     std::vector<Notice> save();
     /// The session alone.
     void save_settings();
-    /// Writes mask, offsets, trace and session into new files, and goes on with those there are. `path`: of the session;
-    /// empty: beside this one. Returns the path of the new session. Fails where a file of that name exists.
+    /// Writes mask, offsets, trace and session into new files, and goes on with those there are. `path`: of the
+    /// session; empty: beside this one. Returns the path of the new session. Fails where a file of that name exists.
     std::filesystem::path save_copy(const std::filesystem::path& path = {}) const;
     /// Goes on under another name, with the whole history; the files so far stay as they are. Fails where a file of
     /// that name exists; then nothing has changed.

@@ -202,8 +202,8 @@ private:
     bool look_is_stale_ = true, camera_moved_ = false;
     bool is_hand_down_ = false, is_still_ = true;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;  ///< since when the journal does not hold the view as it is
-    double last_change_s_ = 0.0;             ///< of what is to be kept
+    std::optional<double> to_keep_since_s_;       ///< since when the journal does not hold the view as it is
+    double last_change_s_ = 0.0;                  ///< of what is to be kept
     std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
     bool device_paints_ = false;                  ///< its paint button is down
     glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to

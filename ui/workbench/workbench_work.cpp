@@ -57,7 +57,9 @@ void Workbench::perform(const RevertOp&)
 {
     record_settings();
     const Command* const command = document_->annotator.revert();
-    if (!command) fail(document_->annotator.stroke_is_running() ? "A stroke is being painted" : "Nothing has changed since the last save");
+    if (!command)
+        fail(document_->annotator.stroke_is_running() ? "A stroke is being painted"
+                                                      : "Nothing has changed since the last save");
     show_changes(*command);
     say("Reverted to the last save; undo takes that back");
 }

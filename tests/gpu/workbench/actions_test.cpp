@@ -32,7 +32,9 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *BY_HAND = R"({"op":"set","values":{"light":{"occlusion":{"strength":0.5,"automatic":false}}}})",
                      *NEAR_3 = R"({"op":"keep_camera","name":"node 3"})",
                      *CUT = R"({"op":"move_cut","axis":0,"share":0.25})", *BEGIN = R"({"op":"paint_here","on":true})",
-                     *DRAG = R"({"op":"drag_node","on":true})", *UNDO = R"({"op":"undo"})";
+                     *DRAG = R"({"op":"drag_node","on":true})", *UNDO = R"({"op":"undo"})", *SAVE = R"({"op":"save"})",
+                     *STROKE_5 =
+                         R"({"op":"paint","brush":"fill","group":5,"threshold":90,"radius":4,"path":[[9,18,16]]})";
 
 const Row ROWS[] = {
     {R"({"op":"orbit","right_degrees":30,"up_degrees":-10})", "camera"},
@@ -81,6 +83,13 @@ const Row ROWS[] = {
     {R"({"op":"undo"})", "redo, saved, undo, voxels", {STROKE}},
     {R"({"op":"redo"})", "redo, saved, undo, voxels", {STROKE, UNDO}},
     {R"({"op":"save"})", "file scan.json, file scan.mask, file scan.mask.json, saved", {STROKE}, false},
+    {R"({"op":"revert"})", "undo, voxels", {STROKE, SAVE, STROKE_5}, false},
+    {R"({"op":"save_as","path":"FOLDER/next.json"})",
+     "file next.graphml, file next.json, file next.mask, file next.mask.json, file preferences.json, open",
+     {STROKE, NODE}},
+    {R"({"op":"copy_session","path":"FOLDER/copy.json"})",
+     "file copy.graphml, file copy.json, file copy.mask, file copy.mask.json",
+     {STROKE, NODE}},
     {R"({"op":"screenshot"})", "file scan-view-1.png"},
     {R"({"op":"screenshot","large":true})", "file scan-view-1.png"},
     {R"({"op":"work_on_copy"})",
@@ -109,8 +118,16 @@ struct Bench {
     void perform(const std::string& line)
     {
         CAPTURE(line);
-        bench->perform(read_action(line, "row"));
+        bench->perform(action_of(line));
         settle(*bench);
+    }
+    /// FOLDER in the line stands for the scan's.
+    Action action_of(std::string line) const
+    {
+        const std::string name = "FOLDER";
+        if (const size_t at = line.find(name); at != std::string::npos)
+            line.replace(at, name.size(), folder.path.string());
+        return read_action(line, "row");
     }
 };
 
@@ -126,7 +143,7 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
         for (const char* line : row.before) on.perform(line);
         if (row.is_saved_before && !on.bench->model().is_painting) on.perform(R"({"op":"save"})");
         const State before = state_of(*on.bench, on.folder.path);
-        const Action action = read_action(row.line, "row");
+        const Action action = on.action_of(row.line);
         CHECK(on.bench->why_not(action) == "");
         on.perform(row.line);
         on.bench->wait_for_screenshots();

@@ -1,6 +1,6 @@
 // Operations as lines of a script: the reverse of script.cpp.
 
-#include "engine/annotation/work/script.h"
+#include "engine/annotation/script/script.h"
 #include "engine/base/text.h"
 
 namespace shvr {

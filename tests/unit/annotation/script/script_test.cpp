@@ -1,4 +1,4 @@
-#include "engine/annotation/work/script.h"
+#include "engine/annotation/script/script.h"
 
 #include <algorithm>
 
