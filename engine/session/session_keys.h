@@ -150,6 +150,15 @@ struct SessionKey {
 };
 std::vector<SessionKey> session_keys();
 
+// ---- Options that are no part of a session, stated by the same visitors (engine/tasks) ----
+
+/// Reads an object of such options; unknown keys are refused by name. Paths are relative to `folder`.
+void read_fields(const JsonDocument& document, const std::filesystem::path& folder, const Fields::Visit& visit);
+/// Their JSON, on one line. Fails where a path is not UTF-8.
+std::string fields_text(const std::filesystem::path& folder, const Fields::Visit& visit);
+/// What is documented of them, in their order.
+std::vector<SessionKey> keys_of(const Fields::Visit& visit);
+
 inline const NumberRange SHARE{0.0, 1.0};
 /// Far beyond any volume in any unit, and far below where squares overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};

@@ -223,6 +223,11 @@ CameraSpec read_camera(const JsonNode& node)
     return camera;
 }
 
+void read_fields(const JsonDocument& document, const std::filesystem::path& folder, const Fields::Visit& visit)
+{
+    Reader::read(document.root(), folder, visit);
+}
+
 JsonDocument session_document(std::string_view text, const std::string& origin)
 {
     return {text, origin, {.depth = 16, .expected = "a session"}};

@@ -177,6 +177,15 @@ std::string difference_of(const SettingValues& before, const SettingValues& afte
     return text;
 }
 
+std::string fields_text(const std::filesystem::path& folder, const Fields::Visit& visit)
+{
+    try {
+        return Writer::write(folder, visit).dump();
+    } catch (const OrderedJson::type_error&) {
+        fail("a name or path is not valid UTF-8, so JSON cannot hold it; expected UTF-8");
+    }
+}
+
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
     Session written = session;  // `fields` takes a mutable session
