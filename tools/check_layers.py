@@ -44,6 +44,10 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/projects",
     "engine/session": "engine/base engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/zarr engine/projects",
+    "engine/jobs": "engine/base",
+    "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
+    "engine/annotation/trace engine/annotation/measures engine/annotation/files engine/annotation/work engine/projects "
+    "engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
@@ -54,12 +58,11 @@ MAY_INCLUDE = {
     "engine/live haptics",
     "ui": "engine/base engine/gpu engine/live haptics ui/workbench",
     "tests": "*",
-    "tools": "engine/base engine/volume engine/graph engine/components engine/formats/export engine/projects "
-    "engine/annotation/files engine/annotation/measures engine/annotation/script engine/annotation/trace engine/annotation/work engine/session "
-    "engine/picture engine/live shaders ui ui/workbench",
+    "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
+    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders ui ui/workbench",
 }
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.
-WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "haptics"]
+WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MAX_SOURCES = 30  # in a folder
 
@@ -73,7 +76,7 @@ THIRD_PARTIES = {
     # files write it.
     "nlohmann/json": (
         r"nlohmann/(?!json_fwd\.hpp)",
-        r"engine/(base/json|graph/|session/|projects/|formats/zarr/|annotation/files/).*\.cpp|tools/|tests/",
+        r"engine/(base/json|graph/|session/|tasks/|projects/|formats/zarr/|annotation/files/).*\.cpp|tools/|tests/",
     ),
     "GDCM": (r"gdcm", r"engine/formats/dicom/|tests/unit/formats/dicom/"),
     "zlib": (r"zlib\.h", r"engine/formats/|tests/"),

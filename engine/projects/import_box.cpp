@@ -8,51 +8,49 @@
 #include <vector>
 
 #include "engine/volume/voxel_dispatch.h"
+#include "engine/volume/voxel_walk.h"
 
 namespace shvr {
 namespace {
 
 /// Bytes that one worker reads at a time from a source without a preferred block size.
 constexpr int64_t TASK_BYTES = int64_t{1} << 20;
-/// Bytes that are looked at at a time.
-constexpr int64_t LOOK_BYTES = int64_t{32} << 20;
 
 /// The smallest and the largest finite value of level 0, exactly: neither a sample nor coarser levels would do, since a
 /// reversed value beyond them could leave its type. 0 and 0 where no voxel is finite.
-ValueRange ends_of(const VolumeSource& source)
+ValueRange ends_of(const VolumeSource& source, const Progress& progress)
 {
     const VolumeInfo& info = source.info();
-    const int64_t row_bytes = info.size.x * int64_t(bytes_of(info.type));
-    const Size3 block = glm::max(source.block(), Size3(1));
-    const int64_t blocks = std::max<int64_t>(1, LOOK_BYTES / (row_bytes * block.y * block.z));
-    const Size3 step(info.size.x, std::min(info.size.y, blocks * block.y), block.z);
+    std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
+    const VoxelWalk walk = stored ? VoxelWalk::stored(source, *std::move(stored)) : VoxelWalk::all(source);
     return with_voxel_type(info.type, [&]<class T>(T) {
         T lower = std::numeric_limits<T>::max(), upper = std::numeric_limits<T>::lowest();
+        const auto look_at = [&](T voxel) {
+            if constexpr (std::is_floating_point_v<T>)
+                if (!std::isfinite(voxel)) return;
+            lower = std::min(lower, voxel);
+            upper = std::max(upper, voxel);
+        };
+        if (walk.rest() > 0) look_at(static_cast<T>(walk.fill()));
         std::vector<T> voxels;
-        for (int64_t z = 0; z < info.size.z; z += step.z)
-            for (int64_t y = 0; y < info.size.y; y += step.y) {
-                const VoxelBox box{{0, y, z}, glm::min(Size3(0, y, z) + step, info.size)};
-                const Size3 extent = box.size();
-                voxels.resize(size_t(extent.x * extent.y * extent.z));
-                source.read(box, std::as_writable_bytes(std::span(voxels)));
-                for (const T voxel : voxels) {
-                    if constexpr (std::is_floating_point_v<T>)
-                        if (!std::isfinite(voxel)) continue;
-                    lower = std::min(lower, voxel);
-                    upper = std::max(upper, voxel);
-                }
-            }
+        for (int64_t i = 0; i < walk.boxes(); ++i) {
+            tell(progress, double(i) / double(walk.boxes()));
+            const Size3 extent = walk.box(i).size();
+            voxels.resize(size_t(extent.x * extent.y * extent.z));
+            source.read(walk.box(i), std::as_writable_bytes(std::span(voxels)));
+            for (const T voxel : voxels) look_at(voxel);
+        }
         return lower > upper ? ValueRange{} : ValueRange{double(lower), double(upper)};
     });
 }
 
 }  // namespace
 
-ImportBox::ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses)
+ImportBox::ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses, const Progress& progress)
     : source_(source), box_(box), reverses_(reverses)
 {
     if (!reverses) return;
-    const ValueRange ends = ends_of(source);
+    const ValueRange ends = ends_of(source, progress);
     ends_ = ends.lower + ends.upper;  // of integers of 32 bits: exact
 }
 

@@ -5,14 +5,16 @@
 #include <span>
 
 #include "engine/base/work_pool.h"
+#include "engine/projects/import_prepare.h"
 #include "engine/volume/source.h"
 
 namespace shvr {
 
 class ImportBox {
 public:
-    /// `source` must outlive it. Where voxels are to be reversed, all of them are looked at first.
-    ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses);
+    /// `source` must outlive it. Where voxels are to be reversed, all of them are looked at first, which `progress` is
+    /// told of.
+    ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses, const Progress& progress = {});
 
     VoxelType type() const { return source_.info().type; }
     Size3 size() const { return box_.size(); }
@@ -32,5 +34,9 @@ private:
     bool reverses_;
     double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
+
+/// As import_prepare.h has it; `progress` is told how far the look at voxels that are to be reversed is.
+std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
+                                              const Progress& progress);
 
 }  // namespace shvr

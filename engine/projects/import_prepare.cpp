@@ -71,6 +71,12 @@ std::vector<double> gaussian_weights(double sigma_voxels)
 
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options)
 {
+    return make_preparation(source, options, {});
+}
+
+std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
+                                              const Progress& progress)
+{
     const VolumeInfo& info = source.info();
     const VoxelBox box = options.crop.value_or(VoxelBox{Size3(0), info.size});
     if (!glm::all(glm::greaterThanEqual(box.lower, Size3(0))) || !glm::all(glm::lessThanEqual(box.upper, info.size)) ||
@@ -84,7 +90,7 @@ std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const 
     SHVR_CHECK(glm::all(glm::greaterThanEqual(sigma, glm::dvec3(0.0))) &&
                glm::all(glm::lessThanEqual(sigma, glm::dvec3(LARGEST_SIGMA))));
     VolumeInfo after = info_after(source, options, box);
-    const ImportBox taken(source, box, options.reverse);
+    const ImportBox taken(source, box, options.reverse, progress);
     if (sigma != glm::dvec3(0.0) || options.downscale != 1) return make_filter(std::move(after), taken, options);
     return std::make_unique<DirectPreparation>(std::move(after), taken);
 }

@@ -8,9 +8,11 @@
 #include "engine/base/error.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/zarr/project.h"
+#include "engine/projects/import_box.h"
 #include "engine/projects/import_chunks.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/import_pyramid.h"
+#include "engine/projects/import_sparse.h"
 #include "engine/projects/import_tally.h"
 #include "engine/projects/part_folder.h"
 
@@ -51,10 +53,27 @@ void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 
 class Import {
 public:
+    /// Tells how far the look at voxels that are to be reversed is.
+    static Progress looking(const ImportOptions& options)
+    {
+        return [&options](double fraction) {
+            if (options.cancel != nullptr && *options.cancel)
+                throw ImportStopped("the import was stopped before anything was written");
+            if (options.progress) options.progress({.fraction = fraction, .seconds_left = -1.0});
+        };
+    }
+
+    /// Refuses what would be too large; reads nothing.
+    static void check_size(const VolumeSource& source, const fs::path& project, PreparationOptions preparation)
+    {
+        preparation.reverse = false;  // for which all voxels are looked at
+        static_cast<void>(checked(make_preparation(source, preparation)->info(), project));
+    }
+
     Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options)
         : origin_(fs::absolute(origin).lexically_normal()),
           options_(options),
-          preparation_(make_preparation(source, options.preparation)),
+          preparation_(make_preparation(source, options.preparation, looking(options))),
           info_(checked(preparation_->info(), project)),
           identity_(options.label_image ? std::string() : import_identity(source, origin_, options)),
           folder_(project, options.overwrites),
@@ -109,7 +128,13 @@ private:
     static const VolumeInfo& checked(const VolumeInfo& info, const fs::path& project)
     {
         static_cast<void>(voxel_count(info));
-        check_tables(project, info);
+        try {
+            check_tables(project, info);
+        } catch (const Error& error) {
+            fail(project.string(), ": would have ", info.size.x, " x ", info.size.y, " x ", info.size.z,
+                 " voxels, and a project keeps the range of every brick and the checksum of every chunk, also where ",
+                 "nothing is stored (", error.what(), "): use --crop or --downscale");
+        }
         return info;
     }
 
@@ -373,12 +398,73 @@ private:
     WorkPool pool_;  ///< last: its tasks use all members above
 };
 
+/// A label image, or nothing.
+ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
+{
+    Import job(labels, target, target, options);
+    try {
+        return job.run();
+    } catch (const ImportStopped&) {
+        job.abandon();
+        throw ImportStopped(target.string() + ": stopped; no file is left half written");
+    } catch (...) {
+        job.abandon();
+        throw;
+    }
+}
+
+/// The same, of what is stored.
+ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
+                           const ImportOptions& options)
+{
+    const Clock::time_point begin = Clock::now();
+    Clock::time_point told{};
+    const VolumeInfo info = make_preparation(labels, {})->info();
+    const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
+    PartFolder folder(target, true);
+    folder.clear();
+    StateWriter().write(folder.state());  // so that what a killed process leaves is known to be ours
+    const auto progress = [&](double fraction) {
+        if (options.cancel != nullptr && *options.cancel)
+            throw ImportStopped(target.string() + ": stopped; no file is left half written");
+        if (!options.progress || seconds_since(told) < 0.1 || !(fraction > 0.0)) return;
+        told = Clock::now();
+        const double seconds = seconds_since(begin);
+        options.progress({.fraction = fraction,
+                          .voxels_per_second = fraction * double(voxel_count(info)) / seconds,
+                          .seconds_left = (1.0 - fraction) / fraction * seconds});
+    };
+    try {
+        const SparseLevelFiles written =
+            write_sparse_levels(labels, info, chunks, folder.path(), version, options.compressor, progress);
+        ImportReport report{.info = info,
+                            .levels = written.levels,
+                            .bricks = written.chunks,
+                            .bricks_stored = written.stored,
+                            .bytes = written.bytes,
+                            .warnings = labels.info().warnings};
+        const std::string attributes =
+            import_attributes(version, folder.name(), info, written.levels, options.halving, &*options.label_image);
+        for (const auto& [name, text] : group_files(version, attributes)) {
+            write_part_file(folder.path() / name, std::as_bytes(std::span(text)));
+            report.bytes += int64_t(text.size());
+        }
+        folder.finish();
+        report.project = folder.path();
+        return report;
+    } catch (...) {
+        folder.abandon();
+        throw;
+    }
+}
+
 }  // namespace
 
 ImportReport import_volume(const VolumeSource& source, const fs::path& origin, const fs::path& project,
                            const ImportOptions& options)
 {
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
+    Import::check_size(source, project, options.preparation);
     Import job(source, origin, project, options);
     constexpr const char* KEPT = "; what is done is kept, and the same command goes on from there";
     try {
@@ -407,17 +493,9 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
                          .version = version,
                          .progress = options.progress,
                          .cancel = options.cancel};
-    Import job(labels, target, target, wanted);
-    ImportReport report;
-    try {
-        report = job.run();
-    } catch (const ImportStopped&) {
-        job.abandon();
-        throw ImportStopped(target.string() + ": stopped; no file is left half written");
-    } catch (...) {
-        job.abandon();
-        throw;
-    }
+    const std::optional<std::vector<Size3>> chunks = sparse_chunks(labels);
+    const ImportReport report =
+        chunks ? import_sparse(labels, target, *chunks, wanted) : import_all(labels, target, wanted);
     if (belongs) list_label_image(target, version);
     return report;
 }

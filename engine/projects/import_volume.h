@@ -31,7 +31,7 @@ public:
 
 struct ImportProgress {
     double fraction = 0.0;           ///< of the voxels, including those of earlier runs
-    double voxels_per_second = 0.0;  ///< of this run; counts level 0 of the project
+    double voxels_per_second = 0.0;  ///< of this run, of level 0; 0 before anything is written
     double seconds_left = 0.0;
 };
 

@@ -51,6 +51,9 @@ struct SessionKey {
 };
 std::vector<SessionKey> session_keys();
 
+/// The rows of other objects, in their order.
+std::vector<SessionKey> keys_of(const Fields::Visit& visit);
+
 inline const NumberRange SHARE{0.0, 1.0};
 /// Far beyond any volume in any unit, and far below where squares overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};

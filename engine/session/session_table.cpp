@@ -152,6 +152,16 @@ std::vector<SessionKey> session_keys()
     return rows;
 }
 
+std::vector<SessionKey> keys_of(const Fields::Visit& visit)
+{
+    std::vector<SessionKey> rows;
+    for (const bool takes_optional_forms : {true, false}) {
+        Table table(rows, "", takes_optional_forms);
+        visit(table);
+    }
+    return rows;
+}
+
 bool SessionKey::covers(std::string_view key) const
 {
     std::string_view pattern = name;

@@ -69,6 +69,10 @@ class Long(CliTest):
         self.assertIn("the import was stopped; what is done is kept", rest[-1])
         self.assertTrue((self.folder / "p.part").is_dir())
 
+    def test_import_says_how_far_it_is_before_it_reverses(self):
+        line = self.check_stopped("import", self.raw, self.folder / "p", *self.layout, "--reverse")
+        self.assertRegex(line, rf"^measuring {self.raw}: \d+ %.* left$")
+
     def test_quiet_work_says_nothing_but_can_be_stopped(self):
         process = subprocess.Popen([SHVR, "info", self.raw, *self.layout, "--exact", "--quiet"], env=ENVIRONMENT,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

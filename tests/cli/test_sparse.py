@@ -81,6 +81,37 @@ class Sparse(CliTest):
         self.assertEqual(self.check_json("label", volume, "--threshold", "1")["components"], 8)
         self.assertEqual(self.check_json("label", volume, "--threshold", "1", "--connectivity", "26")["components"], 1)
 
+    def test_labels_of_one_chunk_of_2_to_the_20_a_side_are_written(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
+        labels = self.folder / "labels.zarr"
+        result = self.check_json("label", volume, "--threshold", "100", "-o", labels)
+        self.assertEqual((result["components"], result["kept_voxels"], result["type"]), (1, CHUNK ** 3, "uint8"))
+        info = self.check_json("info", labels)
+        self.assertEqual((info["size"], info["min"], info["max"]), ([HUGE] * 3, 0, 1))
+        self.assertEqual(info["histogram"][255], CHUNK ** 3)
+        self.assertLess(sum(1 for path in labels.rglob("*") if path.is_file()), 64)
+        again = self.check_json("label", labels, "--threshold", "1")
+        self.assertEqual((again["components"], again["foreground_voxels"]), (1, CHUNK ** 3))
+
+    def test_forms_that_hold_every_voxel_are_refused_before_any_work(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
+        for name in ("labels.nrrd", "labels.tif", "labels.mask"):
+            self.check_refused("label", volume, "--threshold", "100", "-o", self.folder / name,
+                               says=["or .zarr, which holds what is stored alone", "leave out --output"])
+            self.assertFalse((self.folder / name).exists())
+
+    def test_a_project_of_2_to_the_20_a_side_is_refused_before_any_work_and_a_part_of_it_is_made(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
+        for more in ((), ("--reverse",), ("--labels",)):
+            self.check_refused("import", volume, self.folder / "project", *more,
+                               says=["a project keeps the range of every brick", "expected", "--crop"])
+            self.assertEqual([path.name for path in self.folder.iterdir()], ["sparse"])
+        part = self.check_json("import", volume, self.folder / "project", "--crop", "128,160,192,224,256,288",
+                               "--reverse")
+        self.assertEqual(part["size"], [96, 96, 96])
+        info = self.check_json("info", self.folder / "project")
+        self.assertEqual((info["min"], info["max"], info["histogram"][0]), (0, 200, CHUNK ** 3))
+
     def test_a_background_at_or_above_the_threshold_is_refused_in_a_sentence(self):
         volume = write_sparse(self.folder / "sparse", HUGE, [(1, 1, 1)], fill=7)
         self.check_refused("label", volume, "--threshold", "7",

@@ -1,7 +1,5 @@
 #include "tools/cli/cli.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <iostream>
 
@@ -185,24 +183,6 @@ void print(const Json& result)
     clear_progress();
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");
-}
-
-void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions)
-{
-    if (path.empty()) return;
-    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-    if (std::ranges::find(extensions, extension) == extensions.end()) {
-        std::string all;
-        for (const std::string& known : extensions) all += (all.empty() ? "" : ", ") + known;
-        throw UsageError(sentence(option, " is '", path, "'; expected a name that ends in one of: ", all));
-    }
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-        fail(path, ": cannot be written: there is no folder ", folder.string());
-    if (::access(folder.c_str(), W_OK | X_OK) != 0)
-        fail(path, ": cannot be written: the folder ", folder.string(), " may not be written to");
-    if (std::filesystem::is_directory(path, ignored)) fail(path, ": is a folder; expected the name of a file");
 }
 
 glm::uvec2 parse_size(const std::string& text)

@@ -14,6 +14,7 @@
 #include "engine/live/annotator.h"
 #include "engine/projects/import_volume.h"
 #include "engine/session/session.h"
+#include "engine/tasks/task_output.h"
 #include "tools/cli/long_work.h"
 
 namespace shvr::cli {
@@ -56,9 +57,6 @@ void warn_of_losses(const std::vector<std::string>& losses);
 void warn_of_holder(const std::filesystem::path& journal, const Common& common);
 /// One object on standard output.
 void print(const Json& result);
-/// Call before any work: a name with none of `extensions` is wrong usage; a folder that is missing or not writable is
-/// an error. An empty `path` means that no output was requested and passes.
-void check_output(const char* option, const std::string& path, const std::vector<std::string>& extensions);
 /// "0.8,0.8,1.2"
 glm::dvec3 parse_spacing(const std::string& text);
 /// "512x384"

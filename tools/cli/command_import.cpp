@@ -3,12 +3,9 @@
 #include <sys/resource.h>
 
 #include <charconv>
-#include <chrono>
-#include <cmath>
 #include <iomanip>
 
-#include "engine/annotation/work/hold.h"
-#include "engine/projects/import_volume.h"
+#include "engine/tasks/import_task.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -17,14 +14,8 @@ namespace {
 
 struct ImportCommandOptions {
     Common common;
-    std::string volume, project, crop, blur = "0", raw;
-    OpenOptions choice;
-    int downscale = 1;
-    bool reverse = false;
-    bool labels = false;
-    bool overwrite = false;
-    bool shards = false;
-    std::optional<OmeZarrVersion> version;
+    std::string volume, project, crop, blur = "0";
+    ImportTask task{.names = OptionNames::command_line};
 };
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
@@ -75,27 +66,6 @@ glm::dvec3 parse_blur(const std::string& text)
     return {sigmas[0], sigmas[1], sigmas[2]};
 }
 
-std::unique_ptr<VolumeSource> open_as_told(const ImportCommandOptions& options)
-{
-    const OpenOptions& choice = options.choice;
-    if (options.raw.empty()) return open_volume(options.volume, choice);
-    RawLayout layout = parse_raw_layout(options.raw);
-    if (choice.spacing && choice.unit.empty())
-        throw UsageError("--spacing is given without a unit; expected --unit, too, as in --unit um");
-    if (choice.spacing) layout.spacing = *choice.spacing;
-    if (!choice.unit.empty()) layout.unit = choice.unit;
-    return open_raw(options.volume, layout);
-}
-
-// ---- While it runs --------------------------------------------------------------------------------------------------
-
-void show(LongWork& work, const ImportProgress& progress, size_t voxel_bytes)
-{
-    const double rate = progress.voxels_per_second * double(voxel_bytes) / 1e6;
-    work.show(progress.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
-              progress.seconds_left);
-}
-
 double peak_rss_mib()
 {
     struct rusage usage {};
@@ -105,39 +75,23 @@ double peak_rss_mib()
 
 void run_import(const ImportCommandOptions& options)
 {
-    if (options.shards && options.version != OmeZarrVersion::v0_5)
-        throw UsageError("--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
-    ImportOptions wanted{.preparation = {.crop = parse_crop(options.crop),
-                                         .reverse = options.reverse,
-                                         .blur_sigma_voxels = parse_blur(options.blur),
-                                         .downscale = options.downscale},
-                         .halving = options.labels ? Halving::label : Halving::mean,
-                         .choice = sentence(options.choice.channel, "\n", options.choice.frame, "\n", options.raw),
-                         .overwrites = options.overwrite,
-                         .threads = options.common.threads,
-                         .version = options.version,
-                         .has_shards = options.shards};
-    // Replacing a project takes its annotation away, too: nobody may be writing it.
-    const std::filesystem::path session = std::filesystem::path(options.project) / "shvr" / "session.json";
-    const std::shared_ptr<Hold> hold = options.overwrite ? Hold::take(journal_beside(session), "shvr import") : nullptr;
-    const auto begin = std::chrono::steady_clock::now();
-    const std::unique_ptr<VolumeSource> source = open_as_told(options);
+    ImportTask task = options.task;
+    task.volume = options.volume;
+    task.project = options.project;
+    task.crop = parse_crop(options.crop);
+    task.blur_voxels = parse_blur(options.blur);
+    task.threads = options.common.threads;
     LongWork work(options.common.quiet);
-    static_cast<void>(work.begin("importing " + options.volume));
-    wanted.progress = [&](const ImportProgress& progress) { show(work, progress, bytes_of(source->info().type)); };
-    wanted.cancel = &LongWork::stop_requested();
-    const ImportReport report = import_volume(*source, options.volume, options.project, wanted);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const ImportResult result = run(task, work);
+    const ImportReport& report = result.report;
+    const VolumeInfo& info = report.info;
     clear_progress();
     warn(report.warnings, options.common);
-
-    const VolumeInfo& info = report.info;
-    const double megabytes = double(voxel_count(info)) * double(bytes_of(info.type)) / seconds / 1e6;
     if (!options.common.json) {
         return say(options.common,
                    sentence(report.project.string(), ": ", info.size.x, " x ", info.size.y, " x ", info.size.z,
                             " voxels in ", report.levels, " levels, ", std::fixed, std::setprecision(1),
-                            double(report.bytes) / 1048576.0, " MiB, ", seconds, " s"));
+                            double(report.bytes) / 1048576.0, " MiB, ", result.seconds, " s"));
     }
     print({{"project", report.project.string()},
            {"size", {info.size.x, info.size.y, info.size.z}},
@@ -150,8 +104,8 @@ void run_import(const ImportCommandOptions& options)
            {"bricks", report.bricks},
            {"bricks_stored", report.bricks_stored},
            {"bytes", report.bytes},
-           {"seconds", seconds},
-           {"megabytes_per_second", megabytes},
+           {"seconds", result.seconds},
+           {"megabytes_per_second", result.megabytes_per_second},
            {"peak_rss_mib", peak_rss_mib()},
            {"resumed", report.was_resumed},
            {"warnings", report.warnings}});
@@ -168,7 +122,7 @@ void add_import(CLI::App& program)
     command
         ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-    command->add_flag("--reverse", options->reverse,
+    command->add_flag("--reverse", options->task.reverse,
                       "Swap dark and bright: the whole volume's smallest plus largest value, minus the voxel");
     command
         ->add_option(
@@ -176,24 +130,24 @@ void add_import(CLI::App& program)
             "Gaussian blur to 4 sigma: sigma in voxels, of all axes or of each; the outermost voxels are repeated "
             "beyond the border")
         ->type_name("S|SX,SY,SZ");
-    command->add_option("--downscale", options->downscale, "Make it N times smaller along every axis")
+    command->add_option("--downscale", options->task.downscale, "Make it N times smaller along every axis")
         ->type_name("N")
         ->check(CLI::Range(1, LARGEST_DOWNSCALE));
-    command->add_flag("--labels", options->labels,
+    command->add_flag("--labels", options->task.labels,
                       "The voxels are labels: coarser levels hold the most frequent one instead of a mean");
-    command->add_option("--raw", options->raw, "How a file of bare voxels is laid out")
+    command->add_option("--raw", options->task.raw, "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
     add_spacing_options(
-        *command, [options](const glm::dvec3& spacing) { options->choice.spacing = spacing; },
-        [options](const std::string& unit) { options->choice.unit = unit; });
-    command->add_option("--channel", options->choice.channel, "What to take from a file with channels")
+        *command, [options](const glm::dvec3& spacing) { options->task.choice.spacing = spacing; },
+        [options](const std::string& unit) { options->task.choice.unit = unit; });
+    command->add_option("--channel", options->task.choice.channel, "What to take from a file with channels")
         ->type_name("NAME|N");
-    command->add_option("--frame", options->choice.frame, "Which time point to take from a file with several")
+    command->add_option("--frame", options->task.choice.frame, "Which time point to take from a file with several")
         ->type_name("N");
-    add_version_option(*command, options->version, "0.4 unless given");
-    command->add_flag("--shards", options->shards,
+    add_version_option(*command, options->task.version, "0.4 unless given");
+    command->add_flag("--shards", options->task.shards,
                       "With --ome-zarr 0.5: up to 512 chunks in a file, for storage that dislikes many small files");
-    command->add_flag("--overwrite", options->overwrite,
+    command->add_flag("--overwrite", options->task.overwrite,
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));

@@ -3,6 +3,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "engine/tasks/describe_task.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -15,43 +16,6 @@ struct InfoCommandOptions {
     bool exact = false;
 };
 
-struct Described {
-    VolumeInfo info;
-    VolumeStatistics statistics;
-    std::vector<std::string> warnings;
-    std::string mask;  ///< empty: none
-    int levels = 1;
-};
-
-Described describe(const InfoCommandOptions& options, LongWork& work)
-{
-    const std::filesystem::path path = options.input;
-    std::error_code ignored;
-    const bool is_there = std::filesystem::exists(path, ignored) || leads_into_archive(path);
-    const bool is_bare = is_there && session_file_of(path).empty();
-    OpenedSession opened;
-    const OpeningOptions opening{
-        .measure = {.exact = options.exact, .progress = work.begin("measuring " + options.input)}};
-    // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
-    if (is_bare) {
-        const std::vector<std::string>& settings = options.common.settings;
-        opened.source = settings.empty() ? open_volume(path) : open_unmeasured_session(path, settings).source;
-        opened.statistics = measure(*opened.source, opening.measure);
-        opened.warnings = warnings_of(opened.statistics);
-        if (const std::string archived = archived_project(path); !archived.empty()) opened.losses.push_back(archived);
-    } else {
-        opened = open_session(path, options.common.settings, opening);
-    }
-    warn_of_losses(opened.losses);
-    Described described{.info = opened.source->info(),
-                        .statistics = opened.statistics,
-                        .warnings = std::move(opened.warnings),
-                        .mask = opened.session.mask_path.string(),
-                        .levels = opened.source->levels()};
-    for (const std::string& warning : described.info.warnings) described.warnings.push_back(warning);
-    return described;
-}
-
 /// How the statistics came about.
 std::string measured_text(const VolumeStatistics& statistics)
 {
@@ -59,7 +23,7 @@ std::string measured_text(const VolumeStatistics& statistics)
     return statistics.measured_level > 0 ? sentence("level ", statistics.measured_level) : "exact";
 }
 
-Json to_json(const Described& described, const std::string& input)
+Json to_json(const DescribeResult& described, const std::string& input)
 {
     const VolumeInfo& info = described.info;
     const VolumeStatistics& statistics = described.statistics;
@@ -93,7 +57,7 @@ Json to_json(const Described& described, const std::string& input)
             {"levels", described.levels},
             {"histogram", statistics.histogram},
             {"window", {{"lower", window.lower}, {"upper", window.upper()}, {"codes_per_unit", window.codes_per_unit}}},
-            {"mask", described.mask.empty() ? Json(nullptr) : Json(described.mask)},
+            {"mask", described.mask.empty() ? Json(nullptr) : Json(described.mask.string())},
             {"warnings", described.warnings}};
 }
 
@@ -121,7 +85,7 @@ void print_line(const char* what, const std::string& value)
     std::cout << std::left << std::setw(14) << what << value << '\n';
 }
 
-void print_text(const Described& described)
+void print_text(const DescribeResult& described)
 {
     const VolumeInfo& info = described.info;
     const VolumeStatistics& statistics = described.statistics;
@@ -142,7 +106,7 @@ void print_text(const Described& described)
     print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean,
                                        how == "exact" ? "" : " (" + how + ")"));
     if (described.levels > 1) print_line("levels", sentence(described.levels, ", each half as fine as the one before"));
-    if (!described.mask.empty()) print_line("mask", described.mask);
+    if (!described.mask.empty()) print_line("mask", described.mask.string());
     std::cout.flush();
     if (!std::cout) fail("standard output: cannot be written");
 }
@@ -150,7 +114,8 @@ void print_text(const Described& described)
 void run_info(const InfoCommandOptions& options)
 {
     LongWork work(options.common.quiet);
-    const Described described = describe(options, work);
+    const DescribeResult described = run(DescribeTask{options.input, options.exact, options.common.settings}, work);
+    warn_of_losses(described.losses);
     clear_progress();
     warn(described.warnings, options.common);
     if (options.common.json)

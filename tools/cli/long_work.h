@@ -5,7 +5,7 @@
 #include <atomic>
 #include <string>
 
-#include "engine/base/progress.h"
+#include "engine/jobs/progress_reporter.h"
 #include "tools/cli/stop.h"
 
 namespace shvr::cli {
@@ -14,22 +14,18 @@ namespace shvr::cli {
 /// command to stop (stop.h), which then ends as after an error: files are whole or not there. A second one ends the
 /// program at once. What takes longer than a second shows a line on standard error, unless `quiet`; so does work that
 /// never says how far it is.
-class LongWork {
+class LongWork final : public ProgressReporter {
 public:
     explicit LongWork(bool quiet);
-    ~LongWork();
-    LongWork(const LongWork&) = delete;
+    ~LongWork() override;
 
-    /// A stretch of work begins, as in "measuring". Calling the result shows how far it is, and throws `Stopped` once
-    /// the command was asked to stop. It must not outlive this.
-    Progress begin(const std::string& what);
-    /// The same with a detail, as in "120 MB/s", and a better estimate of the time left.
-    void show(double fraction, const std::string& detail, double seconds_left);
+    Progress begin(const std::string& what) override;
+    /// Does not throw.
+    void show(double fraction, const std::string& detail, double seconds_left) override;
     /// Throws `Stopped` if the command was asked to stop.
     void stop_if_asked() const;
     bool is_asked_to_stop() const { return stop_.is_made(); }
-    /// For engine functions that look for themselves.
-    static const std::atomic<bool>& stop_requested() { return StopRequest::flag(); }
+    const std::atomic<bool>& stop_requested() const override { return StopRequest::flag(); }
 
 private:
     StopRequest stop_;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/annotation/work/holder_text.h"
 #include "engine/base/text.h"
 
 namespace shvr {
@@ -22,6 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_LOCK_BYTES = 4096;
+/// Of a part, since messages quote it.
+constexpr size_t MAX_PART_BYTES = 120;
 
 struct flock whole_file(short type)
 {
@@ -84,8 +87,8 @@ std::string time_now()
 }
 
 /// The lines of JOURNAL.lock and where they go.
-template <class Visit>
-void each_line(Holder& holder, const Visit& visit)
+template <class SomeHolder, class Visit>
+void each_line(SomeHolder& holder, const Visit& visit)
 {
     visit("program", holder.program);
     visit("process", holder.process);
@@ -97,9 +100,8 @@ void each_line(Holder& holder, const Visit& visit)
 /// What cannot be written is not told: the lock counts, not what it says.
 void describe(const FileDescriptor& file, std::string_view program)
 {
-    Holder self{std::string(program), sentence(::getpid()), host_name(), user_name(), time_now()};
-    std::string text;
-    each_line(self, [&](const char* name, const std::string& value) { text += sentence(name, ": ", value, "\n"); });
+    const std::string text =
+        to_text({std::string(program), sentence(::getpid()), host_name(), user_name(), time_now()});
     if (::ftruncate(file.number(), 0) != 0) return;
     static_cast<void>(::pwrite(file.number(), text.data(), text.size(), 0) > 0);
 }
@@ -109,15 +111,7 @@ Holder described(const FileDescriptor& file)
     std::string text(MAX_LOCK_BYTES, '\0');
     const ssize_t count = ::pread(file.number(), text.data(), text.size(), 0);
     text.resize(count > 0 ? size_t(count) : 0);
-    Holder holder;
-    std::string_view rest = text;
-    while (!rest.empty()) {
-        const std::string_view line = take_line(rest);
-        each_line(holder, [&](const std::string& name, std::string& value) {
-            if (line.starts_with(name + ": ")) value = printable(line.substr(name.size() + 2));
-        });
-    }
-    return holder;
+    return parse_holder(text);
 }
 
 /// Whether what the file says is from a process of this host that is no more: the holder has not written it yet.
@@ -157,6 +151,25 @@ fs::path lock_path(const fs::path& journal)
 {
     fs::path path = journal;
     return path += ".lock";
+}
+
+std::string to_text(const Holder& holder)
+{
+    std::string text;
+    each_line(holder, [&](const char* name, const std::string& value) { text += sentence(name, ": ", value, "\n"); });
+    return text;
+}
+
+Holder parse_holder(std::string_view text)
+{
+    Holder holder;
+    while (!text.empty()) {
+        const std::string_view line = take_line(text);
+        each_line(holder, [&](const std::string& name, std::string& value) {
+            if (line.starts_with(name + ": ")) value = printable(line.substr(name.size() + 2, MAX_PART_BYTES));
+        });
+    }
+    return holder;
 }
 
 std::string in_words(const Holder& holder)

@@ -1,0 +1,34 @@
+#pragma once
+// The levels of a label image, made only where something is stored: of 2^20 voxels a side, with one chunk, 16 chunks
+// are written. The files are those that an import which goes through everything writes, byte for byte.
+// For import_volume.cpp. One thread.
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "engine/formats/zarr/ome_zarr.h"
+#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// The chunks of IMPORT_CHUNK^3 voxels that stored blocks reach, in an order in which those below one chunk of a
+/// coarser level are neighbours. Nothing where the source does not know what it stores, where the rest is not 0, or
+/// where going through everything takes less: where they are more than an eighth of all.
+std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source);
+
+struct SparseLevelFiles {
+    int levels = 1;
+    int64_t chunks = 0;  ///< of all levels
+    int64_t stored = 0;  ///< that have a file
+    int64_t bytes = 0;   ///< of these files
+};
+/// Writes chunks and metadata of all levels into a folder; a voxel of a coarser level is the most frequent label of
+/// those below it. `info`: as the files state it; `progress` is told how many of `chunks` are done.
+SparseLevelFiles write_sparse_levels(const VolumeSource& source, const VolumeInfo& info,
+                                     const std::vector<Size3>& chunks, const std::filesystem::path& folder,
+                                     OmeZarrVersion version, const ZarrCompressor& compressor,
+                                     const Progress& progress);
+
+}  // namespace shvr

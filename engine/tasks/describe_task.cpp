@@ -1,0 +1,45 @@
+#include "engine/tasks/describe_task.h"
+
+namespace shvr {
+
+void fields(Fields& f, DescribeTask& task)
+{
+    f.path("input", task.input,
+           {.meaning = "volume, session or project folder", .standard = "required", .is_required = true});
+    f.flag("exact", task.exact,
+           {"go through all voxels, also of volumes so large that a sample or a coarser level would do"});
+    texts_field(
+        f, "set", task.settings,
+        {.meaning = "keys of a session, each as in `\"volume.unit=um\"`", .allowed = "texts", .standard = "none"});
+}
+
+DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
+{
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(task.input, ignored) || leads_into_archive(task.input);
+    const bool is_bare = is_there && session_file_of(task.input).empty();
+    OpenedSession opened;
+    const OpeningOptions opening{
+        .measure = {.exact = task.exact, .progress = reporter.begin("measuring " + task.input.string())}};
+    // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
+    if (is_bare) {
+        opened.source =
+            task.settings.empty() ? open_volume(task.input) : open_unmeasured_session(task.input, task.settings).source;
+        opened.statistics = measure(*opened.source, opening.measure);
+        opened.warnings = warnings_of(opened.statistics);
+        if (std::string archived = archived_project(task.input); !archived.empty())
+            opened.losses.push_back(std::move(archived));
+    } else {
+        opened = open_session(task.input, task.settings, opening);
+    }
+    DescribeResult result{.info = opened.source->info(),
+                          .statistics = opened.statistics,
+                          .levels = opened.source->levels(),
+                          .mask = opened.session.mask_path,
+                          .warnings = std::move(opened.warnings),
+                          .losses = std::move(opened.losses)};
+    for (const std::string& warning : result.info.warnings) result.warnings.push_back(warning);
+    return result;
+}
+
+}  // namespace shvr

@@ -1,0 +1,36 @@
+#pragma once
+// How well an annotation agrees with the truth: what `shvr evaluate` does. Any thread.
+
+#include "engine/annotation/measures/trace_score.h"
+#include "engine/annotation/trace/trace_space.h"
+#include "engine/tasks/task_options.h"
+
+namespace shvr {
+
+struct EvaluateTask {
+    static constexpr const char* TITLE = "Compare with the truth";
+
+    std::filesystem::path truth_mask, mask, truth_trace, trace;
+    std::filesystem::path volume;           ///< that all are of: size, spacing and unit where no file states them
+    std::vector<std::string> truth_groups;  ///< "FROM=TO"
+    std::optional<double> slack;            ///< in the unit of the volume; nothing: the longest side of a voxel
+    std::vector<std::string> settings;      ///< "key=value" of a session, for `volume`
+    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+};
+void fields(Fields& f, EvaluateTask& task);
+
+/// What was not requested is nothing.
+struct EvaluateResult {
+    std::optional<TraceSpace> space;
+    std::optional<Dice> dice;
+    std::optional<BallScores> nodes, internodes;
+    std::optional<TraceComparison> traces;
+    std::optional<double> slack;
+    std::vector<std::string> warnings;
+};
+
+/// Refuses what is missing or malformed; reads nothing.
+void check(const EvaluateTask& task);
+EvaluateResult run(const EvaluateTask& task, ProgressReporter& reporter);
+
+}  // namespace shvr

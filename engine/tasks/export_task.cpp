@@ -1,0 +1,159 @@
+#include "engine/tasks/export_task.h"
+
+#include <array>
+
+#include "engine/annotation/files/mask_export.h"
+#include "engine/annotation/files/offset_export.h"
+#include "engine/annotation/measures/measures.h"
+#include "engine/annotation/trace/trace_mesh.h"
+#include "engine/base/atomic_file.h"
+#include "engine/session/label_looks.h"
+#include "engine/tasks/task_output.h"
+
+namespace shvr {
+
+namespace {
+
+/// PROJECT/labels/mask; empty if not requested.
+std::filesystem::path project_labels(const ExportTask& task, const std::filesystem::path& project)
+{
+    if (!task.labels) return {};
+    const bool is_image =
+        std::filesystem::exists(project / ".zattrs") || std::filesystem::exists(project / "zarr.json");
+    if (!is_image)
+        fail(project.string(), ": is no project folder; expected one, to write ", option_name(task.names, "labels"),
+             " into, or ", option_name(task.names, "mask"), " with a name");
+    return project / "labels" / "mask";
+}
+
+/// Fails if there is neither a trace nor a file of one.
+void expect_trace(const AnnotationView& annotation)
+{
+    const std::filesystem::path& path = annotation.trace_path;
+    if (!annotation.trace.nodes().empty() || std::filesystem::exists(path)) return;
+    fail(path.empty() ? "the session" : path.string(),
+         path.empty() ? ": names no trace; expected the key annotation.trace"
+                      : ": does not exist; expected the trace that shvr annotate saves");
+}
+
+/// The topology of all painted voxels (-1), and of each group.
+std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress)
+{
+    std::map<int, Topology> topology{{-1, topology_of(mask)}};
+    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group) {
+        tell(progress, double(group) / 256.0);
+        if (voxels[size_t(group)] > 0) topology[group] = topology_of(mask, uint8_t(group));
+    }
+    return topology;
+}
+
+ExportResult summary_of(const AnnotationView& annotation)
+{
+    ExportResult result{.nodes = annotation.trace.nodes().size(),
+                        .internodes = annotation.trace.internodes().size(),
+                        .unit = annotation.volume.unit};
+    const std::array<int64_t, 256> counts = annotation.mask.voxels_by_group();
+    for (int group = 1; group < 256; ++group)
+        if (counts[size_t(group)] > 0) result.voxels_by_group[group] = counts[size_t(group)];
+    for (const auto& [group, length] : measure(annotation.trace).length_by_group)
+        result.length_by_group[group] = length;
+    return result;
+}
+
+}  // namespace
+
+void fields(Fields& f, ExportTask& task)
+{
+    f.path("mask", task.mask, {.meaning = "the painted voxels: .mask, .nrrd, .tif, .zarr", .standard = "none"});
+    f.flag("labels", task.labels, {"the painted voxels as OME-Zarr labels in the project, labels/mask"});
+    version_field(f, task.version, "version of OME-Zarr; automatic: as the project or the labels there are, or 0.4");
+    f.path("offset", task.offset, {.meaning = "the density offsets: .offset, .nrrd, .tif", .standard = "none"});
+    f.path("trace", task.trace, {.meaning = "nodes and internodes: .graphml, .txt, .swc, .rsml", .standard = "none"});
+    f.flag("break_loops", task.break_loops,
+           {"each loop is opened where its last internode closed it, for .swc and .rsml, which hold trees"});
+    f.path("mesh", task.mesh, {.meaning = "the trace as tubes: .obj, .ply", .standard = "none"});
+    f.choice("space", task.space, {"of trace and mesh: where other programs show the volume, or voxel * spacing"});
+    f.path("metrics", task.metrics, {.meaning = "counts, lengths, angles, radii, topology: .csv", .standard = "none"});
+}
+
+AnnotationSnapshot::AnnotationSnapshot(const AnnotationView& view)
+    : volume_(view.volume),
+      mask_(view.mask),
+      density_(view.density),
+      trace_(view.trace),
+      groups_(view.groups),
+      volume_hash_(view.volume_hash),
+      project_(view.project),
+      trace_path_(view.trace_path)
+{}
+
+AnnotationView AnnotationSnapshot::view() const
+{
+    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, trace_path_};
+}
+
+void check(const ExportTask& task)
+{
+    const auto name = [&](const char* key) { return option_name(task.names, key); };
+    if (!task.mask.empty() && !is_mask_export(task.mask))
+        throw UsageError(sentence(name("mask"), " is '", task.mask.string(),
+                                  "'; expected a name that ends in one of: .mask, .nrrd, .tif, .tiff, .zarr, or ",
+                                  "PROJECT/labels/NAME"));
+    check_output(name("offset"), task.offset, {".offset", ".nrrd", ".tif", ".tiff"});
+    check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
+    check_output(name("mesh"), task.mesh, {".obj", ".ply"});
+    check_output(name("metrics"), task.metrics, {".csv"});
+}
+
+void check(const ExportTask& task, const AnnotationView& annotation)
+{
+    check(task);
+    if (!task.trace.empty() || !task.mesh.empty()) expect_trace(annotation);
+    static_cast<void>(project_labels(task, annotation.project));
+}
+
+ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
+                 const std::function<void(const ExportResult& so_far)>& wrote)
+{
+    check(task, annotation);
+    const TraceSpace space = space_of(annotation.volume);
+    ExportResult result = summary_of(annotation);
+    const auto note = [&](const std::filesystem::path& path) {
+        result.written.push_back(path.string());
+        if (wrote) wrote(result);
+    };
+    const auto begin = [&](const std::filesystem::path& path) { return reporter.begin("writing " + path.string()); };
+    if (!task.trace.empty()) {
+        static_cast<void>(begin(task.trace));
+        const Loops loops = task.break_loops ? Loops::break_open : Loops::refuse;
+        result.left_out = save_trace(task.trace, annotation.trace, space, loops, task.space);
+        note(task.trace);
+    }
+    for (const std::filesystem::path& path : {task.mask, project_labels(task, annotation.project)}) {
+        if (path.empty()) continue;
+        export_mask(path, annotation.mask, annotation.volume,
+                    {.colors = label_looks(annotation.groups, annotation.mask), .painted_on = annotation.volume_hash},
+                    task.version, begin(path));
+        note(path);
+    }
+    if (!task.offset.empty()) {
+        export_offsets(task.offset, annotation.density, annotation.volume, begin(task.offset));
+        note(task.offset);
+    }
+    if (!task.mesh.empty()) {
+        static_cast<void>(begin(task.mesh));
+        save_trace_mesh(task.mesh, annotation.trace, space, task.space);
+        note(task.mesh);
+    }
+    if (!task.metrics.empty()) {
+        const Progress progress = reporter.begin("measuring what is painted");
+        const std::string text = metrics_csv(measure(annotation.trace), annotation.mask.voxels_by_group(),
+                                             topology_by_group(annotation.mask, progress), space);
+        write_file_atomically(task.metrics, std::as_bytes(std::span(text)));
+        note(task.metrics);
+    }
+    return result;
+}
+
+}  // namespace shvr

@@ -1,0 +1,87 @@
+#pragma once
+// Exports annotation for other programs, by the extensions of the names: what `shvr export` does.
+//
+// The annotation is lent by reference. To export beside a person who goes on painting, take an `AnnotationSnapshot` on
+// the main thread and export that on another one: bricks of mask and offsets are shared and never change
+// (sparse_bricks.h), so a snapshot costs the tables of bricks and a copy of the trace (MEASURED.md).
+
+#include <functional>
+#include <map>
+
+#include "engine/annotation/density.h"
+#include "engine/annotation/mask.h"
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/look/groups.h"
+#include "engine/tasks/task_options.h"
+
+namespace shvr {
+
+inline constexpr Spelling<Positions> POSITIONS[] = {{Positions::physical, "physical"}, {Positions::volume, "volume"}};
+constexpr std::span<const Spelling<Positions>> spellings_of(Positions)
+{
+    return POSITIONS;
+}
+
+struct ExportTask {
+    static constexpr const char* TITLE = "Export annotation";
+
+    // Files to write; empty: not this one.
+    std::filesystem::path mask, offset, trace, mesh, metrics;
+    bool labels = false;       ///< the mask also as labels/mask in the project
+    bool break_loops = false;  ///< for forms of traces that hold trees
+    Positions space = Positions::physical;
+    std::optional<OmeZarrVersion> version;
+
+    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+};
+void fields(Fields& f, ExportTask& task);
+
+/// What is exported, which must stay as it is until `run` returns.
+struct AnnotationView {
+    const VolumeInfo& volume;
+    const Mask& mask;
+    const DensityField& density;
+    const TraceGraph& trace;
+    const Groups& groups;
+    std::string volume_hash{};           ///< as Session::volume_hash
+    std::filesystem::path project{};     ///< as it was opened; for `labels`
+    std::filesystem::path trace_path{};  ///< as Session::trace_path; for messages where there is no trace
+};
+
+/// A copy that belongs to whoever holds it. Any thread may read it, and destroy it.
+class AnnotationSnapshot {
+public:
+    explicit AnnotationSnapshot(const AnnotationView& view);
+    AnnotationSnapshot(const AnnotationSnapshot&) = delete;
+    /// Refers to this.
+    AnnotationView view() const;
+
+private:
+    VolumeInfo volume_;
+    Mask mask_;
+    DensityField density_;
+    TraceGraph trace_;
+    Groups groups_;
+    std::string volume_hash_;
+    std::filesystem::path project_, trace_path_;
+};
+
+struct ExportResult {
+    std::vector<std::string> written;   ///< paths, in order
+    std::vector<std::string> left_out;  ///< a sentence for each internode that a form could not hold
+    std::map<int, int64_t> voxels_by_group;
+    size_t nodes = 0, internodes = 0;
+    std::map<int, double> length_by_group;  ///< in `unit`
+    std::string unit;
+};
+
+/// Names and folders, and whether there is what they are to hold.
+void check(const ExportTask& task);
+void check(const ExportTask& task, const AnnotationView& annotation);
+
+/// Checks, then writes each file atomically; those that were written before a failure stay. `wrote` is called after
+/// each.
+ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
+                 const std::function<void(const ExportResult& so_far)>& wrote = {});
+
+}  // namespace shvr

@@ -1,0 +1,170 @@
+#include "engine/tasks/import_task.h"
+
+#include <chrono>
+#include <iomanip>
+#include <utility>
+
+#include "engine/annotation/work/hold.h"
+#include "engine/base/text.h"
+#include "engine/volume/grid.h"
+#include "engine/volume/unit.h"
+
+namespace shvr {
+
+namespace {
+
+void crop_fields(Fields& f, VoxelBox& crop)
+{
+    const auto corner = [&](const char* name, Size3& voxel, const About& about) {
+        std::vector<int64_t> numbers{voxel.x, voxel.y, voxel.z};
+        f.wholes(name, numbers, 0, LARGEST_SIDE, about);
+        voxel = {numbers[0], numbers[1], numbers[2]};
+    };
+    corner("lower", crop.lower, {"first voxel of the box", "voxels"});
+    corner("upper", crop.upper, {"the one after its last", "voxels"});
+    f.check("", glm::all(glm::lessThan(crop.lower, crop.upper)), "a lower corner that is below the upper one");
+}
+
+std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
+{
+    const OpenOptions& choice = task.choice;
+    const std::string volume = task.volume.string();
+    if (task.raw.empty()) return open_volume(volume, choice);
+    RawLayout layout = parse_raw_layout(task.raw);
+    if (choice.spacing) layout.spacing = *choice.spacing;
+    if (!choice.unit.empty()) layout.unit = choice.unit;
+    return open_raw(volume, layout);
+}
+
+/// Two stretches where voxels are reversed, which are then looked at first; otherwise one.
+class ImportListener {
+public:
+    ImportListener(const ImportTask& task, VoxelType type, ProgressReporter& reporter)
+        : volume_(task.volume.string()), type_(type), reporter_(reporter), is_importing_(!task.reverse)
+    {
+        progress_ = reporter.begin((is_importing_ ? "importing " : "measuring ") + volume_);
+    }
+
+    void take(const ImportProgress& told)
+    {
+        if (told.voxels_per_second == 0.0) return progress_(told.fraction);  // nothing is there yet that could be kept
+        try {
+            if (!std::exchange(is_importing_, true)) progress_ = reporter_.begin("importing " + volume_);
+            const double rate = told.voxels_per_second * double(bytes_of(type_)) / 1e6;
+            reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
+                           told.seconds_left);
+        } catch (const Stopped&) {
+            // The import looks for itself, and keeps what is done.
+        }
+    }
+
+private:
+    std::string volume_;
+    VoxelType type_;
+    ProgressReporter& reporter_;
+    Progress progress_;
+    bool is_importing_;
+};
+
+}  // namespace
+
+void fields(Fields& f, ImportTask& task)
+{
+    f.path("volume", task.volume,
+           {.meaning = "the volume's file or folder", .standard = "required", .is_required = true});
+    f.path("project", task.project,
+           {.meaning = "the folder to make, an OME-Zarr image", .standard = "required", .is_required = true});
+    if (const About about{.meaning = "a box is taken out of the volume", .standard = "none"};
+        f.has("crop", task.crop.has_value())) {
+        VoxelBox crop = task.crop.value_or(VoxelBox{Size3(0), Size3(1)});
+        f.section(
+            "crop", [&](Fields& box) { crop_fields(box, crop); }, about);
+        task.crop = crop;
+    } else {
+        f.mention("crop", about);
+    }
+    f.flag("reverse", task.reverse,
+           {"dark and bright are swapped: the whole volume's smallest plus largest value, minus the voxel"});
+    f.vector("blur", task.blur_voxels, {0.0, LARGEST_SIGMA}, {"sigma of a Gaussian blur, along x, y and z", "voxels"});
+    f.whole("downscale", task.downscale, 1, LARGEST_DOWNSCALE, {"how many times smaller, along every axis"});
+    f.flag("labels", task.labels,
+           {"the voxels are labels: coarser levels hold the most frequent one instead of a mean"});
+    f.text("raw", task.raw,
+           {.meaning = "how a file of bare voxels is laid out: WxHxD:TYPE[:big|little][:OFFSET]", .standard = "none"});
+    f.vector("spacing", task.choice.spacing, above_zero(MIN_SPACING, MAX_SPACING),
+             {.meaning = "size of a voxel, for a file that states none, or instead of what it states",
+              .allowed = "physical units per voxel, above 0",
+              .standard = "the file's"});
+    f.text("unit", task.choice.unit, {.meaning = "of that size, as in um", .standard = "the file's"});
+    f.check("unit", !has_controls(task.choice.unit), "the name of a unit");
+    f.text("channel", task.choice.channel,
+           {.meaning = "what to take from a file with channels: its name or number", .standard = "none"});
+    f.text("frame", task.choice.frame,
+           {.meaning = "which time point to take from a file with several: its number", .standard = "none"});
+    version_field(f, task.version, "version of OME-Zarr; automatic: 0.4");
+    f.flag("shards", task.shards,
+           {"of version 0.5: up to 512 chunks in a file, for storage that dislikes many small files"});
+    f.flag("overwrite", task.overwrite,
+           {"a project that is there is replaced, with all annotations in it, once the new one is complete"});
+    threads_field(f, task.threads);
+}
+
+void check(const ImportTask& task)
+{
+    const auto name = [&](const char* key) { return option_name(task.names, key); };
+    if (!task.raw.empty()) static_cast<void>(parse_raw_layout(task.raw));
+    if (!task.raw.empty() && task.choice.spacing && task.choice.unit.empty())
+        throw UsageError(sentence(name("spacing"), " is given without a unit; expected ", name("unit"), ", too, as in ",
+                                  name("unit"), " um"));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double sigma = task.blur_voxels[axis];
+        if (!(sigma >= 0.0 && sigma <= LARGEST_SIGMA))
+            throw UsageError(
+                sentence(name("blur"), " is ", sigma, "; expected sigmas of 0 to ", LARGEST_SIGMA, " voxels"));
+    }
+    if (task.downscale < 1 || task.downscale > LARGEST_DOWNSCALE)
+        throw UsageError(sentence(name("downscale"), " is ", task.downscale, "; expected 1 to ", LARGEST_DOWNSCALE));
+    if (task.shards && task.version != OmeZarrVersion::v0_5)
+        throw UsageError(task.names == OptionNames::command_line
+                             ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
+                             : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
+    check_threads(task.threads, task.names);
+    if (task.volume.empty() || task.project.empty())
+        throw UsageError(sentence("no ", name(task.volume.empty() ? "volume" : "project"), " is given; expected both"));
+}
+
+ImportResult run(const ImportTask& task, ProgressReporter& reporter)
+{
+    using Clock = std::chrono::steady_clock;
+    check(task);
+    // Replacing a project takes its annotation away, too: nobody may be writing it.
+    const std::filesystem::path session = task.project / "shvr" / "session.json";
+    const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
+    const Clock::time_point begin = Clock::now();
+    const std::unique_ptr<VolumeSource> source = open_as_told(task);
+    ImportListener listener(task, source->info().type, reporter);
+    const ImportOptions wanted{.preparation = {.crop = task.crop,
+                                               .reverse = task.reverse,
+                                               .blur_sigma_voxels = task.blur_voxels,
+                                               .downscale = task.downscale},
+                               .halving = task.labels ? Halving::label : Halving::mean,
+                               .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw),
+                               .overwrites = task.overwrite,
+                               .threads = task.threads,
+                               .version = task.version,
+                               .has_shards = task.shards,
+                               .progress = [&](const ImportProgress& progress) { listener.take(progress); },
+                               .cancel = &reporter.stop_requested()};
+    ImportResult result;
+    try {
+        result.report = import_volume(*source, task.volume, task.project, wanted);
+    } catch (const ImportStopped& stopped) {
+        throw Stopped(stopped.what());
+    }
+    result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    const VolumeInfo& info = result.report.info;
+    result.megabytes_per_second = double(voxel_count(info)) * double(bytes_of(info.type)) / result.seconds / 1e6;
+    return result;
+}
+
+}  // namespace shvr

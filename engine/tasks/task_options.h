@@ -1,0 +1,49 @@
+#pragma once
+// The options of tasks as JSON, as scripts and logs hold them: {"mask": "out.tif", "space": "volume"}. Options that are
+// missing keep their defaults; unknown ones are refused by name. Any thread.
+
+#include "engine/jobs/progress_reporter.h"
+#include "engine/projects/import_volume.h"
+#include "engine/session/session_keys.h"
+
+namespace shvr {
+
+/// How sentences call an option: by its key, or as on the command line: "break_loops" or "--break-loops".
+enum class OptionNames { keys, command_line };
+std::string option_name(OptionNames names, std::string_view key);
+
+/// `origin` names the text in messages; relative paths are relative to `folder`.
+template <class Task>
+Task from_json(std::string_view text, const std::filesystem::path& folder, const std::string& origin)
+{
+    Task task;
+    const JsonDocument document(text, origin, {.depth = 8, .expected = "options, an object"});
+    read_fields(document.root(), folder, [&](Fields& f) { fields(f, task); });
+    return task;
+}
+
+/// Every option that has a value, on one line. Paths inside `folder` are relative to it.
+template <class Task>
+std::string to_json(Task task, const std::filesystem::path& folder)
+{
+    return write_fields(folder, [&](Fields& f) { fields(f, task); });
+}
+
+/// Name, meaning, range and default of each, for documentation and dialogs.
+template <class Task>
+std::vector<SessionKey> options_of()
+{
+    Task task;
+    return keys_of([&](Fields& f) { fields(f, task); });
+}
+
+/// "ome_zarr", a version of OME-Zarr or "automatic".
+void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic);
+
+/// "threads": worker threads, 0 ... 1024; 0: one per core.
+void threads_field(Fields& f, int& threads);
+void check_threads(int threads, OptionNames names);
+/// An array of texts that are not empty; not written where there are none.
+void texts_field(Fields& f, std::string_view name, std::vector<std::string>& texts, const About& about);
+
+}  // namespace shvr

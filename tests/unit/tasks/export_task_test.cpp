@@ -1,0 +1,200 @@
+#include "engine/tasks/export_task.h"
+
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "engine/annotation/files/mask_file.h"
+#include "engine/jobs/jobs.h"
+#include "tests/support/random_annotation.h"
+#include "tests/support/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// Some annotation of a small volume, and more of it on request.
+struct Annotated {
+    explicit Annotated(uint32_t seed) : random(seed)
+    {
+        for (int i = 0; i < 60; ++i) annotate();
+    }
+    void annotate()
+    {
+        for (const Change& change : random_command(document, random).changes)
+            apply(document, change, Direction::forwards);
+    }
+    AnnotationView view() const
+    {
+        return {.volume = volume,
+                .mask = document.mask,
+                .density = document.density,
+                .trace = document.trace,
+                .groups = groups};
+    }
+    std::mt19937 random;
+    VolumeInfo volume = annotated_volume();
+    Document document = unannotated();
+    Groups groups;
+};
+
+ExportTask task_in(const std::filesystem::path& folder)
+{
+    return {.mask = folder / "a.mask",
+            .offset = folder / "a.offset",
+            .trace = folder / "a.graphml",
+            .mesh = folder / "a.ply",
+            .metrics = folder / "a.csv"};
+}
+
+std::map<std::string, std::string> files_of(const std::filesystem::path& folder)
+{
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        files[entry.path().filename().string()] = bytes_of_file(entry.path());
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("an export is given as JSON, and unknown options are refused by name")
+{
+    const auto task =
+        from_json<ExportTask>(R"({"mask": "out.tif", "space": "volume", "ome_zarr": "0.5"})", "/data", "x");
+    CHECK(task.mask == "/data/out.tif");
+    CHECK(task.space == Positions::volume);
+    CHECK(task.version == OmeZarrVersion::v0_5);
+    CHECK(task.trace.empty());
+    CHECK(to_json(task, "/data") ==
+          R"({"mask":"out.tif","labels":false,"ome_zarr":"0.5","break_loops":false,"space":"volume"})");
+    CHECK(from_json<ExportTask>(to_json(ExportTask{}, "/"), "/", "x").version == std::nullopt);
+    const auto refusal = [](const char* text) {
+        return error_of([&] { static_cast<void>(from_json<ExportTask>(text, "/", "line 3")); });
+    };
+    CHECK(contains(refusal(R"({"masc": "a"})"), "line 3: unknown key masc; expected one of: mask, labels, ome_zarr"));
+    CHECK(contains(refusal(R"({"space": "voxels"})"), "key space is \"voxels\"; expected"));
+    CHECK(contains(refusal(R"({"labels": 1})"), "key labels is 1"));
+    CHECK(contains(refusal("[]"), "line 3"));
+}
+
+TEST_CASE("every option of an export is documented")
+{
+    std::set<std::string> names;
+    for (const SessionKey& option : options_of<ExportTask>()) {
+        names.insert(option.name);
+        CHECK(!option.meaning.empty());
+        CHECK(!option.allowed.empty());
+        CHECK(!option.standard.empty());
+    }
+    CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
+                                         "space", "metrics"});
+}
+
+TEST_CASE("names and folders are refused before anything is written, in the words of the caller")
+{
+    const TemporaryFolder folder;
+    const Annotated annotated(1);
+    PlainReporter reporter;
+    const auto refusal = [&](ExportTask task) {
+        task.names = OptionNames::command_line;
+        const std::string of_check = error_of([&] { check(task, annotated.view()); });
+        const std::string of_run = error_of([&] { run(task, annotated.view(), reporter); });
+        CHECK(of_check == of_run);
+        CHECK(files_of(folder.path).empty());
+        return of_check;
+    };
+    ExportTask task = task_in(folder.path);
+    task.metrics = folder.path / "a.txt";
+    CHECK(refusal(task) ==
+          sentence("--metrics is '", task.metrics.string(), "'; expected a name that ends in one of: .csv"));
+    CHECK_THROWS_AS(check(task), UsageError);
+    CHECK(error_of([&] { check(task); }).starts_with("metrics is '"));
+    task = task_in(folder.path);
+    task.mask = folder.path / "a.jpg";
+    CHECK(contains(refusal(task), "--mask is '"));
+    task = task_in(folder.path);
+    task.mesh = folder.path / "none" / "a.obj";
+    CHECK(contains(refusal(task), "there is no folder"));
+    task = task_in(folder.path);
+    task.labels = true;
+    CHECK(contains(refusal(task), "is no project folder; expected one, to write --labels into, or --mask with a name"));
+    task.labels = false;
+    const Document nothing = unannotated();
+    AnnotationView bare{annotated.volume, nothing.mask, nothing.density, nothing.trace, annotated.groups};
+    CHECK(error_of([&] { check(task, bare); }) == "the session: names no trace; expected the key annotation.trace");
+    bare.trace_path = folder.path / "b.graphml";
+    CHECK(contains(error_of([&] { check(task, bare); }), "b.graphml: does not exist; expected the trace"));
+}
+
+TEST_CASE("an export writes what is there and counts it")
+{
+    const TemporaryFolder folder;
+    const Annotated annotated(2);
+    PlainReporter reporter;
+    std::vector<std::string> told;
+    const ExportTask task = task_in(folder.path);
+    const ExportResult result = run(task, annotated.view(), reporter, [&](const ExportResult& so_far) {
+        told.push_back(so_far.written.back());
+        CHECK(std::filesystem::exists(told.back()));
+    });
+    CHECK(result.written == told);
+    CHECK(result.written == std::vector<std::string>{task.trace, task.mask, task.offset, task.mesh, task.metrics});
+    Mask read(annotated.document.mask.size());
+    for (const MaskBrickChange& change : load_mask(task.mask, read.size())) read.apply(change, Direction::forwards);
+    CHECK(hash_of(read) == hash_of(annotated.document.mask));
+    const TraceFile trace = load_trace(task.trace, space_of(annotated.volume));
+    CHECK(trace.trace == annotated.document.trace);
+    CHECK(result.nodes == trace.trace.nodes().size());
+    CHECK(result.internodes == trace.trace.internodes().size());
+    int64_t painted = 0;
+    for (const auto& [group, voxels] : result.voxels_by_group) painted += voxels;
+    CHECK(painted > 0);
+    CHECK(painted == voxel_count(annotated.volume) - annotated.document.mask.voxels_by_group()[0]);
+    CHECK(result.unit == annotated.volume.unit);
+}
+
+TEST_CASE("a snapshot is exported by a job as it was, while a person goes on")
+{
+    const TemporaryFolder before, after;
+    Annotated annotated(3);
+    PlainReporter reporter;
+    run(task_in(before.path), annotated.view(), reporter);
+    const auto snapshot = std::make_shared<const AnnotationSnapshot>(annotated.view());
+    Jobs jobs;
+    for (int i = 0; i < 5; ++i)
+        jobs.start("exporting", [snapshot, &after](ProgressReporter& told) -> Jobs::Completion {
+            run(task_in(after.path), snapshot->view(), told);
+            return {};
+        });
+    for (int i = 0; i < 2000 || jobs.states().size() > 2; ++i) annotated.annotate();
+    for (const Jobs::Finished& finished : jobs.wait()) CHECK(finished.failure == "");
+    CHECK(files_of(after.path) == files_of(before.path));
+    CHECK(hash_of(annotated.document.mask) != hash_of(snapshot->view().mask));
+}
+
+TEST_CASE("an export that is cancelled leaves no file half written, wherever it was")
+{
+    const Annotated annotated(4);
+    std::map<std::string, std::string> complete;
+    int64_t steps = 0;
+    {
+        const TemporaryFolder folder;
+        PlainReporter reporter([&](double) { ++steps; });
+        run(task_in(folder.path), annotated.view(), reporter);
+        complete = files_of(folder.path);
+    }
+    REQUIRE(steps > 3);
+    for (int64_t stop = 0; stop < steps; ++stop) {
+        const TemporaryFolder folder;
+        int64_t step = 0;
+        PlainReporter reporter([&](double) {
+            if (step++ == stop) throw Stopped("stopped");
+        });
+        CHECK_THROWS_AS(run(task_in(folder.path), annotated.view(), reporter), Stopped);
+        for (const auto& [name, content] : files_of(folder.path)) {
+            REQUIRE(complete.contains(name));
+            CHECK(content == complete.at(name));
+        }
+    }
+}
