@@ -11,6 +11,10 @@
 
 #include "engine/annotation/script/script.h"
 #include "engine/session/session.h"
+#include "engine/tasks/evaluate_task.h"
+#include "engine/tasks/export_task.h"
+#include "engine/tasks/import_task.h"
+#include "engine/tasks/label_task.h"
 
 namespace shvr::ui {
 
@@ -109,8 +113,13 @@ struct SaveAs {
 struct CopySession {
     std::filesystem::path path;
 };
+/// Beside the work: what is open stays until the next is there.
 struct Open {
     std::filesystem::path path;
+};
+/// Exporting, importing, labelling and comparing are tasks (engine/tasks), each a job beside the work.
+struct CancelJob {
+    uint64_t number = 0;
 };
 /// Where another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
 struct ChooseBelief {
@@ -146,8 +155,8 @@ using Action = std::variant<
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp,
     // the work, the window
-    UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys,
-    BindKeys, ShowHelp, ShowFullScreen, Quit>;
+    UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
+    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -147,6 +147,13 @@ std::string why(const Model& model, const SaveAs&)
     return why_not_edited(model);
 }
 
+std::string why(const Model& model, const CancelJob& action)
+{
+    for (const Jobs::State& job : model.jobs)
+        if (job.number == action.number) return {};
+    return sentence("there is no job ", action.number);
+}
+
 std::string why(const Model& model, const ChooseBelief&)
 {
     return model.disputes.empty() ? "no saved file was changed by another program" : "";
@@ -155,7 +162,7 @@ std::string why(const Model& model, const ChooseBelief&)
 template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
-constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
 
 }  // namespace
 

@@ -53,6 +53,11 @@ constexpr ActionRow ROWS[] = {
     {"revert", "Revert", WORK, "goes back to what was saved last, as a step that undo takes back"},
     {"save_as", "Save as", WORK, "goes on under another name, with the whole history"},
     {"copy_session", "Copy the session", WORK, "writes all that is shown into files of another name"},
+    {"export", "Export", WORK, "writes annotation in forms of other programs, and measures"},
+    {"import", "Import as project", WORK, "makes a project folder of a volume, and opens it"},
+    {"label", "Label connected parts", WORK, "counts connected parts above a threshold, and writes their labels"},
+    {"evaluate", "Compare with the truth", WORK, "says how well an annotation agrees with another"},
+    {"cancel_job", "Cancel", WORK, "ends a job that runs or waits"},
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
     {"open", "Open", WORK, "opens a volume, a session or a project folder"},
     {"choose_belief", "Files or journal", WORK, "says whether changed files or the journal are right"},
@@ -167,6 +172,10 @@ void fields(Fields& f, Paint& a)
 void fields(Fields& f, DragNode& a)
 {
     f.flag("on", a.on, {.is_required = true});
+}
+void fields(Fields& f, CancelJob& a)
+{
+    f.whole("number", a.number, 1, int64_t{1} << 53, {.is_required = true});
 }
 void fields(Fields& f, SaveAs& a)
 {

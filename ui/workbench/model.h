@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/annotation/work/work.h"
+#include "engine/jobs/jobs.h"
 #include "engine/live/screen.h"
 #include "engine/session/session.h"
 #include "engine/session/transfer_presets.h"
@@ -53,6 +54,7 @@ struct Model {
     std::string_view holder{};  ///< who writes the project, if that is another process: then this window only looks
     const std::filesystem::path& session_path;
     std::span<const Dispute> disputes{};  ///< saved files that others have changed; empty: nothing to choose
+    std::vector<Jobs::State> jobs{};      ///< the one that runs first
     const MessageLog& messages;
     const Keymap& keymap;
     const Preferences& preferences;

@@ -135,13 +135,17 @@ void Workbench::perform(const BindKeys& action)
 
 // ---- Documents ------------------------------------------------------------------------------------------------------
 
+void Workbench::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
+{
+    open(open_session(path, settings), path, settings);
+}
+
 /// The device holds one volume at a time. The previous document is kept until the next one is open, and comes back if
 /// that fails.
-void Workbench::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
+void Workbench::open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
     const double begun_s = options_.now_s();
     if (document_) document_->annotator.work().settle();  // it may be opened once more
-    OpenedSession opened = open_session(path, settings);
     const std::vector<std::string> losses = opened.losses;
     screenshots_.drop_large();
     if (document_) document_->screen.clear();
@@ -236,6 +240,7 @@ void Workbench::set_pixels(const glm::uvec2& pixels)
 
 bool Workbench::has_work() const
 {
+    if (!jobs_.is_idle()) return true;
     return document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
                          document_->touch.servo() || is_stirring() || screenshots_.is_writing() ||
                          screenshots_.has_large() || !document_->previewer.is_current());
@@ -243,6 +248,7 @@ bool Workbench::has_work() const
 
 void Workbench::advance()
 {
+    follow_jobs();
     if (!document_) return;
     attempt(touching_, [this] { follow_touch(); });
     attempt(recording_, [this] { follow_settings(); });
@@ -329,6 +335,7 @@ Model Workbench::model() const
                 .presets = presets_,
                 .trace = nothing_->trace,
                 .session_path = nothing_->path,
+                .jobs = jobs_.states(),
                 .messages = messages_,
                 .keymap = keymap_,
                 .preferences = preferences_,
@@ -361,6 +368,7 @@ Model Workbench::model() const
             .holder = document.holder,
             .session_path = document.session_path,
             .disputes = document.annotator.work().disputes(),
+            .jobs = jobs_.states(),
             .messages = messages_,
             .keymap = keymap_,
             .preferences = preferences_,

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "engine/jobs/jobs.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/document.h"
 #include "ui/workbench/messages.h"
@@ -40,7 +41,7 @@ public:
     void perform(const Action& action);
     /// The same; a failure becomes a message. Returns whether it was carried out.
     bool apply(const Action& action);
-    /// As the action Open, with settings as --set takes them.
+    /// Opens at once, with settings as --set takes them; the action Open does it beside the work.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
     void say(std::string text, Weight weight = Weight::done);
     /// Called with each action that was carried out, as a line that replays it (action_rows.h).
@@ -135,6 +136,11 @@ private:
     void perform(const RevertOp& action);
     void perform(const SaveAs& action);
     void perform(const CopySession& action);
+    void perform(const ExportTask& task);
+    void perform(const ImportTask& task);
+    void perform(const LabelTask& task);
+    void perform(const EvaluateTask& task);
+    void perform(const CancelJob& action);
     void perform(const Screenshot& action);
     void perform(const Open& action);
     void perform(const ChooseBelief& action);
@@ -146,6 +152,8 @@ private:
     void perform(const Quit& action);
 
     // Documents
+    void open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings);
+    void follow_jobs();
     [[noreturn]] void bring_back(const std::string& why);
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void save();
@@ -163,7 +171,6 @@ private:
     // Settings
     void take_session(Session session);
     void settings_changed(const Session& before);
-    std::string sentence_about(const Session& before) const;
     void note_edit();
     void record_settings();
     void note_to_keep();
@@ -197,6 +204,7 @@ private:
     bool are_preferences_kept_ = false;
     Screenshots screenshots_;
     std::function<void(const std::string&)> log_;
+    Jobs jobs_;
     Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, photographing_;
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;

@@ -99,12 +99,6 @@ void Workbench::perform(const Screenshot& action)
                  " pixels is made in the background"));
 }
 
-void Workbench::perform(const Open& action)
-{
-    if (document_) save_before_leaving();
-    open(action.path, {});
-}
-
 void Workbench::perform(const ChooseBelief& action)
 {
     std::string said;

@@ -1,0 +1,135 @@
+// Long work beside the loop: each job makes its result on a worker; what is done with it happens here.
+
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& texts, const char* between)
+{
+    std::string text;
+    for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
+    return text;
+}
+
+std::string name_of(const std::filesystem::path& path)
+{
+    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
+}
+
+std::string sentence_about(const EvaluateResult& result)
+{
+    std::string text;
+    const auto add = [&](const auto&... parts) { text += sentence(text.empty() ? "" : ", ", parts...); };
+    if (result.dice && result.dice->painted) add("Dice ", *result.dice->painted);
+    if (result.nodes && result.nodes->mean) add("nodes ", *result.nodes->mean, " inside the mask");
+    if (result.internodes && result.internodes->mean) add("internodes ", *result.internodes->mean);
+    if (result.traces)
+        add(result.traces->segments_found, " of ", result.traces->segments_total, " segments found, ",
+            result.traces->topological_errors(), " topological errors");
+    return text.empty() ? "There was nothing to compare" : "Compared with the truth: " + text;
+}
+
+}  // namespace
+
+void Workbench::follow_jobs()
+{
+    for (const Jobs::Finished& job : jobs_.finish()) {
+        if (job.was_cancelled)
+            say("Cancelled: " + job.what, Weight::warning);
+        else if (!job.failure.empty())
+            say(job.failure, Weight::error);
+    }
+}
+
+void Workbench::perform(const CancelJob& action)
+{
+    jobs_.cancel(action.number);
+}
+
+/// Statistics of a volume that is no project take a pass over its voxels. Meanwhile the work goes on; it is saved when
+/// the next is there.
+void Workbench::perform(const Open& action)
+{
+    const std::filesystem::path path = action.path;
+    jobs_.start("opening " + name_of(path), [this, path](ProgressReporter& reporter) -> Jobs::Completion {
+        const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name_of(path))}};
+        auto opened = std::make_shared<OpenedSession>(open_session(path, {}, options));
+        return [this, path, opened] {
+            if (document_) save_before_leaving();
+            open(std::move(*opened), path, {});
+        };
+    });
+}
+
+void Workbench::perform(const ExportTask& task)
+{
+    record_settings();
+    const Document& document = *document_;
+    const shvr::Document& annotation = document.annotator.document();
+    const AnnotationView view{.volume = document.volume(),
+                              .mask = annotation.mask,
+                              .density = annotation.density,
+                              .trace = annotation.trace,
+                              .groups = document.session.groups,
+                              .volume_hash = document.session.volume_hash,
+                              .project = document.session.volume_path,
+                              .trace_path = document.session.trace_path};
+    check(task);
+    check(task, view);
+    auto snapshot = std::make_shared<AnnotationSnapshot>(view);
+    jobs_.start("exporting", [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+        ExportResult result = run(task, snapshot->view(), reporter);
+        return [this, result = std::move(result)] {
+            say("Exported " + joined(result.written, ", ") +
+                    (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
+                result.left_out.empty() ? Weight::done : Weight::warning);
+        };
+    });
+}
+
+/// The project is opened when it is there.
+void Workbench::perform(const ImportTask& task)
+{
+    check(task);
+    jobs_.start("importing " + name_of(task.volume), [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+        ImportTask wanted = task;
+        wanted.program = "shvr view";
+        const ImportResult result = run(wanted, reporter);
+        return [this, project = result.report.project, warnings = result.report.warnings] {
+            for (const std::string& warning : warnings) say(warning, Weight::warning);
+            perform(Open{project});
+        };
+    });
+}
+
+void Workbench::perform(const LabelTask& task)
+{
+    check(task);
+    const std::shared_ptr<const VolumeSource> source = document_->source;
+    check(task, *source);
+    const std::string name = document_->volume().name;
+    jobs_.start("labelling " + name, [this, task, source, name](ProgressReporter& reporter) -> Jobs::Completion {
+        const Components::Counts counts = run(task, *source, name, reporter).counts;
+        return [this, counts, task] {
+            say(sentence(counts.found, " connected parts at or above ", task.threshold, ", the largest of ",
+                         counts.largest_voxels, " voxels",
+                         task.output.empty() ? "" : "; labels are in " + task.output.string()));
+        };
+    });
+}
+
+void Workbench::perform(const EvaluateTask& task)
+{
+    check(task);
+    jobs_.start("comparing with the truth", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+        const EvaluateResult result = run(task, reporter);
+        return [this, result] {
+            for (const std::string& warning : result.warnings) say(warning, Weight::warning);
+            say(sentence_about(result));
+        };
+    });
+}
+
+}  // namespace shvr::ui
