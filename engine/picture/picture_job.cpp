@@ -278,9 +278,9 @@ void PictureJob::draw_waiting(const PicturePart& part)
     DeviceVolume& volume = scene().volume();
     WaitingRays rays(renderer_.memory(), part.end - part.begin, pane().shot.right_eye ? 2 : 1);
     std::vector<gpu::PassReport> passes;
-    const bool is_lit = !pane().shot.is_slice && scene().has_occlusion(look_);
+    bool waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
     std::function<bool(const BrickKey&)> is_ready;
-    if (is_lit) is_ready = [&scene = scene()](const BrickKey& key) { return scene.occlusion().is_lit(key); };
+    if (waits_for_light) is_ready = [&scene = scene()](const BrickKey& key) { return scene.occlusion().is_lit(key); };
     volume.let_rays_wait(true, is_ready);
     const std::unique_ptr<DeviceVolume, void (*)(DeviceVolume*)> ends(&volume,
                                                                       [](DeviceVolume* v) { v->let_rays_wait(false); });
@@ -289,14 +289,19 @@ void PictureJob::draw_waiting(const PicturePart& part)
         append(passes, draw(part, &rays));
         if (!volume.has_rays_waiting()) break;
         const Progress progress = progress_of(part, round);
-        if (!is_lit) {
-            scene().advance(true, progress);
-        } else if (volume.limit_visits(scene().occlusion().reach())) {
+        if (waits_for_light && volume.limit_visits(scene().occlusion().reach())) {
             renew_occlusion(progress);
-        } else {
-            note_limited();
-            break;
+            continue;
         }
+        if (waits_for_light) {  // in vain: rays go on with what light there is
+            note_limited();
+            volume.let_rays_wait(false);
+            volume.let_rays_wait(true);
+            volume.want_around({});
+            waits_for_light = false;
+            continue;
+        }
+        scene().advance(true, progress);
     }
     finish(part, std::move(passes));
 }

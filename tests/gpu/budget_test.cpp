@@ -152,7 +152,7 @@ TEST_CASE("a ray passes more bricks than there is room for")
          }},
         {"painted",
          [&](Scenery& s) {
-             s.document.mask.apply({.brick = 100, .runs = {{.first = 9000, .last = 21000, .before = 0, .after = 3}}},
+             s.document.mask.apply({.brick = 100, .runs = {{.first = 9000, .last = 19000, .before = 0, .after = 3}}},
                                    Direction::forwards);
          }},
         {"an iso-surface",
@@ -179,6 +179,19 @@ TEST_CASE("a ray passes more bricks than there is room for")
         change(scenery);
         check_budgets(name, source, scenery, {16});
     }
+}
+
+TEST_CASE("light that comes from more bricks than there is room for is told, and the picture is drawn without it")
+{
+    // 125 bricks, all of them within two of the middle one.
+    const Source source = open_procedural({.kind = "fog", .size = {160, 160, 160}, .seed = 5});
+    Scenery scenery = scenery_of(source->info(), {12, 10});
+    scenery.session.light.occlusion = {.strength = 1.0, .radius = 40.0, .rays = 2};
+    const Picture picture = picture_of(source, scenery, 16);
+    CHECK_FALSE(picture.complete);
+    REQUIRE(picture.warnings.size() == 1);
+    CHECK(picture.warnings[0].find("ambient light comes to a brick from 125 bricks, and a device budget of 16 MiB has "
+                                   "room for ") == 0);
 }
 
 TEST_CASE("what no budget of this size draws is refused before a voxel is read")
