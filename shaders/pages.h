@@ -5,7 +5,8 @@
 //   distance << 28 | level << 24 | payload
 // Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
 // payload is the first of eight entries, x fastest, for the octants of this cell. Otherwise the payload is the slot
-// (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted.
+// (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted. Or,
+// level PAGE_MISSING, a ray that comes here waits.
 //
 // Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is Chebyshev, to the
 // nearest cell of the brick that may contain something visible, or to the brick's end; where painted is 0, no voxel of
@@ -22,6 +23,8 @@ SHARED_CONST uint PAGE_NODE = 15u;
 SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
 SHARED_CONST uint CELL_PAINTED = 1u;
 SHARED_CONST uint CELL_DISTANCE_SHIFT = 1u;
+/// Only while rays wait (RaycastInput::waiting): the brick is not on the device, and no coarser one stands in.
+SHARED_CONST uint PAGE_MISSING = 14u;
 /// Maximum cells of the directory's grid along one axis; it is rebuilt for every new view.
 SHARED_CONST uint PAGE_GRID = 32u;
 

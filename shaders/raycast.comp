@@ -13,6 +13,10 @@
 // skipping have the same bits. The number of steps is not limited: a long ray is drawn in blocks of steps, one dispatch
 // each, because some devices end a thread's loops after 65535 turns, without a word. Between blocks the target holds
 // what a ray has gathered. A ray that stops short of its end nevertheless is counted.
+//
+// Where a ray passes more bricks than there is room for, it waits (KEPT_ALL): it stops before a brick that is not on
+// the device, marks it, and goes on in a later dispatch. What it adds, and in which order, does not depend on where it
+// stops.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -43,6 +47,7 @@ layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 7) const uint SLICE = 0u;
 // 1: classifies a step by the densities at both of its ends. 2: and there are densities at which rays end.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
+layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 #endif
@@ -76,6 +81,11 @@ layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlus
 layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
 #endif
 
+#if defined(PAGED) || defined(SHELLED)
+#define KEEPS
+layout(binding = 13, rgba32f) uniform image3D rays;   // raycast.h, KEPT; without it, one texel
+#endif
+
 #include "library/rays.glsl"
 #include "library/counters.glsl"
 #ifdef MASKED
@@ -102,17 +112,19 @@ struct Place {
     uint distance;   // in cells
     uint slot;
     bool is_painted;  // perhaps
+    bool is_missing;  // never
 };
 
 Place place_at(const RaycastParams params, vec3 position)
 {
     const uint entry = imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
-    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK, (entry & LEAP_PAINTED) != 0u);
+    return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK, (entry & LEAP_PAINTED) != 0u, false);
 }
 #endif
 
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
+const float NO_SHELL = 1e30;   // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
 const float LEAST_ALPHA = 1e-30;
@@ -254,7 +266,8 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 void note(const Place place, inout Work work)
 {
 #ifdef PAGED
-    if (FEEDBACK != 0u && place.entry != work.last_entry) {
+    const bool is_wanted = KEPT != KEPT_ALL || place.is_missing;
+    if (FEEDBACK != 0u && is_wanted && place.entry != work.last_entry) {
         note_reached(place);
         work.last_entry = place.entry;
     }
@@ -262,12 +275,13 @@ void note(const Place place, inout Work work)
 }
 
 // The single sample of a slice. It is shown even where the transfer function hides it, but not outside the view.
-vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work)
+vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work, out bool waits)
 {
     Place place = place_at(params, position);
     note(place, work);
+    waits = place.is_missing;
 #ifdef PAGED
-    if (place.distance > 0u) return vec4(0.0);
+    if (place.distance > 0u || waits) return vec4(0.0);
 #endif
     return sample_look(params, ray, position, 1.0, place, work);
 }
@@ -327,34 +341,51 @@ void main()
     const ivec3 texel = ivec3(params.target + in_part, 0);
     vec4 sum = vec4(0.0);
     bool begins_inside = false;   // of the iso-surface
-    if (params.first_step > 0u) {
+    if (params.first_step > 0u && KEPT != KEPT_ALL) {
         sum = imageLoad(color, texel);
         begins_inside = sum.a < 0.0;
         sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
         if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
     }
-    Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
-    if (SLICE != 0u) {
-        const float plane = 0.5 * length_to_far;
-        if (begin <= plane && plane <= end) sum = sliced(params, ray, position_at(params, ray, plane), work);
-        end = begin;
+    vec4 kept = vec4(NO_SHELL, -1.0, 0.0, 0.0);
+    uint state = 0u;
+#ifdef KEEPS
+    if (params.first_step > 0u && KEPT != KEPT_NOTHING) kept = imageLoad(rays, ivec3(in_part, 0));
+    if (params.first_step > 0u && KEPT == KEPT_ALL) {
+        sum = imageLoad(rays, ivec3(in_part, 1));
+        state = uint(kept.w) >> 16u;
+        begins_inside = (state & RAY_IS_INSIDE) != 0u;
     }
+#endif
+    const bool was_done = (state & RAY_IS_DONE) != 0u;
+    Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
+    bool waits = false;
+    if (SLICE != 0u && !was_done) {
+        const float plane = 0.5 * length_to_far;
+        if (begin <= plane && plane <= end) sum = sliced(params, ray, position_at(params, ray, plane), work, waits);
+    }
+    if (SLICE != 0u) end = begin;
 
     const float extent = max(end - begin, 0.0);
     const uint steps = uint(min(extent / params.step, MAX_STEPS));
-    const bool is_last = params.is_last_block != 0u;
-    const uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
+    uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
+    bool is_last = params.is_last_block != 0u;
+    if (KEPT == KEPT_ALL) {
+        first_step = uint(kept.z) + ((uint(kept.w) & 0xffffu) << 16u);
+        end_step = first_step + (was_done ? 0u : min(params.end_step - params.first_step, steps - first_step));
+        is_last = end_step == steps;
+    }
     const float block_begin = begin + float(first_step) * params.step;
     const float block_end = is_last ? end : begin + float(end_step) * params.step;
 
 #ifdef SHELLED
-    Shell shell = begin_shell(params, ray, block_begin, block_end, begins_inside);
+    Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
     // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
     // separate loop, and lanes meet again at the costly sample.
     uint i = first_step;
-    while (i < end_step && sum.a < params.opacity_limit) {
+    while (i < end_step && sum.a < params.opacity_limit && !waits) {
         vec3 position;
         Place place;
         do {
@@ -367,36 +398,49 @@ void main()
             }
         } while (place.distance > 0u && i < end_step);
 #ifdef SHELLED
-        if (i < end_step) add_shells(params, ray, begin + (float(i) + 0.5) * params.step, shell, sum);
+        const float here = begin + (float(i) + 0.5) * params.step;
+        if (i < end_step) add_shells(params, ray, here, shell, sum);
+        waits = waits || (i < end_step && shell_waits(params, shell, here, sum));
 #endif
+        waits = waits || (i < end_step && place.is_missing && sum.a < params.opacity_limit);
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < end_step) {
+        if (place.distance == 0u && i < end_step && !waits) {
             accumulate(sum, sample_look(params, ray, position, 1.0, place, work));
             ++i;
         }
     }
+    if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
-    const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit;
+    const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
     count(COUNTER_CUT_SHORT, uint(is_cut_short));
 
-    if (is_last) {
+    bool has_ended = (state & RAY_HAS_ENDED) != 0u;
+    if (is_last && !waits && !has_ended && !was_done) {
         // The rest of the ray is a shorter and therefore more transparent step.
         const float rest = extent - float(steps) * params.step;
 #ifdef SHELLED
         add_shells(params, ray, end - 0.5 * rest, shell, sum);
+        waits = shell_waits(params, shell, end - 0.5 * rest, sum);
 #endif
-        if (rest > 0.0 && sum.a < params.opacity_limit) {
+        if (rest > 0.0 && sum.a < params.opacity_limit && !waits) {
             const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
             const Place place = place_at(params, position);
             note(place, work);
-            if (place.distance == 0u)
+            waits = place.is_missing;
+            if (place.distance == 0u && !waits)
                 accumulate(sum, sample_look(params, ray, position, rest / params.step, place, work));
         }
+        has_ended = !waits;
     }
 
 #ifdef SHELLED
-    add_shells(params, ray, NO_SHELL, shell, sum);
+    if (is_last && !waits && !was_done) {
+        add_shells(params, ray, NO_SHELL, shell, sum);
+        waits = shell_waits(params, shell, NO_SHELL, sum);
+    }
 #endif
+    const bool is_stopped = sum.a >= params.opacity_limit;
+    const bool is_done = was_done || is_stopped || (is_last && !waits);
 
     if (COUNT_WORK != 0u && extent > 0.0) {
         const uint crossed = bricks_between(position_at(params, ray, block_begin), position_at(params, ray, block_end));
@@ -406,11 +450,24 @@ void main()
         count(COUNTER_LEAPS, work.leaps);
         count(COUNTER_BRICKS_VISITED, work.bricks);
         count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
-        count(COUNTER_TERMINATED, uint(is_last && sum.a >= params.opacity_limit));
+        const bool ends_here = KEPT == KEPT_ALL ? is_done && !was_done : is_last;
+        count(COUNTER_TERMINATED, uint(ends_here && is_stopped));
     }
 
-    const bool is_stopped = sum.a >= params.opacity_limit;
-    if (!is_last && (PICK == 0u || !is_stopped)) {
+#ifdef KEEPS
+    if (KEPT != KEPT_NOTHING) {
+#ifdef SHELLED
+        kept.xy = vec2(shell.next, shell.from);
+        state = shell.is_inside ? RAY_IS_INSIDE : 0u;
+#else
+        state = 0u;
+#endif
+        state |= (has_ended ? RAY_HAS_ENDED : 0u) | (is_done ? RAY_IS_DONE : 0u);
+        imageStore(rays, ivec3(in_part, 0), vec4(kept.xy, float(i & 0xffffu), float(i >> 16u | state << 16u)));
+        if (KEPT == KEPT_ALL) imageStore(rays, ivec3(in_part, 1), sum);
+    }
+#endif
+    if (!is_last && KEPT != KEPT_ALL && (PICK == 0u || !is_stopped)) {
 #ifdef SHELLED
         if (shell.is_inside) sum.a = -max(sum.a, LEAST_ALPHA);
 #endif

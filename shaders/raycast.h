@@ -28,6 +28,17 @@ SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
+/// The specialization constant KEPT: what a ray leaves in `rays` between two dispatches, beside what it has gathered in
+/// its pixel. Of layer 0, x: where the next iso-surface is; y: from where on the search goes on, below 0 before the
+/// region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step in two halves, and
+/// RAY_* times 65536 in w; layer 1: what it has gathered. Pixels then have their final look in every dispatch.
+SHARED_CONST uint KEPT_NOTHING = 0u;
+SHARED_CONST uint KEPT_SHELL = 1u;
+SHARED_CONST uint KEPT_ALL = 2u;
+SHARED_CONST uint RAY_IS_INSIDE = 1u;  // the iso-surface
+SHARED_CONST uint RAY_HAS_ENDED = 2u;  // its last, shorter step is taken
+SHARED_CONST uint RAY_IS_DONE = 4u;
+
 struct RaycastParams {
     // The ray of a pixel joins two points on planes close to the volume, computed in double on the CPU; voxel space.
     vec3 near_corner;
@@ -56,8 +67,8 @@ struct RaycastParams {
     uint table_depths;   ///< texel of the table
     uint opaque_map;     ///< texel of the table; 0: none
     float opaque_scale;  ///< texel of the map = (code - table_lower) * opaque_scale
-    uint first_step;     ///< the block: steps of every ray that this dispatch takes
-    uint end_step;
+    uint first_step;     ///< the block: steps of every ray that this dispatch takes; 0: rays begin
+    uint end_step;       ///< KEPT_ALL: only how many steps these are counts
     uint is_last_block;
     vec4 background;  ///< linear light, straight alpha
     vec3 light;       ///< unit vector towards the light, volume space

@@ -87,6 +87,15 @@ public:
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
     /// Forgets earlier visits: only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
+    /// Whether the rays of pictures wait where a brick is not on the device (engine/passes/raycast.h, RaysInWaiting).
+    /// Visits are then what they wait for, and none is kept from before. Where nothing is paged, no ray ever waits.
+    /// `is_ready`: whether a brick on the device can be drawn; null: all can.
+    virtual void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) = 0;
+    /// Forgets the farthest visits until the visited bricks and those around them, as far away as `reach` gives for
+    /// their level, have room together. False where those of one visit have none.
+    virtual bool limit_visits(const std::vector<int>& reach) = 0;
+    /// Whether any ray of the pictures drawn since forget_visits() waits.
+    virtual bool has_rays_waiting() const = 0;
     /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
     /// tells `progress` which share of them has come.
     virtual std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) = 0;
@@ -101,6 +110,13 @@ public:
     virtual size_t missing() const = 0;
     /// Bricks that failed to load since the last call, one sentence each.
     virtual std::vector<std::string> take_messages() = 0;
+    enum class Presence : uint8_t {
+        there,
+        missing,  ///< it may come
+        empty,    ///< it is known to show nothing, and does not come
+        failed,   ///< it cannot be read
+    };
+    virtual Presence presence_of(const BrickKey& key) const = 0;
     /// Whether rays visited the brick, as far as is known.
     virtual bool is_drawn(const BrickKey& key) const = 0;
     /// Also requests the bricks around visited ones, as far away as `reach` gives for their level, because ambient

@@ -17,9 +17,10 @@ namespace {
 /// In addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
+/// Of paged bricks, which take more.
 uint64_t slice_bytes(uint32_t bricks)
 {
-    uint64_t bytes = occlusion_near_desc(bricks).bytes;
+    uint64_t bytes = occlusion_near_desc(bricks, true).bytes;
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) bytes += occlusion_around_desc(size, bricks).bytes;
     return bytes;
 }
@@ -82,7 +83,7 @@ void Occlusion::create(const glm::uvec3& slots)
         return memory_.create(name, desc, gpu::Placement::device, "ambient occlusion");
     };
     values_ = create_image("occlusion values", image_desc(Format::r8_uint, gpu::BRICK_TEXELS * slots));
-    near_ = create_image("occlusion scratch", occlusion_near_desc(slice_));
+    near_ = create_image("occlusion scratch", occlusion_near_desc(slice_, is_paged_));
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         cells_[size] =
             create_image("occlusion cells", image_desc(Format::r32_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
@@ -110,6 +111,7 @@ void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceM
 {
     if (volume_ != &volume) {
         clear();
+        is_paged_ = volume.counts().has_value();
         create(volume.atlas_slots());
         volume_ = &volume;
     }
@@ -185,7 +187,7 @@ void Occlusion::sync()
         const BrickKey key = arrived[i];
         for_each_offset(int(occlusion_reach(radius_of(key.level))), [&](const glm::ivec3& offset) {
             const auto neighbour = entries_.find({key.level, key.brick + offset});
-            if (neighbour != entries_.end()) neighbour->second.needs_values = true;
+            if (neighbour != entries_.end() && !neighbour->second.is_exact) neighbour->second.needs_values = true;
         });
     }
 }
@@ -223,10 +225,41 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// A brick with nothing visible may still contain voxels beside painted ones, or beside what a step's ends show.
+/// Whether every brick that its values need is there, or will never be.
+bool Occlusion::has_all_around(const BrickKey& key) const
+{
+    const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
+    bool is_missing = false;
+    for_each_offset(int(occlusion_reach(radius_of(key.level))), [&](const glm::ivec3& offset) {
+        const glm::ivec3 at = key.brick + offset;
+        const bool is_inside =
+            glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, counts));
+        is_missing =
+            is_missing || (is_inside && volume_->presence_of({key.level, at}) == DeviceVolume::Presence::missing);
+    });
+    return !is_missing;
+}
+
 bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
 {
-    if (!entry.needs_values || !volume_->is_drawn(key)) return false;
+    if (!volume_->is_drawn(key) || !is_seen(key, entry)) return false;
+    return entry.needs_values || (is_paged_ && !entry.is_exact && has_all_around(key));
+}
+
+bool Occlusion::is_lit(const BrickKey& key)
+{
+    if (!look_) return true;
+    sync();
+    const auto found = entries_.find(key);
+    if (found == entries_.end()) return false;
+    const Entry& entry = found->second;
+    if (entry.is_exact && !entry.needs_values) return true;
+    return has_all_around(key) && !is_seen(key, entry);
+}
+
+/// A brick with nothing visible may still contain voxels beside painted ones, or beside what a step's ends show.
+bool Occlusion::is_seen(const BrickKey& key, const Entry& entry) const
+{
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
     bool found = false;
     if (look_->preintegrated)
@@ -279,6 +312,7 @@ uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) con
     // Empty bricks have no cells, and nobody reads their apron.
     if (glm::any(glm::lessThan(key.brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(key.brick, counts)))
         return 0;
+    if (volume_->presence_of(key) == DeviceVolume::Presence::empty) return 0;
     for (BrickKey at = key; at.level < volume_->levels(); at = parent_of(at)) {
         const auto found = entries_.find(at);
         if (found == entries_.end()) continue;
@@ -364,7 +398,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     const int level = keys.front().level;
     const glm::dvec3& spacing = volume_->info().spacing;
     OcclusionInput input{.params = {},
-                         .taps = occlusion_taps(radius_of(level)),
+                         .taps = occlusion_taps(radius_of(level), is_paged_),
                          .visible_intervals = look_->visibility.visible_intervals,
                          .near = {}};
     for (int above = 0; above < volume_->levels() - level; ++above)
@@ -391,6 +425,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
             bricks_around.push_back(around({level, key.brick + offset}, nullptr));
         });
         entry.needs_values = false;
+        entry.is_exact = has_all_around(key);
     }
     counts_.values += jobs.size();
     OcclusionScratch scratch{.near = graph.import("occlusion scratch", near_.import())};

@@ -8,7 +8,9 @@
 //   rays, hemisphere                     -> all values
 //
 // Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing what is stale gives
-// the same bits as recomputing everything. One thread, the one that owns the memory.
+// the same bits as recomputing everything. Where a brick that light comes from is not on the device yet, the finest
+// coarser one stands in, and the values are renewed when it is: values that had all they need depend on nothing else,
+// and stay when the bricks around them are evicted. One thread, the one that owns the memory.
 
 #include <optional>
 #include <unordered_map>
@@ -57,6 +59,8 @@ public:
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
+    /// Whether pictures show the final light of a brick: it is on the device, and its values had all they need.
+    bool is_lit(const BrickKey& key);
     /// Bounds of one slice.
     struct Most {
         size_t bricks = 1;       ///< bricks whose values are computed, up to gpu::OCCLUSION_SLICE
@@ -79,7 +83,8 @@ private:
         uint32_t slot = 0;
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
-        bool is_new = true;  ///< its values have never been computed
+        bool is_new = true;     ///< its values have never been computed
+        bool is_exact = false;  ///< every brick that its values needed was there
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -90,6 +95,8 @@ private:
     double radius_of(int level) const;
     bool is_painted(const BrickKey& key, int reach) const;
     bool shows(const BrickKey& key, const Entry& entry) const;
+    bool is_seen(const BrickKey& key, const Entry& entry) const;
+    bool has_all_around(const BrickKey& key) const;
     bool is_candidate(const BrickKey& key, const Entry& entry) const;
     std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most) const;
     uint32_t around(const BrickKey& key, std::vector<BrickKey>* keys) const;
@@ -107,6 +114,7 @@ private:
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> cells_;
     gpu::Storage near_;
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
+    bool is_paged_ = false;
     uint32_t slice_ = gpu::OCCLUSION_SLICE;  ///< bricks that the scratch images hold
     bool images_are_new_ = false;
     Entries entries_;

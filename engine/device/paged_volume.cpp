@@ -39,7 +39,28 @@ uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int 
     return slots;
 }
 
+int kept_levels(int levels)
+{
+    return std::min(levels, int(gpu::PAGE_MISSING));
+}
+
+/// Half of the room is for finer bricks.
+void check_coarsest(const VolumeInfo& info, int levels, uint64_t slots)
+{
+    const int64_t bricks = brick_total(info.size, levels - 1);
+    if (bricks >= int64_t(slots / 2))
+        fail(info.name, ": its coarsest level has ", bricks, " bricks and the device has room for ", slots,
+             "; expected a coarser level, as `shvr import` makes, or --budget-device ",
+             (4 * uint64_t(bricks) * BrickAtlas::slot_bytes() >> 20) + 1);
+}
+
 }  // namespace
+
+void PagedVolume::check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes)
+{
+    levels = kept_levels(levels);
+    check_coarsest(info, levels, slots_for(traits, info, levels, device_bytes));
+}
 
 PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                          const IntensityWindow& window, const Options& options)
@@ -47,7 +68,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       memory_(memory),
       source_(std::move(source)),
       options_(options),
-      levels_(std::min(source_->levels(), int(gpu::PAGE_NODE) - 1)),
+      levels_(kept_levels(source_->levels())),
       atlas_(executor, memory, slots_for(memory.device().traits(), source_->info(), levels_, options.device_bytes),
              options.filtered),
       slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
@@ -61,6 +82,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
 /// Loads the coarsest level now, so that there is something to show at once, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
+    check_coarsest(info(), levels_, slots_.count());
     for (int level = levels_ - 1; level >= 0; --level) {
         if (brick_total(info().size, level) > COARSE_BRICKS && level < levels_ - 1) break;
         const glm::ivec3 counts = brick_counts(size_of_level(info().size, level));
@@ -72,10 +94,6 @@ void PagedVolume::pin_coarse_levels()
                     coarse_.push_back({level, {x, y, z}});
                 }
         if (level < levels_ - 1) continue;
-        if (coarse_.size() >= slots_.count() / 2)
-            fail(info().name, ": its coarsest level has ", coarse_.size(), " bricks and the device has room for ",
-                 slots_.count(), "; expected a coarser level, as `shvr import` makes, or --budget-device ",
-                 (4 * coarse_.size() * BrickAtlas::slot_bytes() >> 20) + 1);
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
         atlas_.flush();
@@ -126,11 +144,12 @@ int PagedVolume::look(const PageView& view, const Visibility& visibility)
     leaf_index_.clear();
     for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_[tree_->leaves[leaf].key] = leaf;
     is_reached_.assign(tree_->leaves.size(), false);
+    has_visits_ = false;
     // Bricks needed a moment ago are likely to be needed again.
     for (size_t leaf = 0; before && !is_other_look && leaf < reached_before.size(); ++leaf) {
         if (!reached_before[leaf]) continue;
         const auto found = leaf_index_.find(before->leaves[leaf].key);
-        if (found != leaf_index_.end()) is_reached_[found->second] = true;
+        if (found != leaf_index_.end()) is_reached_[found->second] = has_visits_ = true;
     }
     slots_.tick();
     ++reached_revision_;
@@ -145,14 +164,14 @@ void PagedVolume::look_by(const Visibility& visibility)
     if (view_) look(PageView(*view_), visibility);
 }
 
-PagedVolume::LeafState PagedVolume::state_of(const BrickKey& key) const
+DeviceVolume::Presence PagedVolume::state_of(const BrickKey& key) const
 {
-    if (slots_.contains(key)) return LeafState::resident;
+    if (slots_.contains(key)) return Presence::there;
     const auto range = known_ranges_.find(key);
     if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
         !visibility_.shows(range->second.minimum, range->second.maximum))
-        return LeafState::empty;
-    return store_.failure_of(key) ? LeafState::failed : LeafState::missing;
+        return Presence::empty;
+    return store_.failure_of(key) ? Presence::failed : Presence::missing;
 }
 
 void PagedVolume::fill_directory()
@@ -163,7 +182,14 @@ void PagedVolume::fill_directory()
     for (size_t leaf = 0; leaf < entry_of_leaf.size(); ++leaf) {
         BrickKey key = tree_->leaves[leaf].key;
         entry_of_leaf[leaf] = NOTHING;
-        if (state_of(key) == LeafState::empty) continue;
+        const Presence state = state_of(key);
+        if (state == Presence::empty) continue;
+        const bool is_awaited = state == Presence::missing || (state == Presence::failed && !given_up_.contains(key)) ||
+                                (state == Presence::there && is_ready_ && !is_ready_(key));
+        if (rays_wait_ && is_awaited) {
+            entry_of_leaf[leaf] = gpu::PAGE_MISSING << gpu::PAGE_LEVEL_SHIFT;
+            continue;
+        }
         for (; key.level < levels_; key = parent_of(key)) {
             const std::optional<uint32_t> slot = slots_.find(key);
             if (!slot) continue;
@@ -278,8 +304,12 @@ void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std:
                 leaf = found->second;
             }
             if (is_reached_[leaf]) continue;
-            is_reached_[leaf] = true;
+            is_reached_[leaf] = has_visits_ = true;
             slots_.use(tree_->leaves[leaf].key);
+            if (rays_wait_ && state_of(tree_->leaves[leaf].key) == Presence::failed) {
+                given_up_.insert(tree_->leaves[leaf].key);
+                directory_is_stale_ = true;
+            }
             ++reached_revision_;
             needs_changed();
         }
@@ -289,10 +319,22 @@ void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std:
 void PagedVolume::forget_visits()
 {
     is_reached_.assign(is_reached_.size(), false);
+    has_visits_ = false;
+    directory_is_stale_ = directory_is_stale_ || is_ready_;
     slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
     needs_changed();
+}
+
+void PagedVolume::let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready)
+{
+    if (wait == rays_wait_) return;
+    rays_wait_ = wait;
+    is_ready_ = std::move(is_ready);
+    given_up_.clear();
+    directory_is_stale_ = true;
+    forget_visits();
 }
 
 }  // namespace shvr

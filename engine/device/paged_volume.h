@@ -38,6 +38,9 @@ public:
     PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                 const IntensityWindow& window, const Options& options);
 
+    /// Fails where so much device memory holds too few bricks of such a volume, its coarsest level among them.
+    static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes);
+
     int look(const PageView& view, const Visibility& visibility) override;
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return tree_ != nullptr; }
@@ -53,6 +56,10 @@ public:
     Feedback request_feedback(FrameGraph& graph, const VolumeBinding& volume) const override;
     void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) override;
     void forget_visits() override;
+    void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) override;
+    bool limit_visits(const std::vector<int>& reach) override;
+    Presence presence_of(const BrickKey& key) const override { return state_of(key); }
+    bool has_rays_waiting() const override { return rays_wait_ && has_visits_; }
     std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) override;
     State state() const override;
     size_t missing() const override;
@@ -76,12 +83,11 @@ public:
     std::optional<Counts> counts() const override;
 
 private:
-    enum class LeafState : uint8_t { missing, resident, empty, failed };
-
     bool is_always_shown(const BrickKey& key) const;
     bool shows(const BrickKey& key) const;
     bool is_painted(const BrickKey& key) const;
-    LeafState state_of(const BrickKey& key) const;
+    Presence state_of(const BrickKey& key) const;
+    void add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const;
     BrickNeed need_of(const BrickKey& key) const;
     bool leaf_is_reached(const BrickKey& key) const;
     void needs_changed();
@@ -114,7 +120,12 @@ private:
     Visibility visibility_;
     std::shared_ptr<const PageTree> tree_;
     std::unordered_map<BrickKey, uint32_t, BrickKeyHash> leaf_index_;
-    std::vector<bool> is_reached_;   ///< by leaf
+    std::vector<bool> is_reached_;  ///< by leaf
+    bool has_visits_ = false;       ///< whether a leaf is reached
+    bool rays_wait_ = false;
+    std::function<bool(const BrickKey&)> is_ready_;
+    /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
+    std::unordered_set<BrickKey, BrickKeyHash> given_up_;
     std::vector<uint32_t> entries_;  ///< the directory to be uploaded
     bool directory_is_stale_ = true;
     bool wants_are_stale_ = true;

@@ -21,6 +21,47 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf != leaf_index_.end() && is_reached_[leaf->second];
 }
 
+/// The bricks of its level at most `reach` away, itself included.
+void PagedVolume::add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const
+{
+    const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
+    const glm::ivec3 first = glm::max(key.brick - reach, 0), last = glm::min(key.brick + reach, counts - 1);
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+}
+
+bool PagedVolume::limit_visits(const std::vector<int>& reach)
+{
+    size_t room = slots_.count() - 1;
+    for (const auto& [key, slot] : slots_.placed()) room -= slots_.is_pinned(slot) || region_.contains(key);
+    const auto takes_room = [&](const BrickKey& key) {
+        const std::optional<uint32_t> slot = slots_.find(key);
+        return slot ? !slots_.is_pinned(*slot) && !region_.contains(key) : state_of(key) == Presence::missing;
+    };
+    std::unordered_set<BrickKey, BrickKeyHash> keys;
+    bool is_full = false, is_any = false;
+    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf) {
+        if (!is_reached_[leaf]) continue;
+        std::unordered_set<BrickKey, BrickKeyHash> more;
+        const BrickKey& key = tree_->leaves[leaf].key;
+        add_around(key, reach.at(size_t(key.level)), more);
+        const auto added = size_t(std::ranges::count_if(
+            more, [&](const BrickKey& near) { return !keys.contains(near) && takes_room(near); }));
+        is_full = is_full || added > room;
+        if (is_full) {
+            is_reached_[leaf] = false;
+            continue;
+        }
+        is_any = true;
+        room -= added;
+        keys.merge(more);
+    }
+    ++reached_revision_;
+    needs_changed();
+    return is_any || !is_full;
+}
+
 void PagedVolume::want_around(const std::vector<int>& reach)
 {
     if (around_reach_ == reach && (reach.empty() || around_revision_ == reached_revision_)) return;
@@ -29,13 +70,8 @@ void PagedVolume::want_around(const std::vector<int>& reach)
     std::unordered_set<BrickKey, BrickKeyHash> keys;
     for (size_t leaf = 0; tree_ && !reach.empty() && leaf < is_reached_.size(); ++leaf) {
         const BrickKey& key = tree_->leaves[leaf].key;
-        if (!is_reached_[leaf] || state_of(key) == LeafState::empty) continue;
-        const int far = reach.at(size_t(key.level));
-        const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
-        const glm::ivec3 first = glm::max(key.brick - far, 0), last = glm::min(key.brick + far, counts - 1);
-        for (int z = first.z; z <= last.z; ++z)
-            for (int y = first.y; y <= last.y; ++y)
-                for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+        if (!is_reached_[leaf] || state_of(key) == Presence::empty) continue;
+        add_around(key, reach.at(size_t(key.level)), keys);
     }
     if (keys == around_) return;
     around_ = std::move(keys);
@@ -66,7 +102,7 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
 {
     known_ranges_[key] = texels.range;
     if (slots_.contains(key)) return true;
-    if (!for_region && state_of(key) == LeafState::empty) {
+    if (!for_region && state_of(key) == Presence::empty) {
         directory_is_stale_ = true;
         return true;
     }
@@ -135,7 +171,7 @@ void PagedVolume::update_wants()
     pending_ = 0;
     is_limited_ = false;
     for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf) {
-        if (!is_reached_[leaf] || state_of(tree_->leaves[leaf].key) != LeafState::missing) continue;
+        if (!is_reached_[leaf] || state_of(tree_->leaves[leaf].key) != Presence::missing) continue;
         if (pending_ == room) {
             is_limited_ = true;
             break;
@@ -144,7 +180,7 @@ void PagedVolume::update_wants()
         keys.push_back(tree_->leaves[leaf].key);
     }
     for (const BrickKey& key : around_) {
-        if (state_of(key) != LeafState::missing || leaf_is_reached(key)) continue;
+        if (state_of(key) != Presence::missing || leaf_is_reached(key)) continue;
         if (pending_ == room) {
             is_limited_ = true;
             break;
@@ -189,9 +225,10 @@ PagedVolume::State PagedVolume::state() const
 
 size_t PagedVolume::missing() const
 {
+    if (rays_wait_) return given_up_.size();
     size_t count = 0;
     for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf)
-        count += is_reached_[leaf] && state_of(tree_->leaves[leaf].key) == LeafState::failed;
+        count += is_reached_[leaf] && state_of(tree_->leaves[leaf].key) == Presence::failed;
     return count;
 }
 

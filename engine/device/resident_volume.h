@@ -38,6 +38,10 @@ public:
     Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
     void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
     void forget_visits() override {}
+    void let_rays_wait(bool, std::function<bool(const BrickKey&)>) override {}
+    bool limit_visits(const std::vector<int>&) override { return true; }
+    Presence presence_of(const BrickKey&) const override { return Presence::there; }
+    bool has_rays_waiting() const override { return false; }
     std::vector<VoxelBox> advance(bool, const Progress&) override { return {}; }
     State state() const override { return State::complete; }
     size_t missing() const override { return 0; }

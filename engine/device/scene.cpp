@@ -187,7 +187,18 @@ bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Opti
 void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     static_cast<void>(filters(memory.device().traits(), options.sampling));
-    if (pages(memory, source, options)) check_levels(source, options.host_bytes);
+    const uint64_t left = memory.device_bytes_left(), bytes = ResidentVolume::bytes_for(source.info());
+    if (pages(memory, source, options)) {
+        const uint64_t atlas = atlas_bytes(memory, source.info(), options.with_occlusion, 0);
+        if (source.levels() > 1)
+            PagedVolume::check_room(memory.device().traits(), source.info(), source.levels(), atlas);
+        check_levels(source, options.host_bytes);
+    } else if (bytes > left) {
+        throw gpu::BudgetError(sentence(source.info().name, ": render.paging is never, and its bricks need ",
+                                        gpu::mebibytes(bytes), " of device memory, of which ", gpu::mebibytes(left),
+                                        " are left; expected render.paging automatic, or at least --budget-device ",
+                                        budget_for(memory.device_budget() - left + bytes)));
+    }
 }
 
 // ---- Changes --------------------------------------------------------------------------------------------------------

@@ -23,16 +23,17 @@ constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
 static_assert(std::size(FAR_STRETCHES) == gpu::OCCLUSION_SIZES * gpu::OCCLUSION_FAR_TAPS);
 static_assert((gpu::OCCLUSION_NEAR_TAPS - 0.5) * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);
 static_assert(2.0 * double(gpu::OCCLUSION_EDGE_REACH) + 0.5 < gpu::OCCLUSION_NEAR_APRON);
+static_assert(gpu::OCCLUSION_NEAR_APRON_PAGED >= gpu::OCCLUSION_NEAR_APRON + gpu::BRICK_APRON);
 
 /// Angle between successive directions: the golden angle.
 const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 }  // namespace
 
-ResourceDesc occlusion_near_desc(uint32_t jobs)
+ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged)
 {
-    constexpr uint32_t SIDE = gpu::OCCLUSION_NEAR_SIDE;
-    return image_desc(Format::r32_uint, {SIDE, SIDE, SIDE * jobs});
+    const uint32_t side = is_paged ? gpu::OCCLUSION_NEAR_SIDE_PAGED : gpu::OCCLUSION_NEAR_SIDE;
+    return image_desc(Format::r32_uint, {side, side, side * jobs});
 }
 
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
@@ -41,8 +42,9 @@ ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
     return image_desc(Format::r32_uint, {side, side, side * jobs});
 }
 
-OcclusionTaps occlusion_taps(double radius)
+OcclusionTaps occlusion_taps(double radius, bool is_paged)
 {
+    const double max_offset = MAX_OFFSET + (is_paged ? gpu::BRICK_APRON : 0);
     OcclusionTaps result{.radius = radius, .first = radius < 1.0 ? radius : 0.0};
     if (radius < 1.0) return result;
     double begin = 0.0;
@@ -64,7 +66,7 @@ OcclusionTaps occlusion_taps(double radius)
         add(result.stretched * FAR_STRETCHES[i]);
         for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
         const double cell = 2 << size;
-        result.aprons[size] = uint32_t(std::ceil((double(result.taps.back().distance) + MAX_OFFSET) / cell));
+        result.aprons[size] = uint32_t(std::ceil((double(result.taps.back().distance) + max_offset) / cell));
         SHVR_CHECK(result.aprons[size] <= MAX_APRON);
     }
     return result;
@@ -122,11 +124,10 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
             OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
             std::span<const uint32_t> around)
 {
-    constexpr uint32_t SIDE = gpu::OCCLUSION_NEAR_SIDE;
-    const Resource zeros = graph.fill(graph.create("occlusion start", buffer_desc(uint64_t{4} * SIDE * SIDE * SIDE)), 0,
-                                      "start occlusion");
+    const ResourceDesc of_one = occlusion_near_desc(1, volume.pages.has_value());
+    const Resource zeros = graph.fill(graph.create("occlusion start", buffer_desc(of_one.bytes)), 0, "start occlusion");
     std::vector<ImageRegion> regions;
-    for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, SIDE * i}, glm::uvec3(SIDE)});
+    for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, of_one.texels.z * i}, of_one.texels});
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
     Pass pass = graph.compute(
         "occlusion_gather",

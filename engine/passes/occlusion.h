@@ -21,7 +21,7 @@ struct OcclusionScratch {
     Resource near;                                        ///< r32ui, see near_opacity
     std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons
 };
-ResourceDesc occlusion_near_desc(uint32_t jobs);
+ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged);
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 
 /// Where rays sample opacity, and the weight of each sample. Lengths in units of the brick's level.
@@ -36,8 +36,8 @@ struct OcclusionTaps {
 };
 /// The largest radius, in units of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
-/// Radii below 1 have no tap: light reaches every voxel.
-OcclusionTaps occlusion_taps(double radius);
+/// Radii below 1 have no tap: light reaches every voxel. `is_paged`: for rays that begin in a brick's apron as well.
+OcclusionTaps occlusion_taps(double radius, bool is_paged = false);
 
 /// How many bricks on each side of a brick its light comes from.
 uint32_t occlusion_reach(double radius);

@@ -44,7 +44,7 @@ uint64_t steps_of_ray(const gpu::RaycastParams& params)
 }
 
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
-                       Resource target)
+                       Resource target, std::optional<Resource>& rays)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     Pass pass = graph.compute("raycast", {{"PAGED", volume.pages.has_value()},
@@ -83,8 +83,19 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
+    if (volume.pages || is_shelled) {
+        pass.constant("KEPT", input.waiting ? gpu::KEPT_ALL : rays ? gpu::KEPT_SHELL : gpu::KEPT_NOTHING);
+        const bool is_first = input.params.first_step == 0;
+        if (!rays) {
+            static_cast<void>(pass.write("rays", graph.create("rays", image_desc(Format::rgba32_float, {1, 1, 1}))));
+        } else {
+            rays = is_first ? pass.write("rays", *rays) : pass.modify("rays", *rays);
+        }
+    }
     pixel_groups(pass, pixels, input.group_width, input.tile);
-    return input.params.first_step > 0 ? pass.modify("color", target) : pass.write("color", target);
+    // Rays in waiting keep what they have gathered elsewhere.
+    const bool continues = input.params.first_step > 0 && !input.waiting;
+    return continues ? pass.modify("color", target) : pass.write("color", target);
 }
 
 }  // namespace
@@ -95,13 +106,20 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const uint64_t steps = input.slice ? 1 : steps_of_ray(input.params);
     const uint64_t steps_each = steps_of_block(volume, input, is_shelled);
     const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
+    std::optional<Resource> rays;
+    if (input.waiting) rays = input.waiting->state;
+    if (!input.waiting && is_shelled && blocks > 1)
+        rays = graph.create(
+            "rays", image_desc(Format::rgba32_float, glm::uvec3(input.params.pixel_end - input.params.pixel_begin, 1)));
+    const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
     RaycastInput block = input;
-    for (uint64_t i = 0; i < blocks; ++i) {
+    for (uint64_t i = before; i < before + blocks; ++i) {
         block.params.first_step = uint32_t(i * steps_each);
         block.params.end_step = uint32_t((i + 1) * steps_each);
         block.params.is_last_block = i + 1 == blocks;
-        target = raycast_block(graph, volume, block, is_shelled, target);
+        target = raycast_block(graph, volume, block, is_shelled, target, rays);
     }
+    if (input.waiting) *input.waiting = {*rays, true};
     return target;
 }
 

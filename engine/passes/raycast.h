@@ -21,6 +21,12 @@ struct RaycastOcclusion {
 /// log2 of the shininess if the kernels can reach it by squaring, otherwise gpu::NOT_A_POWER_OF_TWO.
 uint32_t shininess_squarings(float shininess);
 
+/// Rays that wait where a brick is not on the device, and go on in a later graph (shaders/raycast.h, KEPT_ALL).
+struct RaysInWaiting {
+    Resource state;           ///< rgba32f image of the drawn pixels, two layers; updated by raycast()
+    bool have_begun = false;  ///< `state` holds what an earlier graph left
+};
+
 struct RaycastInput {
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image, as shaders/raycast.h has it
@@ -36,12 +42,14 @@ struct RaycastInput {
     bool preintegrated = false;        ///< `table` is for steps between two densities
     bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays
     bool pick = false;                 ///< positions instead of colours, see the kernel
+    RaysInWaiting* waiting = nullptr;  ///< of paged bricks; null: rays wait for nothing
 };
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied,
 /// over the background. Returns its new version, and updates `volume.pages->reached`. Long rays take a pass for each
 /// block of their steps; of a ray that is longer than the largest number of blocks reaches, and of one that the device
-/// stops, COUNTER_CUT_SHORT tells.
+/// stops, COUNTER_CUT_SHORT tells. Rays in waiting mark only the bricks that they wait for; the picture is what it
+/// should be once none does.
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

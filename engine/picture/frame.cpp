@@ -73,8 +73,13 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
 
 /// The picture of one eye. A preview is drawn before the rays, so that they end at it, and then over the picture.
 Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
-                  const PicturePart& part, Resource target)
+                  const PicturePart& part, Resource target, const WaitingRays* rays = nullptr, size_t eye = 0)
 {
+    RaysInWaiting waiting;
+    if (rays) {
+        waiting = rays->import(graph, eye);
+        input.waiting = &waiting;
+    }
     input.surfaces = draw_surfaces(graph, scene, prepared, input, camera, part);
     if (!part.probe || !part.probe->preview || part.probe->preview->voxels == 0)
         return raycast(graph, prepared.volume, input, target);
@@ -94,14 +99,26 @@ Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastIn
 
 }  // namespace
 
+WaitingRays::WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int eyes)
+{
+    for (int eye = 0; eye < eyes; ++eye)
+        eyes_.push_back(memory.create("waiting rays", image_desc(Format::rgba32_float, glm::uvec3(pixels, 2)),
+                                      gpu::Placement::device, "the picture"));
+}
+
+RaysInWaiting WaitingRays::import(FrameGraph& graph, size_t eye) const
+{
+    return {graph.import("waiting rays", eyes_.at(eye).import()), have_begun_};
+}
+
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
-           Resource target, bool count_work)
+           Resource target, bool count_work, WaitingRays* waiting)
 {
     Prepared prepared = prepare(graph, scene, look, shot, part, true);
     prepared.input.count_work = count_work;
     Drawn drawn;
     if (!shot.right_eye) {
-        drawn.target = draw_eye(graph, scene, prepared, prepared.input, shot.camera, part, target);
+        drawn.target = draw_eye(graph, scene, prepared, prepared.input, shot.camera, part, target, waiting);
     } else {
         const glm::uvec2 size = part.end - part.begin;
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
@@ -109,11 +126,12 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
         left.params.target = right.params.target = glm::uvec2(0);
         set_rays(right.params, look, *shot.right_eye, scene.info(), part.pixels);
         const Resource by_left =
-            draw_eye(graph, scene, prepared, left, shot.camera, part, graph.create("left eye", desc));
+            draw_eye(graph, scene, prepared, left, shot.camera, part, graph.create("left eye", desc), waiting, 0);
         const Resource by_right =
-            draw_eye(graph, scene, prepared, right, *shot.right_eye, part, graph.create("right eye", desc));
+            draw_eye(graph, scene, prepared, right, *shot.right_eye, part, graph.create("right eye", desc), waiting, 1);
         drawn.target = anaglyph(graph, by_left, by_right, target, size, part.target);
     }
+    if (waiting) waiting->have_begun();
     drawn.feedback = scene.volume().request_feedback(graph, prepared.volume);
     return drawn;
 }

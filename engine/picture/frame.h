@@ -21,6 +21,7 @@
 
 #include "engine/device/scene.h"
 #include "engine/look/look.h"
+#include "engine/passes/raycast.h"
 #include "engine/picture/probe_look.h"
 
 namespace shvr {
@@ -37,15 +38,31 @@ struct PicturePart {
     std::optional<VoxelBox> always_shown{};
 };
 
+/// What rays have gathered that wait for bricks, from one graph to the next (engine/passes/raycast.h, RaysInWaiting).
+class WaitingRays {
+public:
+    /// Bytes on the device for a pixel of each eye.
+    static constexpr uint64_t PIXEL_BYTES = 2 * 4 * sizeof(float);
+    /// `pixels`: of the part that is drawn. Fails where the budget does not hold them.
+    WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int eyes);
+    RaysInWaiting import(FrameGraph& graph, size_t eye) const;
+    void have_begun() { have_begun_ = true; }
+
+private:
+    std::vector<gpu::Storage> eyes_;
+    bool have_begun_ = false;
+};
+
 /// What was added to a graph: the target's new version, and the feedback to hand to the volume when the graph is done.
 struct Drawn {
     Resource target;
     DeviceVolume::Feedback feedback;
 };
 /// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float image: linear light,
-/// premultiplied, over the background. The graph must be submitted before any graph made later.
+/// premultiplied, over the background. The graph must be submitted before any graph made later. `waiting`: rays go on
+/// where they waited for bricks in the graph before; it is the same part, and the volume lets rays wait.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
-           Resource target, bool count_work = false);
+           Resource target, bool count_work = false, WaitingRays* waiting = nullptr);
 /// What all parts of a shot need before their rays are followed, whatever their size: tables, directory, surfaces. The
 /// graph must be submitted before any graph made later. Parts are drawn without it as well.
 FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);

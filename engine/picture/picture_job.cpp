@@ -31,6 +31,9 @@ constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
 /// More is on the device beside a part's own images: tables and the directory of bricks.
 constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
 
+/// Parts of at most so many pixels, of which a ray's state takes WaitingRays::PIXEL_BYTES, are drawn by rays that wait.
+constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
+
 /// Bytes on the device for a pixel of a part, as frame.cpp adds images.
 uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe)
 {
@@ -225,12 +228,12 @@ void PictureJob::step()
 }
 
 /// Draws a part with the bricks on the device; stores its pixels, and reports the visited bricks to the volume.
-std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part)
+std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRays* waiting)
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
     const glm::uvec2 size = part.end - part.begin, origin = pane().box.begin + part.begin;
     const Resource color = graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
-    const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work);
+    const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work, waiting);
     const uint32_t pixels = graph.read_back(drawn.target);
     gpu::FrameResult result =
         renderer_.executor().run(graph, {.timestamps = options_.timestamps, .serialize = options_.serialize});
@@ -258,30 +261,70 @@ void PictureJob::draw_completely(const PicturePart& part)
         passes = draw(part);
         scene().advance(true, progress);
         load_around(progress);  // bricks seen again may have been lit while there was no room for those around them
+        if (volume.state() == State::limited) break;
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) break;
-        if (volume.state() == State::limited) break;
     }
-    if (volume.state() == State::limited && area_of(part) > 1) {
-        for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
-        return;
-    }
-    drawn_pixels_ += area_of(part);
-    if (volume.state() == State::limited) note_limited();
-    rays_cut_short_ += rays_cut_short(passes);
-    picture_.complete = picture_.complete && volume.state() == State::complete && volume.missing() == 0;
-    append(picture_.passes, std::move(passes));
+    if (volume.state() == State::complete) return finish(part, std::move(passes));
+    if (area_of(part) <= MAX_WAITING_PIXELS) return draw_waiting(part);
+    for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
 }
 
-/// One ray needs more bricks than there is room for.
+/// Draws a part whose rays need more bricks than there is room for. In every round the bricks that rays wait for are
+/// loaded, the nearest first, as many as there is room for; so some ray goes on, and bricks are passed from near to
+/// far.
+void PictureJob::draw_waiting(const PicturePart& part)
+{
+    DeviceVolume& volume = scene().volume();
+    WaitingRays rays(renderer_.memory(), part.end - part.begin, pane().shot.right_eye ? 2 : 1);
+    std::vector<gpu::PassReport> passes;
+    bool waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
+    std::function<bool(const BrickKey&)> is_ready;
+    if (waits_for_light) is_ready = [&scene = scene()](const BrickKey& key) { return scene.occlusion().is_lit(key); };
+    volume.let_rays_wait(true, is_ready);
+    const std::unique_ptr<DeviceVolume, void (*)(DeviceVolume*)> ends(&volume,
+                                                                      [](DeviceVolume* v) { v->let_rays_wait(false); });
+    for (int round = 1;; ++round) {
+        volume.forget_visits();
+        append(passes, draw(part, &rays));
+        if (!volume.has_rays_waiting()) break;
+        const Progress progress = progress_of(part, round);
+        if (waits_for_light && volume.limit_visits(scene().occlusion().reach())) {
+            renew_occlusion(progress);
+            continue;
+        }
+        if (waits_for_light) {  // in vain: rays go on with what light there is
+            note_limited();
+            volume.let_rays_wait(false);
+            volume.let_rays_wait(true);
+            volume.want_around({});
+            waits_for_light = false;
+            continue;
+        }
+        scene().advance(true, progress);
+    }
+    finish(part, std::move(passes));
+}
+
+/// The light of one brick needs more bricks than there is room for.
 void PictureJob::note_limited()
 {
+    picture_.complete = false;
     if (!picture_.warnings.empty()) return;
     const DeviceVolume::Counts counts = scene().volume().counts().value_or(DeviceVolume::Counts{});
     const uint64_t budget = renderer_.memory().device_budget() >> 20;
-    picture_.warnings.push_back(sentence(
-        "the light along one ray passes more bricks of the volume than the ", counts.slots, " that a device budget of ",
-        budget, " MiB has room for; expected a larger one, as --budget-device ", 2 * budget, " gives"));
+    picture_.warnings.push_back(sentence("ambient light comes to a brick from ", gpu::OCCLUSION_AROUND,
+                                         " bricks, and a device budget of ", budget, " MiB has room for ", counts.slots,
+                                         "; expected a light.occlusion.radius of at most ", gpu::BRICK_SIZE - 4,
+                                         ", or a larger one, as --budget-device ", 2 * budget, " gives"));
+}
+
+void PictureJob::finish(const PicturePart& part, std::vector<gpu::PassReport> passes)
+{
+    drawn_pixels_ += area_of(part);
+    rays_cut_short_ += rays_cut_short(passes);
+    picture_.complete = picture_.complete && scene().volume().missing() == 0;
+    append(picture_.passes, std::move(passes));
 }
 
 Picture PictureJob::take()

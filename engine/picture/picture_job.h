@@ -4,7 +4,8 @@
 // thread, the renderer's.
 //
 //   picture -> bands of rows, as high as the host has room for -> panes that a band meets -> parts, as large as the
-//   device has room for -> quarters, where a part needs more bricks than there is room for
+//   device has room for -> quarters, where a part needs more bricks than there is room for -> small ones in rounds:
+//   their rays wait before bricks that are not there, and go on when those are (engine/passes/raycast.h)
 
 #include <functional>
 
@@ -25,8 +26,8 @@ public:
 
     bool is_done() const { return parts_.empty() && band_end_ == size_.y; }
     /// Draws the next part and waits for it, and for paged bricks: a part is drawn again until all bricks that its rays
-    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters. Hands on
-    /// the rows of a band that is done.
+    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters, or drawn
+    /// by rays that wait for them. Hands on the rows of a band that is done.
     void step();
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
@@ -40,9 +41,11 @@ private:
     void begin_band();
     void end_band();
     uint32_t part_side();
-    std::vector<gpu::PassReport> draw(const PicturePart& part);
+    std::vector<gpu::PassReport> draw(const PicturePart& part, WaitingRays* waiting = nullptr);
     void draw_completely(const PicturePart& part);
+    void draw_waiting(const PicturePart& part);
     void note_limited();
+    void finish(const PicturePart& part, std::vector<gpu::PassReport> passes);
     void load_around(const Progress& progress);
     void renew_occlusion(const Progress& progress);
     Progress progress_of(const PicturePart& part, int round);

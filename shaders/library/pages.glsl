@@ -1,4 +1,4 @@
-// Finds bricks in the directory of pages.h. Needs `params`; declares its own bindings.
+// Finds bricks in the directory of pages.h. Needs `params`, SLICE and KEPT; declares its own bindings.
 
 layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } directory;
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
@@ -13,6 +13,7 @@ struct Place {
     uint level;
     uint entry;
     bool is_painted;  // perhaps
+    bool is_missing;  // a ray waits here
 };
 
 Place place_at(const RaycastParams params, vec3 position)
@@ -37,12 +38,13 @@ Place place_at(const RaycastParams params, vec3 position)
     place.is_painted = true;
     place.slot = entry & PAGE_PAYLOAD_MASK;
     place.level = entry >> PAGE_LEVEL_SHIFT & 0xfu;
+    place.is_missing = KEPT == KEPT_ALL && place.distance == 0u && place.level == PAGE_MISSING;
     if (place.distance == 0u && SLICE == 0u) {
         const uvec3 cell = voxel >> place.level + 2u & BRICK_CELLS - 1u;
         place.box_shift = place.cell_shift;
         place.cell_shift = place.level + 2u;
         const uint found = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;
-        place.distance = found >> CELL_DISTANCE_SHIFT;
+        place.distance = place.is_missing ? 0u : found >> CELL_DISTANCE_SHIFT;
         place.is_painted = (found & CELL_PAINTED) != 0u;
     }
     return place;

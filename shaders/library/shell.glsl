@@ -7,20 +7,25 @@
 // of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
 // through the loop, since lanes that leave early keep no other.
 
-const float NO_SHELL = 1e30;
 // Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored.
 const float SHELL_HAIR = 1e-3;
 
+// Cells are always searched whole, also where a block of the ray's steps ends in one, so that crossings do not depend
+// on how rays are divided.
 struct Shell {
     float next;       // length along the ray of the next crossing
-    float from;       // length where the search continues
+    float from;       // length where the search continues; below 0: it has not begun
+    float known;      // all crossings before this length are known
+    float limit;      // cells that begin here or later are left to later dispatches
     float end;
     bool is_inside;   // at `from`
+    bool waits;       // for a brick
 };
 
 // The cell of the lattice around a position, in the brick that holds it.
 struct Cell {
     bool is_there;
+    bool is_missing;  // the ray waits
     vec3 corner;      // lower, on the lattice of the brick's level
     ivec3 to_atlas;
     float scale;      // side of a cell, in voxels of level 0
@@ -31,9 +36,10 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
 {
     const Place place = place_at(params, position);
 #ifdef PAGED
-    if (FEEDBACK != 0u) note_reached(place);
+    if (FEEDBACK != 0u && (KEPT != KEPT_ALL || place.is_missing)) note_reached(place);
 #endif
     Cell cell;
+    cell.is_missing = place.is_missing;
     cell.is_there = place.slot != NO_SLOT;
 #ifdef PAGED
     const uint level = place.level;
@@ -93,11 +99,11 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
     return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
 }
 
-// Finds the next crossing. Sets `next` to NO_SHELL if the region ends first.
+// Finds the next crossing. Sets `next` to NO_SHELL if the region, or what may be searched, ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
-    while (shell.next == NO_SHELL && shell.from < shell.end) {
+    while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits) {
         const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
         const float to = min(max(cell.exit, shell.from + 2.0 * SHELL_HAIR), shell.end);
         const float extent = to - shell.from;
@@ -122,11 +128,13 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
         } else {
             found = shell.is_inside ? 0.0 : NO_SHELL;
         }
-        const bool is_found = found != NO_SHELL;
+        const bool is_found = found != NO_SHELL && !cell.is_missing;
         const float at = shell.from + found * extent;
         shell.next = is_found ? at : NO_SHELL;
         shell.is_inside = is_found ? !shell.is_inside : shell.is_inside;
-        shell.from = is_found ? at + SHELL_HAIR : to;
+        shell.from = cell.is_missing ? shell.from : is_found ? at + SHELL_HAIR : to;
+        shell.known = shell.from;
+        shell.waits = cell.is_missing;
     }
 }
 
@@ -149,29 +157,40 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `begins_inside`: at `begin`, where an earlier block of the ray ended in the region.
-Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end, bool begins_inside)
+// `begin`, `end`: of the ray; `limit`: of its part that is followed now. `kept`, `is_inside`: as an earlier part left
+// them (raycast.h).
+Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end, float limit, vec4 kept,
+                  bool is_inside)
 {
     const vec2 range = shell_range(params, ray);
+    const float start = max(begin, range.x);
     Shell shell;
-    shell.next = NO_SHELL;
-    shell.from = max(begin, range.x);
+    shell.next = kept.x;
+    shell.from = kept.y;
+    shell.known = kept.y < 0.0 ? start : kept.y;
     shell.end = min(end, range.y);
-    shell.is_inside = begins_inside;
-    if (shell.from < shell.end) {
-        const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
-        const bool is_inside = cell.is_there && above_threshold(params, ray, cell, shell.from) >= 0.0;
-        shell.is_inside = params.first_step > 0u && range.x < begin ? begins_inside : is_inside;
-        search_shell(params, ray, shell);
+    shell.limit = min(limit, shell.end);
+    shell.is_inside = is_inside;
+    shell.waits = false;
+    if (shell.from < 0.0 && start < shell.limit) {
+        const Cell cell = cell_at(params, ray, position_at(params, ray, start + SHELL_HAIR));
+        shell.is_inside = cell.is_there && above_threshold(params, ray, cell, start) >= 0.0;
+        shell.waits = cell.is_missing;
+        shell.from = cell.is_missing ? -1.0 : start;
     }
+    if (shell.from >= 0.0 && shell.next == NO_SHELL) search_shell(params, ray, shell);
     return shell;
 }
 
-// Colour and opacity of a crossing, lit from both sides.
-vec4 shell_look(const RaycastParams params, const Ray ray, float s)
+// Whether a crossing before `s` may not be known yet, or cannot be drawn yet.
+bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
-    const vec3 position = position_at(params, ray, s);
-    const Cell cell = cell_at(params, ray, position);
+    return shell.waits && sum.a < params.opacity_limit && (shell.next == NO_SHELL ? shell.known : shell.next) < s;
+}
+
+// Colour and opacity of a crossing in a cell, lit from both sides.
+vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3 position)
+{
     const vec3 slope = gradient_of(density_in(cell, position)) * params.inverse_spacing;
     const vec3 along = ray.direction * params.spacing;
     const float square = dot(slope, slope);
@@ -184,8 +203,13 @@ vec4 shell_look(const RaycastParams params, const Ray ray, float s)
 // Adds the crossings before `s`.
 void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
 {
-    while (shell.next < s && sum.a < params.opacity_limit) {
-        accumulate(sum, shell_look(params, ray, shell.next));
-        search_shell(params, ray, shell);
+    while (shell.next < s && sum.a < params.opacity_limit && !shell.waits) {
+        const vec3 position = position_at(params, ray, shell.next);
+        const Cell cell = cell_at(params, ray, position);
+        shell.waits = cell.is_missing;
+        if (!cell.is_missing) {
+            accumulate(sum, shell_look(params, ray, cell, position));
+            search_shell(params, ray, shell);
+        }
     }
 }

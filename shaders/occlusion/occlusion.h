@@ -27,7 +27,10 @@
 // surroundings of the brick, and then discarded; so are copies of the cells around the brick, which let rays read from
 // one piece of memory.
 //
-// "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included.
+// "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. Of a
+// resident volume a brick's values are written to the aprons of its neighbours. A paged brick's aprons are computed
+// with it, from the same numbers and to the same bits, so that its values depend on the bricks around it alone, and not
+// on whether and when those had theirs.
 #ifndef SHVR_OCCLUSION_H
 #define SHVR_OCCLUSION_H
 #include "../bricks.h"
@@ -39,6 +42,9 @@ SHARED_CONST uint OCCLUSION_SIZES = 2u;  // of cells: 2 << size voxels a side
 SHARED_CONST uint OCCLUSION_SLICE = 16u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
+/// Likewise for paged bricks, whose rays begin in their aprons as well.
+SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
+SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
 /// Maximum number of bricks on each side of a brick that its light comes from; sets the largest radius.
 SHARED_CONST uint OCCLUSION_REACH = 2u;
 SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3

@@ -1,6 +1,12 @@
 // The bricks around one whose values are computed, and which of its cells may be visible. Needs `bricks_around`, and
 // `leap`, or if PAGED `cell_leap`.
 
+#ifdef PAGED
+const uint NEAR_APRON = OCCLUSION_NEAR_APRON_PAGED, NEAR_SIDE = OCCLUSION_NEAR_SIDE_PAGED;
+#else
+const uint NEAR_APRON = OCCLUSION_NEAR_APRON, NEAR_SIDE = OCCLUSION_NEAR_SIDE;
+#endif
+
 shared uint around[OCCLUSION_AROUND];
 
 uint around_count(uint reach)

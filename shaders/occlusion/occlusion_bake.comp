@@ -44,10 +44,18 @@ const float BEND_2 = 0.2, BEND_4 = 0.06;
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
+#ifdef PAGED
+const uint APRON_VOXELS = BRICK_TEXELS * BRICK_TEXELS * BRICK_TEXELS - BRICK_SIZE * BRICK_SIZE * BRICK_SIZE;
+const uint APRONS_OF_ONE = (APRON_VOXELS + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
+#else
+const uint APRONS_OF_ONE = 0u;
+#endif
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
-shared uint voxels[CELLS_OF_ONE * VOXELS_OF_CELL / 2u];   // two in each entry
+// Two in each entry: cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
+shared uint voxels[(CELLS_OF_ONE * VOXELS_OF_CELL + APRONS_OF_ONE + 1u) / 2u];
 shared uint voxel_count;
+const uint IN_APRON = 1u << 15u;
 
 // Whether any of these voxels is in an occupied cell, or with `grow` within one voxel of such a cell.
 bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
@@ -65,6 +73,31 @@ bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_
 ivec3 voxel_of(uint cell, uint lane)
 {
     return 4 * ivec3(cell & 7u, cell >> 3u & 7u, cell >> 6u) + ivec3(lane & 3u, lane >> 2u & 3u, lane >> 4u);
+}
+
+#ifdef PAGED
+// The voxels right around the brick: two whole layers, and between them rings.
+ivec3 apron_voxel(uint number)
+{
+    const uint side = BRICK_TEXELS, layer = side * side, ring = 4u * (side - 1u), inner = side - 2u;
+    const bool is_in_layer = number < 2u * layer;
+    const uint in_layer = number % layer, rest = number - 2u * layer, r = rest % ring;
+    const uvec2 row = r < 2u * side ? uvec2(r % side, r < side ? 0u : side - 1u)
+                                    : uvec2(r < 2u * side + inner ? 0u : side - 1u, (r - 2u * side) % inner + 1u);
+    const uvec3 texel = is_in_layer ? uvec3(in_layer % side, in_layer / side, number < layer ? 0u : side - 1u)
+                                    : uvec3(row, rest / ring + 1u);
+    return ivec3(texel) - 1;
+}
+#endif
+
+// The texel of a voxel in the slot of the brick that it belongs to, which is there and of this level.
+ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
+{
+#ifdef PAGED
+    return ivec3(slot_origin(entry_at(params.reach, voxel >> 5))) + int(BRICK_APRON) + (voxel & 31);
+#else
+    return ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;
+#endif
 }
 
 // Whether visible samples may read the values of four voxels in a row: bits. They may if the transfer function shows
@@ -87,10 +120,10 @@ uint shows_nearby(ivec3 texel)
     return bits;
 }
 
-void add_voxel(uint cell, uint in_cell)
+void add_voxel(uint voxel)
 {
     const uint at = atomicAdd(voxel_count, 1u);
-    atomicAdd(voxels[at >> 1u], (cell << 6u | in_cell) << 16u * (at & 1u));
+    atomicAdd(voxels[at >> 1u], voxel << 16u * (at & 1u));
 }
 
 // Lists the voxels that are computed, in no order.
@@ -101,7 +134,7 @@ void list_voxels(const OcclusionJob job)
         cell_count = 0u;
         voxel_count = 0u;
     }
-    for (uint i = lane; i < CELLS_OF_ONE * VOXELS_OF_CELL / 2u; i += 64u) voxels[i] = 0u;
+    for (uint i = lane; i < uint(voxels.length()); i += 64u) voxels[i] = 0u;
     barrier();
     for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
         const uint cell = i * OCCLUSION_SPLIT + gl_WorkGroupID.z;
@@ -113,7 +146,7 @@ void list_voxels(const OcclusionJob job)
     const uint found = cell_count, by_voxel = params.grow != 0u ? found : 0u;
     for (uint i = 0u; i < by_voxel; ++i) {
         const ivec3 voxel = voxel_of(cells[i], lane);
-        if (any_cell_is_occupied(job, voxel, voxel)) add_voxel(cells[i], lane);
+        if (any_cell_is_occupied(job, voxel, voxel)) add_voxel(cells[i] << 6u | lane);
     }
     const ivec3 slot = ivec3(slot_origin(job.slot)) + int(BRICK_APRON);
     const uint row = lane & 15u, by_rows = params.grow != 0u ? 0u : (found + 3u) / 4u;
@@ -121,40 +154,67 @@ void list_voxels(const OcclusionJob job)
         const uint index = 4u * i + (lane >> 4u), cell = cells[min(index, found - 1u)];
         const uint bits = shows_nearby(slot + voxel_of(cell, 4u * row));
         for (uint k = 0u; k < 4u; ++k)
-            if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell, 4u * row + k);
+            if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }
+#ifdef PAGED
+    // Those that the neighbours list as their own.
+    for (uint i = OCCLUSION_SPLIT * lane + gl_WorkGroupID.z; i < APRON_VOXELS; i += 64u * OCCLUSION_SPLIT) {
+        const ivec3 voxel = apron_voxel(i);
+        const uint entry = entry_at(params.reach, voxel >> 5);
+        const ivec3 first = voxel & ~3;
+        const bool is_there = entry != 0u && entry >> OCCLUSION_LEVEL_SHIFT == 0u;
+        if (!is_there || !any_cell_is_occupied(job, params.grow != 0u ? voxel : first,
+                                               params.grow != 0u ? voxel : first + 3))
+            continue;
+        if (params.grow != 0u || (shows_nearby(texel_of(job, voxel)) & 1u) != 0u) add_voxel(IN_APRON + i);
+    }
+#endif
     barrier();
 }
 
-// Positions are above 0 where they are truncated: aprons are in them.
-ivec3 with_job(ivec3 texel, uint side)
+// Positions are relative to the block of 4^3 voxels that the voxel is in, plus these many voxels, so that they are
+// above 0 where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
+const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
+
+// From positions in that block to texels of the scratch images, which hold jobs stacked along z.
+struct Block {
+    ivec3 to_near, to_2, to_4;
+};
+
+Block block_of(ivec3 voxel)
 {
-    return texel + ivec3(0, 0, side * gl_WorkGroupID.x);   // the images hold jobs stacked along z
+    const ivec3 first = voxel & ~3;
+    const int job = int(gl_WorkGroupID.x);
+    const int side_2 = int((BRICK_SIZE >> 1u) + 2u * params.aprons[0]);
+    const int side_4 = int((BRICK_SIZE >> 2u) + 2u * params.aprons[1]);
+    return Block(first + (int(NEAR_APRON) - NEAR_AHEAD) + ivec3(0, 0, int(NEAR_SIDE) * job),
+                 (first >> 1) + (int(params.aprons[0]) - CELLS_AHEAD / 2) + ivec3(0, 0, side_2 * job),
+                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + ivec3(0, 0, side_4 * job));
 }
 
-// Opacity of half a voxel over the stretch of a near tap; `half_voxel` from the apron's corner.
-float near_at(ivec3 half_voxel)
+// Opacity of half a voxel over the stretch of a near tap.
+float near_at(const Block block, ivec3 half_voxel)
 {
-    const uint packed = imageLoad(near, with_job(half_voxel >> 1, OCCLUSION_NEAR_SIDE)).x;
+    const uint packed = imageLoad(near, (half_voxel >> 1) + block.to_near).x;
     const ivec3 half_of = half_voxel & 1;
     return near_opacity(packed, uint(half_of.x | half_of.y << 1 | half_of.z << 2));
 }
 
-// `place` in voxels from the brick's corner.
-float near_between(vec3 place)
+// `place` in voxels from the block's corner.
+float near_between(const Block block, vec3 place)
 {
-    const vec3 lattice = 2.0 * place + (2.0 * float(OCCLUSION_NEAR_APRON) - 0.5);
+    const vec3 lattice = 2.0 * place + (2.0 * float(NEAR_AHEAD) - 0.5);
     const ivec3 c = ivec3(lattice);
     const vec3 f = lattice - vec3(c);
-    const vec4 v = mix(vec4(near_at(c), near_at(c + ivec3(0, 1, 0)), near_at(c + ivec3(0, 0, 1)),
-                            near_at(c + ivec3(0, 1, 1))),
-                       vec4(near_at(c + ivec3(1, 0, 0)), near_at(c + ivec3(1, 1, 0)), near_at(c + ivec3(1, 0, 1)),
-                            near_at(c + ivec3(1, 1, 1))), f.x);
+    const vec4 v = mix(vec4(near_at(block, c), near_at(block, c + ivec3(0, 1, 0)), near_at(block, c + ivec3(0, 0, 1)),
+                            near_at(block, c + ivec3(0, 1, 1))),
+                       vec4(near_at(block, c + ivec3(1, 0, 0)), near_at(block, c + ivec3(1, 1, 0)),
+                            near_at(block, c + ivec3(1, 0, 1)), near_at(block, c + ivec3(1, 1, 1))), f.x);
     const vec2 w = mix(v.xz, v.yw, f.y);
     return mix(w.x, w.y, f.z);
 }
 
-// What a ray samples at: cells of one size, or half voxels. Positions are in these, from the apron's corner.
+// What a ray samples at: cells of one size, or half voxels. Positions are in these.
 struct Lattice {
     vec3 origin;    // where rays begin
     float height;   // of the surface, as dot(heights, position)
@@ -165,7 +225,7 @@ struct Lattice {
 struct Surface {
     vec3 normal;
     float strength;
-    vec3 place;    // where rays begin, voxels from the brick's corner
+    vec3 place;    // where rays begin, voxels from the block's corner
     vec3 heights;  // units along the normal for each voxel
     vec3 scale;    // the part of a cell's columns along each axis that are behind it: base - scale * height in cells
     vec3 base;
@@ -178,14 +238,14 @@ float saturated(float share)
     return 1.0 - rest * rest;
 }
 
-Lattice lattice_of(const Surface s, float per_voxel, uint apron, float margin, float wall)
+Lattice lattice_of(const Surface s, float per_voxel, int ahead, float margin, float wall)
 {
-    const vec3 origin = s.place * per_voxel + float(apron);
+    const vec3 origin = (s.place + float(ahead)) * per_voxel;
     const float lift = (margin - s.strength * OCCLUSION_LIFT) * per_voxel;
     return Lattice(origin, dot(origin - 0.5, s.heights) + lift, s.strength * wall);
 }
 
-Surface surface_at(vec3 centre, vec3 slope)
+Surface surface_at(const Block block, vec3 centre, vec3 slope)
 {
     Surface s;
     const float square = dot(slope, slope), fade = params.gradient_fade * params.gradient_fade;
@@ -196,8 +256,8 @@ Surface surface_at(vec3 centre, vec3 slope)
     float before[OCCLUSION_EDGE_TAPS], behind[OCCLUSION_EDGE_TAPS], most = 0.0, clear = 1.0;
     for (uint i = 0u; i < OCCLUSION_EDGE_TAPS; ++i) {
         const float along = (float(i) + 0.5) * apart;
-        before[i] = near_between(centre + along * step);
-        behind[i] = near_between(centre - along * step);
+        before[i] = near_between(block, centre + along * step);
+        behind[i] = near_between(block, centre - along * step);
         most = max(most, behind[i]);
         clear = min(clear, before[i]);
     }
@@ -216,9 +276,9 @@ Surface surface_at(vec3 centre, vec3 slope)
     s.scale = 1.0 / max(across, 0.1);
     s.base = 0.5 + 0.5 * extent * s.scale;
     const float left = clamp((1.0 - most) / max(1.0 - clear, 1e-6), 1e-4, 1.0);
-    s.halves = lattice_of(s, 2.0, 2u * OCCLUSION_NEAR_APRON, MARGIN_HALVES, 1.0 - left);
-    s.cells_2 = lattice_of(s, 0.5, params.aprons[0], MARGIN_2, 1.0 - pow(left, params.far_exponents[0]));
-    s.cells_4 = lattice_of(s, 0.25, params.aprons[1], MARGIN_4, WALL_4 * (1.0 - pow(left, params.far_exponents[1])));
+    s.halves = lattice_of(s, 2.0, NEAR_AHEAD, MARGIN_HALVES, 1.0 - left);
+    s.cells_2 = lattice_of(s, 0.5, CELLS_AHEAD, MARGIN_2, 1.0 - pow(left, params.far_exponents[0]));
+    s.cells_4 = lattice_of(s, 0.25, CELLS_AHEAD, MARGIN_4, WALL_4 * (1.0 - pow(left, params.far_exponents[1])));
     return s;
 }
 
@@ -230,10 +290,10 @@ float beyond_surface(float opacity, float of_surface)
 }
 
 // `leaves`: 1 if the ray leaves the surface, otherwise 0.
-float near_tap(const Surface s, ivec3 half_voxel, float leaves)
+float near_tap(const Surface s, const Block block, ivec3 half_voxel, float leaves)
 {
     const float height = dot(vec3(half_voxel), s.heights) - s.halves.height;
-    return beyond_surface(near_at(half_voxel), leaves * s.halves.wall * clamp(0.5 - height, 0.0, 1.0));
+    return beyond_surface(near_at(block, half_voxel), leaves * s.halves.wall * clamp(0.5 - height, 0.0, 1.0));
 }
 
 float cell_tap(const Surface s, const Lattice lattice, ivec3 cell, uint packed, vec3 weights, float leaves)
@@ -258,15 +318,15 @@ vec2 after_near(vec2 light, float stretch, float stopped)
 
 // Light that arrives along a ray, in units. No buffer is read and nothing is a loop: SIMD devices would go lane by
 // lane.
-float along(const Surface s, vec3 direction, float leaves, ivec3 voxel)
+float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
     const vec3 step = direction * params.inverse_spacing, weights = direction * direction;
     const ivec3 half_0 = ivec3(s.halves.origin + 2.0 * params.near_taps[0].distance * step);
     const ivec3 half_1 = ivec3(s.halves.origin + 2.0 * params.near_taps[1].distance * step);
     const ivec3 half_2 = ivec3(s.halves.origin + 2.0 * params.near_taps[2].distance * step);
-    const ivec3 own = voxel + int(OCCLUSION_NEAR_APRON);
-    float stop_0 = near_tap(s, half_0, leaves), stop_1 = near_tap(s, half_1, leaves);
-    float stop_2 = near_tap(s, half_2, leaves);
+    const ivec3 own = in_block + NEAR_AHEAD;
+    float stop_0 = near_tap(s, block, half_0, leaves), stop_1 = near_tap(s, block, half_1, leaves);
+    float stop_2 = near_tap(s, block, half_2, leaves);
     stop_2 = half_2 >> 1 == own ? 0.0 : stop_2;
     stop_1 = half_1 >> 1 == own ? min(stop_1, stop_2) : stop_1;
     stop_0 = half_0 >> 1 == own ? min(stop_0, stop_1) : stop_0;
@@ -274,15 +334,14 @@ float along(const Surface s, vec3 direction, float leaves, ivec3 voxel)
     light = after_near(light, params.near_taps[1].stretch, stop_1);
     light = after_near(light, params.near_taps[2].stretch, stop_2);
 
-    const uint side_2 = (BRICK_SIZE >> 1u) + 2u * params.aprons[0], side_4 = (BRICK_SIZE >> 2u) + 2u * params.aprons[1];
     const ivec3 cell_0 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[0].distance * step);
     const ivec3 cell_1 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[1].distance * step);
     const ivec3 cell_2 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[2].distance * step);
     const ivec3 cell_3 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[3].distance * step);
-    const uint packed_0 = imageLoad(around_2, with_job(cell_0, side_2)).x;
-    const uint packed_1 = imageLoad(around_2, with_job(cell_1, side_2)).x;
-    const uint packed_2 = imageLoad(around_4, with_job(cell_2, side_4)).x;
-    const uint packed_3 = imageLoad(around_4, with_job(cell_3, side_4)).x;
+    const uint packed_0 = imageLoad(around_2, cell_0 + block.to_2).x;
+    const uint packed_1 = imageLoad(around_2, cell_1 + block.to_2).x;
+    const uint packed_2 = imageLoad(around_4, cell_2 + block.to_4).x;
+    const uint packed_3 = imageLoad(around_4, cell_3 + block.to_4).x;
     const float far_0 = cell_tap(s, s.cells_2, cell_0, packed_0, weights, leaves);
     const float far_1 = cell_tap(s, s.cells_2, cell_1, packed_1, weights, leaves);
     const float far_2 = cell_tap(s, s.cells_4, cell_2, packed_2, weights, leaves);
@@ -293,18 +352,23 @@ float along(const Surface s, vec3 direction, float leaves, ivec3 voxel)
     return after(light, params.far_taps[3].stretch, far_3, BEND_4).y;
 }
 
-// Stores the value at the voxel and at its copies in other bricks. Aprons that no brick of this level writes repeat
-// their edge voxels.
-void store(const OcclusionJob job, ivec3 voxel, uint value)
+// Stores the value at the voxel and at its copies in other bricks; those of paged bricks compute their own. Aprons that
+// no brick of this level has repeat their edge voxels.
+void store(const OcclusionJob job, ivec3 voxel, bool is_apron, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
-    const uint copies = side == ivec3(0) ? 1u : 8u;
+    const uint copies = is_apron || side == ivec3(0) ? 1u : 8u;
     for (uint i = 0u; i < copies; ++i) {
         const ivec3 offset = side * ivec3(i & 1u, i >> 1u & 1u, i >> 2u);
         const uint entry = entry_at(params.reach, offset);
         const bool is_there = entry != 0u && entry >> OCCLUSION_LEVEL_SHIFT == 0u;
+#ifdef PAGED
+        if (is_there && offset != ivec3(0)) continue;
+        imageStore(values, ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel + offset, uvec4(value));
+#else
         const ivec3 in_slot = is_there ? voxel - 32 * offset : voxel + offset;
         imageStore(values, ivec3(slot_origin(is_there ? entry : job.slot)) + int(BRICK_APRON) + in_slot, uvec4(value));
+#endif
     }
 }
 
@@ -320,14 +384,22 @@ void main()
         const uint index = 64u * turn + gl_LocalInvocationIndex;
         const uint listed = voxels[min(index, count - 1u) >> 1u] >> 16u * (index & 1u) & 0xffffu;
         const uint rays = index < count ? params.rays : 0u;
+#ifdef PAGED
+        const bool is_apron = (listed & IN_APRON) != 0u;
+        const ivec3 voxel = is_apron ? apron_voxel(listed - IN_APRON) : voxel_of(listed >> 6u, listed & 63u);
+#else
+        const bool is_apron = false;
         const ivec3 voxel = voxel_of(listed >> 6u, listed & 63u);
+#endif
+        const Block block = block_of(voxel);
+        const ivec3 in_block = voxel & 3;
 
-        const ivec3 texel = ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;
+        const ivec3 texel = texel_of(job, voxel);
         const vec3 slope = 0.5 * params.inverse_spacing *
                            vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
                                 code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                                 code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
-        const Surface surface = surface_at(vec3(voxel) + 0.5, slope);
+        const Surface surface = surface_at(block, vec3(in_block) + 0.5, slope);
         // Two vectors that are square to the normal and to each other (Duff et al. 2017).
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
@@ -345,9 +417,10 @@ void main()
             const vec2 beside = sqrt(max(1.0 - height * height, 0.0)) * turned;
             turned = vec2(turned.x * params.turn_cos - turned.y * params.turn_sin,
                           turned.x * params.turn_sin + turned.y * params.turn_cos);
-            sum += along(surface, beside.x * one + beside.y * other + height * n, float(height > 1e-4), voxel);
+            sum += along(surface, block, beside.x * one + beside.y * other + height * n, float(height > 1e-4),
+                         in_block);
         }
         const float value = sum * share / params.radius;
-        if (rays > 0u) store(job, voxel, uint(255.0 * min(value, 1.0) + 0.5));
+        if (rays > 0u) store(job, voxel, is_apron, uint(255.0 * min(value, 1.0) + 0.5));
     }
 }

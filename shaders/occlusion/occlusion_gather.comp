@@ -32,7 +32,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 #include "occlusion_opacity.glsl"
 #include "../library/voxel_code.glsl"
 
-const uint CELLS_A_SIDE = OCCLUSION_NEAR_SIDE / CELL_SIZE;
+const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
 // Where nothing is visible, `near` is 0 from the start. Work is skipped by loop counts, never by branches.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
@@ -133,7 +133,7 @@ void main()
     for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
         const uint cell = i * OCCLUSION_SPLIT + share;
         if (cell >= CELLS_OF_ALL) continue;
-        const ivec3 at = place(cell, CELLS_A_SIDE) - int(OCCLUSION_NEAR_APRON / CELL_SIZE);
+        const ivec3 at = place(cell, CELLS_A_SIDE) - int(NEAR_APRON / CELL_SIZE);
         if (cell_is_occupied(params.reach, params.cell_counts, job, at)) cells[atomicAdd(cell_count, 1u)] = cell;
     }
     barrier();
@@ -142,8 +142,8 @@ void main()
     const uint end = cell_count;
     for (uint i = 0u; i < end; ++i) {
         const ivec3 texel = int(CELL_SIZE) * place(cells[i], CELLS_A_SIDE) + in_cell;
-        const uint packed = near_of(params, job, texel - int(OCCLUSION_NEAR_APRON));
-        imageStore(near, texel + int(OCCLUSION_NEAR_SIDE) * behind, uvec4(packed));
+        const uint packed = near_of(params, job, texel - int(NEAR_APRON));
+        imageStore(near, texel + int(NEAR_SIDE) * behind, uvec4(packed));
     }
     // Work that is rarely there is skipped by the loops' ends.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;

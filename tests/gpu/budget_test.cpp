@@ -20,6 +20,7 @@ struct Scenery {
     Session session;
     RenderOptions options;
     Document document;
+    std::optional<Camera> camera{};  ///< null: from the front
 };
 
 Scenery scenery_of(const VolumeInfo& info, const glm::uvec2& pixels)
@@ -61,7 +62,8 @@ Picture picture_of(const Source& source, const Scenery& scenery, uint64_t device
     renderer.load(source, BYTES, scenery.session.render, shows_occlusion(scenery.session.light));
     renderer.scene().show(scenery.document);
     renderer.scene().show_surfaces(scenery.session.surfaces, scenery.document.trace, scenery.session.groups);
-    Picture picture = renderer.render(scenery.session, camera_looking("front", source->info()), scenery.options);
+    const Camera camera = scenery.camera.value_or(camera_looking("front", source->info()));
+    Picture picture = renderer.render(scenery.session, camera, scenery.options);
     CHECK(renderer.memory().peak_device_bytes() <= device_mib << 20);
     for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
     return picture;
@@ -125,9 +127,91 @@ TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is 
     check_budgets("from afar", source, scenery, {16, 64});
     Scenery lit = scenery;
     lit.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
-    check_budgets("with ambient occlusion", source, lit, {64});
+    check_budgets("with ambient occlusion", source, lit, {16, 24, 64});
     scenery.document.mask = painted_mask(source->info().size, 6);  // 5.4 MB
     check_budgets("painted", source, scenery, {16, 24});
+}
+
+TEST_CASE("a ray passes more bricks than there is room for")
+{
+    // 132 bricks along x, each of which shows something; a budget of 16 MiB has room for 127.
+    const Source source = open_procedural({.kind = "fog", .size = {4224, 34, 20}, .seed = 5});
+    Scenery plain = scenery_of(source->info(), {6, 5});
+    plain.session.light.shaded = false;
+    plain.session.transfer_function = TransferFunction({{50.0, glm::dvec3(0.9, 0.2, 0.1), 1e-4},
+                                                        {110.0, glm::dvec3(0.2, 0.9, 0.3), 5e-4},
+                                                        {170.0, glm::dvec3(0.3, 0.4, 1.0), 2e-4}});
+    plain.camera = camera_along({.size = {4224, 34, 20}}, {1.0, 0.002, 0.001}, 16.0);
+    const std::pair<const char*, std::function<void(Scenery&)>> kinds[] = {
+        {"translucent", [](Scenery&) {}},
+        {"shaded", [](Scenery& s) { s.session.light.shaded = true; }},
+        {"pre-integration", [](Scenery& s) { s.session.render.preintegration = true; }},
+        {"an opaque surface far behind",
+         [](Scenery& s) {
+             s.session.surfaces = {{{4100, 17, 10}, {4100, 17, 10}, 6.0, 6.0, glm::dvec3(0.1, 0.9, 0.3)}};
+         }},
+        {"painted",
+         [&](Scenery& s) {
+             s.document.mask.apply({.brick = 100, .runs = {{.first = 9000, .last = 19000, .before = 0, .after = 3}}},
+                                   Direction::forwards);
+         }},
+        {"an iso-surface",
+         [](Scenery& s) {
+             s.options.probe = ProbeLook{.center = {2112.0, 17.0, 10.0},
+                                         .radius = 2200.0,
+                                         .color = RED,
+                                         .ball_share = 0.0,
+                                         .shell = ShellLook{.threshold = 110.0, .opacity = 0.01, .is_box = true}};
+         }},
+        {"ambient occlusion",
+         [](Scenery& s) {
+             s.session.light.shaded = true;
+             s.session.light.occlusion = {.strength = 1.0, .radius = 7.0, .rays = 4};
+         }},
+        {"two eyes",
+         [](Scenery& s) {
+             s.session.view.arrangement = Arrangement::stereo;
+             s.session.view.stereo.output = StereoOutput::anaglyph;
+         }},
+    };
+    for (const auto& [name, change] : kinds) {
+        Scenery scenery = plain;
+        change(scenery);
+        check_budgets(name, source, scenery, {16});
+    }
+}
+
+TEST_CASE("light that comes from more bricks than there is room for is told, and the picture is drawn without it")
+{
+    // 125 bricks, all of them within two of the middle one.
+    const Source source = open_procedural({.kind = "fog", .size = {160, 160, 160}, .seed = 5});
+    Scenery scenery = scenery_of(source->info(), {12, 10});
+    scenery.session.light.occlusion = {.strength = 1.0, .radius = 40.0, .rays = 2};
+    const Picture picture = picture_of(source, scenery, 16);
+    CHECK_FALSE(picture.complete);
+    REQUIRE(picture.warnings.size() == 1);
+    CHECK(picture.warnings[0].find("ambient light comes to a brick from 125 bricks, and a device budget of 16 MiB has "
+                                   "room for ") == 0);
+}
+
+TEST_CASE("what no budget of this size draws is refused before a voxel is read")
+{
+    // Nobody waits for these to be read: 2^30 voxels, a level of 4096 bricks.
+    const Source deep = open_procedural({.kind = "fog", .size = {1024, 1024, 1024}, .levels = 2});
+    const auto said = [&](Paging paging, uint64_t mib) -> std::string {
+        Renderer renderer({.device = {"", true}, .budget = {mib << 20, 0}, .threads = 1});
+        try {
+            renderer.check_sizes(*deep, {.paging = paging}, false);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(said(Paging::automatic, 4096) == "");
+    CHECK(said(Paging::automatic, 16).find("its coarsest level has 4096 bricks and the device has room for ") !=
+          std::string::npos);
+    CHECK(said(Paging::automatic, 6).find("a picture needs ") != std::string::npos);
+    CHECK(said(Paging::never, 256).find("render.paging is never, and its bricks need ") != std::string::npos);
 }
 
 TEST_CASE("paint that a budget does not hold is refused in one sentence with a remedy")

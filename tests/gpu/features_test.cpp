@@ -69,7 +69,8 @@ const std::vector<Feature> FEATURES{
      {"surfaces"}},
     {"iso-surface around the probe",
      [](Scenery& s) { s.options.probe = probe_of(s.options.probe ? 0.5 : 0.0, true); },
-     {"raycast_shelled"}},
+     {"raycast_shelled"},
+     {"rays"}},
     {"preview of the brush",
      [](Scenery& s) {
          if (!s.options.probe) s.options.probe = probe_of(0.0, false);
@@ -111,7 +112,7 @@ const std::vector<Feature> FEATURES{
     {"bricks that come and go",
      [](Scenery& s) { s.paging = Paging::always; },
      {"raycast_paged", "brick_leap", "what rays came by", "clear reached", "upload page directory"},
-     {"brick staging", "cell leap", "page directory", "page directory entries", "reached"}},
+     {"brick staging", "cell leap", "page directory", "page directory entries", "rays", "reached"}},
     {"filtered sampling", [](Scenery& s) { s.sampling = Sampling::hardware; }, {"raycast_filtered"}},
     {"two eyes", [](Scenery& s) { s.session.view.arrangement = Arrangement::stereo; }, {}},
     {"anaglyph",
