@@ -127,7 +127,7 @@ class Kept(CliTest):
         journal.write_bytes(kept)
         self.assertEqual(self.export("--quiet")["voxels_by_group"], {"1": 1, "2": 1})
         # A journal that is older than the mask is noticed by the same.
-        self.annotate([{"op": "save"}])
+        self.annotate([self.dab(3), {"op": "save"}])
         journal.write_bytes(kept)
         said = self.check("export", self.session, status=1).stderr
         self.assertIn("paint.zarr: was saved by a later state of the journal", said)

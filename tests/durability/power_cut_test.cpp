@@ -44,7 +44,7 @@ Record work_of_a_day(const fs::path& folder)
     std::string said;
     for (int day = 0; day < 3; ++day) {
         auto work = open_work(files_in(folder), said);
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < 110; ++i) {
             const Record::State before = record.states.back();
             const size_t steps = before.steps + size_t(random_step(*work, random));
             const Record::State now{steps, hash_of(work->document()), work->kept_settings()};
