@@ -54,9 +54,9 @@ MAY_INCLUDE = {
     "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
     "engine/session engine/picture shaders",
     "haptics": "engine/base",
-    "ui/workbench": "engine/base engine/look engine/annotation/script engine/annotation/trace engine/annotation/work engine/session engine/picture "
-    "engine/live haptics",
-    "ui": "engine/base engine/gpu engine/live haptics ui/workbench",
+    "ui/workbench": "engine/base engine/look engine/annotation/script engine/annotation/trace engine/annotation/work "
+    "engine/session engine/jobs engine/tasks engine/picture engine/live haptics",
+    "ui": "engine/base engine/gpu engine/session engine/live haptics ui/workbench",
     "tests": "*",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders ui ui/workbench",

@@ -48,7 +48,7 @@ public:
     {
         written_.levels = level_count(info.size);
         for (int level = 0; level < written_.levels; ++level) {
-            volumes_.push_back(import_level(folder, info, level, version, compressor));
+            volumes_.push_back(import_level(folder, info, level, version, compressor, false));
             cubes_.emplace_back(IMPORT_CHUNK);
             const Size3 counts = chunk_counts(size_of_level(info.size, level));
             written_.chunks += counts.x * counts.y * counts.z;

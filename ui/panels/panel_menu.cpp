@@ -73,6 +73,8 @@ void file_menu(const Model& model, Actions& actions)
     if (ImGui::MenuItem("Copy the session", nullptr, false, model.is_open)) actions.push_back(CopySession{});
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
+    task_menu(model);
+    ImGui::Separator();
     item("screenshot", model, actions);
     item("large_screenshot", model, actions);
     ImGui::Separator();
@@ -253,6 +255,7 @@ void menu_bar(const Model& model, Actions& actions)
     }
     open_dialog(actions);
     save_as_dialog(actions);
+    task_dialogs(actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window)

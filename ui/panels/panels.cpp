@@ -159,6 +159,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     status_bar(model, window);
     notices(model, {0.0f, bar}, size.x - panel, actions);
     if (model.shows_help) help_window(model, actions);
+    jobs_window(model, {0.0f, size.y - bar}, actions);
 
     const glm::vec2 begin(0.0f, bar);
     const glm::vec2 end = glm::max(begin, size - glm::vec2(panel, bar));

@@ -37,6 +37,11 @@ void open_dialog(Actions& actions);
 /// The same for the dialog that asks for another name to go on under.
 void ask_for_name(const Model& model);
 void save_as_dialog(Actions& actions);
+/// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.
+void task_menu(const Model& model);
+void task_dialogs(Actions& actions);
+/// What goes on beside the work, at the lower left of the graphics window.
+void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions);
 /// What is there while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window);

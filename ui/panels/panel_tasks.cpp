@@ -1,0 +1,113 @@
+// Long work: the dialogs in which it is asked for, and how far it is.
+
+#include <cmath>
+#include <utility>
+
+#include <imgui/imgui.h>
+
+#include "engine/base/error.h"
+#include "engine/base/progress.h"
+#include "ui/panels/field_widgets.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// A dialog with the options of a task. They stay as they were left for the next time.
+template <class Task>
+struct TaskDialog {
+    Task task;
+    bool is_asked_for = false;
+
+    void draw(const char* verb, Actions& actions)
+    {
+        if (std::exchange(is_asked_for, false)) ImGui::OpenPopup(Task::TITLE);
+        ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+        if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+        draw_fields([&](Fields& f) { fields(f, task); });
+        const std::string why = why_not();
+        ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
+        const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
+        ImGui::BeginDisabled(!why.empty());
+        if (ImGui::Button(verb, button)) {
+            actions.push_back(task);
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::EndDisabled();
+        ImGui::SameLine();
+        if (ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+            ImGui::CloseCurrentPopup();
+        ImGui::EndPopup();
+    }
+
+private:
+    std::string why_not() const
+    {
+        try {
+            check(task);
+            return {};
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+};
+
+struct Dialogs {
+    TaskDialog<ExportTask> exporting;
+    TaskDialog<ImportTask> importing;
+    TaskDialog<LabelTask> labelling;
+    TaskDialog<EvaluateTask> evaluating;
+};
+Dialogs dialogs;
+
+}  // namespace
+
+void task_menu(const Model& model)
+{
+    if (ImGui::MenuItem("Import as project...")) {
+        dialogs.importing.is_asked_for = true;
+        if (model.is_open && dialogs.importing.task.volume.empty())
+            dialogs.importing.task.volume = model.session.volume_path;
+    }
+    if (ImGui::MenuItem("Export...", nullptr, false, model.is_open)) dialogs.exporting.is_asked_for = true;
+    if (ImGui::MenuItem("Label connected parts...", nullptr, false, model.is_open)) {
+        dialogs.labelling.is_asked_for = true;
+        dialogs.labelling.task.threshold = model.paint_threshold();
+    }
+    if (ImGui::MenuItem("Compare with the truth...")) dialogs.evaluating.is_asked_for = true;
+}
+
+void task_dialogs(Actions& actions)
+{
+    dialogs.exporting.draw("Export", actions);
+    dialogs.importing.draw("Import", actions);
+    dialogs.labelling.draw("Label", actions);
+    dialogs.evaluating.draw("Compare", actions);
+}
+
+void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions)
+{
+    if (model.jobs.empty()) return;
+    ImGui::SetNextWindowPos({lower_left.x + 8.0f, lower_left.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
+    ImGui::Begin("Jobs", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+    for (const Jobs::State& job : model.jobs) {
+        ImGui::PushID(int(job.number));
+        if (ImGui::Button("Cancel")) actions.push_back(CancelJob{job.number});
+        ImGui::SameLine();
+        ImGui::TextUnformatted((job.stretch.empty() ? job.what : job.stretch).c_str());
+        ImGui::SameLine();
+        std::string text = job.is_cancelled ? "is being cancelled" : job.is_waiting ? "waits" : job.detail;
+        if (job.fraction >= 0.0) text = sentence(std::lround(100.0 * job.fraction), " %  ", text);
+        if (job.seconds_left >= 1.0) text += sentence(text.empty() ? "" : ", ", duration_text(job.seconds_left), " left");
+        if (text.empty()) text = duration_text(job.seconds) + " so far";
+        ImGui::TextDisabled("%s", text.c_str());
+        ImGui::PopID();
+    }
+    ImGui::End();
+}
+
+}  // namespace shvr::ui
