@@ -2,9 +2,9 @@
 
 #include <concepts>
 
+#include "engine/annotation/script/script.h"
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/annotation/work/hold.h"
-#include "engine/annotation/script/script.h"
 #include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
 

@@ -102,7 +102,8 @@ void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actio
         ImGui::SameLine();
         std::string text = job.is_cancelled ? "is being cancelled" : job.is_waiting ? "waits" : job.detail;
         if (job.fraction >= 0.0) text = sentence(std::lround(100.0 * job.fraction), " %  ", text);
-        if (job.seconds_left >= 1.0) text += sentence(text.empty() ? "" : ", ", duration_text(job.seconds_left), " left");
+        if (job.seconds_left >= 1.0)
+            text += sentence(text.empty() ? "" : ", ", duration_text(job.seconds_left), " left");
         if (text.empty()) text = duration_text(job.seconds) + " so far";
         ImGui::TextDisabled("%s", text.c_str());
         ImGui::PopID();

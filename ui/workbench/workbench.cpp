@@ -48,7 +48,7 @@ void Workbench::perform(const Action& action)
 {
     if (!document_ && !ui::why_not(model(), action).empty()) fail("Nothing is open");
     if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
-    std::visit([&](const auto& each) { perform(each); }, action);
+    std::visit([&](const auto& each) { act(each); }, action);
     if (log_) log_(line_of(action));
 }
 
@@ -63,17 +63,17 @@ bool Workbench::apply(const Action& action)
     }
 }
 
-void Workbench::perform(const ShowHelp& action)
+void Workbench::act(const ShowHelp& action)
 {
     shows_help_ = action.on;
 }
 
-void Workbench::perform(const ShowFullScreen& action)
+void Workbench::act(const ShowFullScreen& action)
 {
     is_full_screen_ = action.on;
 }
 
-void Workbench::perform(const Quit&)
+void Workbench::act(const Quit&)
 {
     quits_ = true;
 }
@@ -108,7 +108,7 @@ void Workbench::prefer(Preferences preferences)
     }
 }
 
-void Workbench::perform(const ChooseKeys& action)
+void Workbench::act(const ChooseKeys& action)
 {
     Preferences preferences = preferences_;
     const auto set = std::ranges::find(KEY_SETS, action.set, &Spelling<KeySet>::name);
@@ -119,7 +119,7 @@ void Workbench::perform(const ChooseKeys& action)
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
-void Workbench::perform(const BindKeys& action)
+void Workbench::act(const BindKeys& action)
 {
     const Shortcut* const shortcut = shortcut_named(action.shortcut);
     if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");

@@ -100,56 +100,56 @@ private:
     void note_failure(Attempt& state, const std::string& why);
 
     // One for each action.
-    void perform(const Orbit& action);
-    void perform(const Roll& action);
-    void perform(const Move& action);
-    void perform(const Zoom& action);
-    void perform(const DragInMap& action);
-    void perform(const LookFrom& action);
-    void perform(const KeepCamera& action);
-    void perform(const ForgetCamera& action);
-    void perform(const MoveCut& action);
-    void perform(const MoveClip& action);
-    void perform(const ResetCuts& action);
-    void perform(const UpdateOcclusion& action);
-    void perform(const Set& action);
-    void perform(const ProbeTo& action);
-    void perform(const ProbeOnto& action);
-    void perform(const PushProbe& action);
-    void perform(const PlaceProbe& action);
-    void perform(const ScaleProbe& action);
-    void perform(const Paint& action);
-    void perform(const PaintOp& action);
-    void perform(const DragNode& action);
-    void perform(const NodeOp& op) { trace(op); }
-    void perform(const SelectOp& op) { trace(op); }
-    void perform(const SelectSegmentOp& op) { trace(op); }
-    void perform(const DeselectOp& op) { trace(op); }
-    void perform(const LinkOp& op) { trace(op); }
-    void perform(const MoveOp& op) { trace(op); }
-    void perform(const DeleteOp& op) { trace(op); }
-    void perform(const GroupOp& op) { trace(op); }
-    void perform(const RadiusOp& op) { trace(op); }
-    void perform(const UndoOp& action);
-    void perform(const RedoOp& action);
-    void perform(const SaveOp& action);
-    void perform(const RevertOp& action);
-    void perform(const SaveAs& action);
-    void perform(const CopySession& action);
-    void perform(const ExportTask& task);
-    void perform(const ImportTask& task);
-    void perform(const LabelTask& task);
-    void perform(const EvaluateTask& task);
-    void perform(const CancelJob& action);
-    void perform(const Screenshot& action);
-    void perform(const Open& action);
-    void perform(const ChooseBelief& action);
-    void perform(const WorkOnCopy& action);
-    void perform(const ChooseKeys& action);
-    void perform(const BindKeys& action);
-    void perform(const ShowHelp& action);
-    void perform(const ShowFullScreen& action);
-    void perform(const Quit& action);
+    void act(const Orbit& action);
+    void act(const Roll& action);
+    void act(const Move& action);
+    void act(const Zoom& action);
+    void act(const DragInMap& action);
+    void act(const LookFrom& action);
+    void act(const KeepCamera& action);
+    void act(const ForgetCamera& action);
+    void act(const MoveCut& action);
+    void act(const MoveClip& action);
+    void act(const ResetCuts& action);
+    void act(const UpdateOcclusion& action);
+    void act(const Set& action);
+    void act(const ProbeTo& action);
+    void act(const ProbeOnto& action);
+    void act(const PushProbe& action);
+    void act(const PlaceProbe& action);
+    void act(const ScaleProbe& action);
+    void act(const Paint& action);
+    void act(const PaintOp& action);
+    void act(const DragNode& action);
+    void act(const NodeOp& op) { trace(op); }
+    void act(const SelectOp& op) { trace(op); }
+    void act(const SelectSegmentOp& op) { trace(op); }
+    void act(const DeselectOp& op) { trace(op); }
+    void act(const LinkOp& op) { trace(op); }
+    void act(const MoveOp& op) { trace(op); }
+    void act(const DeleteOp& op) { trace(op); }
+    void act(const GroupOp& op) { trace(op); }
+    void act(const RadiusOp& op) { trace(op); }
+    void act(const UndoOp& action);
+    void act(const RedoOp& action);
+    void act(const SaveOp& action);
+    void act(const RevertOp& action);
+    void act(const SaveAs& action);
+    void act(const CopySession& action);
+    void act(const ExportTask& task);
+    void act(const ImportTask& task);
+    void act(const LabelTask& task);
+    void act(const EvaluateTask& task);
+    void act(const CancelJob& action);
+    void act(const Screenshot& action);
+    void act(const Open& action);
+    void act(const ChooseBelief& action);
+    void act(const WorkOnCopy& action);
+    void act(const ChooseKeys& action);
+    void act(const BindKeys& action);
+    void act(const ShowHelp& action);
+    void act(const ShowFullScreen& action);
+    void act(const Quit& action);
 
     // Documents
     void open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings);

@@ -43,14 +43,14 @@ void Workbench::follow_jobs()
     }
 }
 
-void Workbench::perform(const CancelJob& action)
+void Workbench::act(const CancelJob& action)
 {
     jobs_.cancel(action.number);
 }
 
 /// Statistics of a volume that is no project take a pass over its voxels. Meanwhile the work goes on; it is saved when
 /// the next is there.
-void Workbench::perform(const Open& action)
+void Workbench::act(const Open& action)
 {
     const std::filesystem::path path = action.path;
     jobs_.start("opening " + name_of(path), [this, path](ProgressReporter& reporter) -> Jobs::Completion {
@@ -63,7 +63,7 @@ void Workbench::perform(const Open& action)
     });
 }
 
-void Workbench::perform(const ExportTask& task)
+void Workbench::act(const ExportTask& task)
 {
     record_settings();
     const Document& document = *document_;
@@ -90,7 +90,7 @@ void Workbench::perform(const ExportTask& task)
 }
 
 /// The project is opened when it is there.
-void Workbench::perform(const ImportTask& task)
+void Workbench::act(const ImportTask& task)
 {
     check(task);
     jobs_.start("importing " + name_of(task.volume), [this, task](ProgressReporter& reporter) -> Jobs::Completion {
@@ -99,12 +99,12 @@ void Workbench::perform(const ImportTask& task)
         const ImportResult result = run(wanted, reporter);
         return [this, project = result.report.project, warnings = result.report.warnings] {
             for (const std::string& warning : warnings) say(warning, Weight::warning);
-            perform(Open{project});
+            act(Open{project});
         };
     });
 }
 
-void Workbench::perform(const LabelTask& task)
+void Workbench::act(const LabelTask& task)
 {
     check(task);
     const std::shared_ptr<const VolumeSource> source = document_->source;
@@ -120,7 +120,7 @@ void Workbench::perform(const LabelTask& task)
     });
 }
 
-void Workbench::perform(const EvaluateTask& task)
+void Workbench::act(const EvaluateTask& task)
 {
     check(task);
     jobs_.start("comparing with the truth", [this, task](ProgressReporter& reporter) -> Jobs::Completion {

@@ -30,22 +30,22 @@ void Workbench::look_from(const Camera& camera)
     note_to_keep();
 }
 
-void Workbench::perform(const Orbit& action)
+void Workbench::act(const Orbit& action)
 {
     look_from(orbited(document_->camera, pivot_of(*document_), action.right_degrees, action.up_degrees));
 }
 
-void Workbench::perform(const Roll& action)
+void Workbench::act(const Roll& action)
 {
     look_from(rolled(document_->camera, action.degrees));
 }
 
-void Workbench::perform(const Move& action)
+void Workbench::act(const Move& action)
 {
     look_from(moved(document_->camera, action.heights * height_of(document_->camera)));
 }
 
-void Workbench::perform(const Zoom& action)
+void Workbench::act(const Zoom& action)
 {
     look_from(zoomed(document_->camera, pane(action.pane).pixels(), action.pixel, action.factor));
 }
@@ -57,7 +57,7 @@ const Pane& Workbench::pane(size_t index) const
     return parts[index].pane;
 }
 
-void Workbench::perform(const DragInMap& action)
+void Workbench::act(const DragInMap& action)
 {
     const Pane& map = pane(action.pane);
     const CameraAxes axes = axes_of(map.shot.camera);
@@ -69,20 +69,20 @@ void Workbench::perform(const DragInMap& action)
     look_from(camera);
 }
 
-void Workbench::perform(const LookFrom& action)
+void Workbench::act(const LookFrom& action)
 {
     look_from(camera_named(document_->session, action.camera, document_->volume()));
     say("Looking from " + action.camera);
 }
 
-void Workbench::perform(const KeepCamera& action)
+void Workbench::act(const KeepCamera& action)
 {
     document_->session.cameras[action.name] = document_->camera;
     note_edit();
     say("This view is kept as " + action.name);
 }
 
-void Workbench::perform(const ForgetCamera& action)
+void Workbench::act(const ForgetCamera& action)
 {
     if (document_->session.cameras.erase(action.name) == 0)
         fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
@@ -91,7 +91,7 @@ void Workbench::perform(const ForgetCamera& action)
     say("The view " + action.name + " is no longer kept");
 }
 
-void Workbench::perform(const MoveCut& action)
+void Workbench::act(const MoveCut& action)
 {
     Session after = document_->session;
     CutBox& cut = after.cut;
@@ -106,7 +106,7 @@ void Workbench::perform(const MoveCut& action)
                  std::lround(plane)));
 }
 
-void Workbench::perform(const MoveClip& action)
+void Workbench::act(const MoveClip& action)
 {
     Camera& camera = document_->camera;
     const double reach = glm::distance(camera.eye, camera.target);
@@ -123,7 +123,7 @@ void Workbench::perform(const MoveClip& action)
                  " from the eye"));
 }
 
-void Workbench::perform(const ResetCuts&)
+void Workbench::act(const ResetCuts&)
 {
     Session after = document_->session;
     after.cut = {};
@@ -133,7 +133,7 @@ void Workbench::perform(const ResetCuts&)
     say("All cutting planes are removed");
 }
 
-void Workbench::perform(const UpdateOcclusion&)
+void Workbench::act(const UpdateOcclusion&)
 {
     document_->screen.update_occlusion();
     say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is being updated"

@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-void Workbench::perform(const ProbeTo& action)
+void Workbench::act(const ProbeTo& action)
 {
     const Pane& seen = pane(action.pane);
     const Camera& camera = seen.shot.camera;
@@ -16,7 +16,7 @@ void Workbench::perform(const ProbeTo& action)
     move_probe(unproject(camera, seen.pixels(), action.pixel, std::max(depth, shallowest)), false);
 }
 
-void Workbench::perform(const ProbeOnto& action)
+void Workbench::act(const ProbeOnto& action)
 {
     const Pane& seen = pane(action.pane);
     const glm::uvec2 pixels = seen.pixels();
@@ -34,14 +34,14 @@ void Workbench::perform(const ProbeOnto& action)
     say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
 }
 
-void Workbench::perform(const PushProbe& action)
+void Workbench::act(const PushProbe& action)
 {
     const glm::dvec3 forward = axes_of(pane(action.pane).shot.camera).forward;
     const double voxel = glm::length(forward * document_->volume().spacing);
     move_probe(document_->touch.probe() + forward * (action.voxels * voxel), false);
 }
 
-void Workbench::perform(const PlaceProbe& action)
+void Workbench::act(const PlaceProbe& action)
 {
     move_probe(action.voxel * document_->volume().spacing, true);
 }
@@ -57,7 +57,7 @@ void Workbench::move_probe(const glm::dvec3& point, bool jumps)
     extend_stroke();
 }
 
-void Workbench::perform(const ScaleProbe& action)
+void Workbench::act(const ScaleProbe& action)
 {
     double& radius = document_->session.probe.brush.radius_voxels;
     radius = std::clamp(radius * action.factor, SMALLEST_RADIUS_VOXELS, LARGEST_RADIUS_VOXELS);
@@ -67,7 +67,7 @@ void Workbench::perform(const ScaleProbe& action)
 
 // ---- Painting -------------------------------------------------------------------------------------------------------
 
-void Workbench::perform(const Paint& action)
+void Workbench::act(const Paint& action)
 {
     Annotator& annotator = document_->annotator;
     if (document_->session.probe.tool == Tool::trace) {
@@ -75,7 +75,7 @@ void Workbench::perform(const Paint& action)
         return;
     }
     if (action.on && !annotator.stroke_is_running()) {
-        if (document_->drags_node) perform(DragNode{false});
+        if (document_->drags_node) act(DragNode{false});
         const Previewer& previewer = document_->previewer;
         if (previewer.shown() && previewer.is_current()) previewed_at_stroke_ = previewer.shown()->voxels;
         check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
@@ -89,7 +89,7 @@ void Workbench::perform(const Paint& action)
     }
 }
 
-void Workbench::perform(const PaintOp& op)
+void Workbench::act(const PaintOp& op)
 {
     if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
     record_settings();

@@ -66,7 +66,7 @@ std::string special_sentence(const Session& was, const Session& is)
 
 }  // namespace
 
-void Workbench::perform(const Set& action)
+void Workbench::act(const Set& action)
 {
     Session after = patched(document_->session, action.patch);
     if (!after.transfer_preset.empty())
@@ -110,7 +110,7 @@ void Workbench::settings_changed(const Session& before)
     }
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
-        if (document.drags_node) perform(DragNode{false});
+        if (document.drags_node) act(DragNode{false});
     }
 }
 

@@ -47,7 +47,7 @@ void Workbench::trace(const TraceOp& op)
     say(said_of(op, effect.selection.has_value(), done, trace));
 }
 
-void Workbench::perform(const DragNode& action)
+void Workbench::act(const DragNode& action)
 {
     const TraceGraph& trace = document_->annotator.document().trace;
     if (action.on) {

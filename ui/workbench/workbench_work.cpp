@@ -24,12 +24,12 @@ void Workbench::step(int count, const char* done, const char* nothing, Way way)
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-void Workbench::perform(const UndoOp& action)
+void Workbench::act(const UndoOp& action)
 {
     step(action.count, "Undone", "Nothing to undo", [](Annotator& annotator) { return annotator.undo(); });
 }
 
-void Workbench::perform(const RedoOp& action)
+void Workbench::act(const RedoOp& action)
 {
     step(action.count, "Redone", "Nothing to redo", [](Annotator& annotator) { return annotator.redo(); });
 }
@@ -48,12 +48,12 @@ void Workbench::show_changes(const Command& command)
     look_again();
 }
 
-void Workbench::perform(const SaveOp&)
+void Workbench::act(const SaveOp&)
 {
     save();
 }
 
-void Workbench::perform(const RevertOp&)
+void Workbench::act(const RevertOp&)
 {
     record_settings();
     const Command* const command = document_->annotator.revert();
@@ -64,7 +64,7 @@ void Workbench::perform(const RevertOp&)
     say("Reverted to the last save; undo takes that back");
 }
 
-void Workbench::perform(const SaveAs& action)
+void Workbench::act(const SaveAs& action)
 {
     const std::string unpainted = finish_stroke();
     record_settings();
@@ -77,14 +77,14 @@ void Workbench::perform(const SaveAs& action)
     prefer(std::move(preferences));
 }
 
-void Workbench::perform(const CopySession& action)
+void Workbench::act(const CopySession& action)
 {
     record_settings();
     say("Copied to " + document_->save_copy(action.path).string() + "; this window goes on with " +
         document_->session_path.string());
 }
 
-void Workbench::perform(const Screenshot& action)
+void Workbench::act(const Screenshot& action)
 {
     if (!action.is_large) {
         screenshots_.take();
@@ -99,7 +99,7 @@ void Workbench::perform(const Screenshot& action)
                  " pixels is made in the background"));
 }
 
-void Workbench::perform(const ChooseBelief& action)
+void Workbench::act(const ChooseBelief& action)
 {
     std::string said;
     for (const Notice& notice : document_->annotator.choose(action.takes_files ? Belief::files : Belief::journal))
@@ -109,7 +109,7 @@ void Workbench::perform(const ChooseBelief& action)
     say(said);
 }
 
-void Workbench::perform(const WorkOnCopy&)
+void Workbench::act(const WorkOnCopy&)
 {
     const std::filesystem::path copy = document_->save_copy();
     open(copy, {});

@@ -90,6 +90,17 @@ const Row ROWS[] = {
     {R"({"op":"copy_session","path":"FOLDER/copy.json"})",
      "file copy.graphml, file copy.json, file copy.mask, file copy.mask.json",
      {STROKE, NODE}},
+    {R"({"op":"export","mask":"FOLDER/out.nrrd","trace":"FOLDER/out.swc"})",
+     "file out.nrrd, file out.swc",
+     {STROKE, NODE}},
+    {R"({"op":"import","volume":"FOLDER/tiny.nrrd","project":"FOLDER/made"})",
+     "camera, file preferences.json, open, place, probe, render, transfer_function"},
+    {R"({"op":"label","threshold":100,"output":"FOLDER/parts.nrrd"})", "file parts.nrrd"},
+    {R"({"op":"evaluate","truth_mask":"FOLDER/scan.mask","mask":"FOLDER/scan.mask","volume":"FOLDER/scan.json"})",
+     "",
+     {STROKE}},
+    {R"({"op":"open","path":"FOLDER/tiny.nrrd"})",
+     "camera, file preferences.json, open, place, probe, render, transfer_function"},
     {R"({"op":"screenshot"})", "file scan-view-1.png"},
     {R"({"op":"screenshot","large":true})", "file scan-view-1.png"},
     {R"({"op":"work_on_copy"})",
@@ -112,20 +123,26 @@ struct Bench {
         bench = std::make_unique<Workbench>(
             renderer, WorkbenchOptions{.has_servo = false, .preferences = folder.path / "preferences.json"});
         bench->set_pixels({96, 80});
+        std::string tiny = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n";
+        for (int voxel = 0; voxel < 512; ++voxel) tiny += char(voxel % 251);
+        folder.write("tiny.nrrd", tiny);
         bench->open(write_tubes_session(folder.path), {});
         settle(*bench);
     }
     void perform(const std::string& line)
     {
         CAPTURE(line);
+        const size_t steps = bench->model().undoable;
         bench->perform(action_of(line));
         settle(*bench);
+        // Until the device has answered for what the open stroke covers.
+        while (bench->model().is_painting && bench->model().undoable == steps) bench->advance();
     }
     /// FOLDER in the line stands for the scan's.
     Action action_of(std::string line) const
     {
         const std::string name = "FOLDER";
-        if (const size_t at = line.find(name); at != std::string::npos)
+        for (size_t at = line.find(name); at != std::string::npos; at = line.find(name))
             line.replace(at, name.size(), folder.path.string());
         return read_action(line, "row");
     }
@@ -153,7 +170,7 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
         applied.insert(row_of(action).id);
     }
     // Those that need what this table does not set up, and the tests that do.
-    applied.insert({"open", "choose_belief"});
+    applied.insert({"choose_belief", "cancel_job"});
     for (const ActionRow& row : action_rows()) CHECK_MESSAGE(applied.contains(row.id), row.id);
 }
 
