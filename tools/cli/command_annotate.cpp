@@ -7,6 +7,7 @@
 #include "engine/annotation/work/hold.h"
 #include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
+#include "ui/workbench/workbench.h"
 
 namespace shvr::cli {
 
@@ -14,7 +15,7 @@ namespace {
 
 struct AnnotateCommandOptions {
     Common common;
-    std::string project, script;
+    std::string project, script, actions;
     bool fresh = false;
     bool verbose = false;
 };
@@ -195,6 +196,56 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", opened.annotator->work().journal().bytes}});
 }
 
+/// Replays what a person did in the window, as `shvr view --log` wrote it, without a display.
+void run_actions(const AnnotateCommandOptions& options)
+{
+    const std::string name = name_of_script(options.actions);
+    std::vector<std::pair<int, ui::Action>> actions;
+    for_each_line(options.actions,
+                  [&](const JsonNode& line, int number) { actions.emplace_back(number, ui::read_action(line)); });
+    LongWork work(options.common.quiet);
+    const char* validation = std::getenv("SHVR_VALIDATION");
+    Renderer renderer({.device = {options.common.device, validation && *validation == '1'},
+                       .budget = {options.common.budget_device_mib << 20, options.common.budget_host_mib << 20},
+                       .threads = options.common.threads});
+    ui::Workbench bench(renderer, {.has_servo = false});
+    static_cast<void>(work.begin("opening " + options.project));
+    bench.open(options.project, options.common.settings);
+    if (bench.document().only_looks())
+        throw JournalTaken(sentence(options.project, ": is open for writing in ", bench.document().holder,
+                                    "; expected it to be closed there first"));
+    static_cast<void>(work.begin("replaying " + name));
+    size_t done = 0;
+    for (const auto& [number, action] : actions) {
+        work.show(double(done++) / double(actions.size()), {}, -1.0);
+        try {
+            bench.perform(action);
+            while (bench.has_work() && !bench.document().annotator.stroke_is_open()) bench.advance();
+        } catch (const Error& error) {
+            fail(name, ":", number, ": ", error.what());
+        }
+        work.stop_if_asked();
+    }
+    const std::string unpainted = bench.finish_stroke();
+    if (!unpainted.empty()) fail(name, ": the last stroke was not painted: ", unpainted);
+    for (int turn = 0; turn < 3; ++turn) bench.advance();  // settings become a step once the hand has let go
+    const ui::Document& document = bench.document();
+    const std::vector<std::string> messages = renderer.device().take_validation_messages();
+    if (!messages.empty()) fail(messages.size(), " validation messages, the first: ", messages.front());
+    const Mask& mask = document.annotator.document().mask;
+    Json groups = Json::object();
+    for (size_t group = 1; group < 256; ++group)
+        if (mask.voxels_by_group()[group] > 0) groups[std::to_string(group)] = mask.voxels_by_group()[group];
+    if (!options.common.json)
+        return say(options.common, sentence(name, ": ", actions.size(), " actions; ", bench.messages().last()));
+    print({{"actions", actions.size()},
+           {"voxels_in_group", groups},
+           {"nodes", document.annotator.document().trace.nodes().size()},
+           {"internodes", document.annotator.document().trace.internodes().size()},
+           {"undoable", document.annotator.history().undoable()},
+           {"journal_bytes", document.annotator.work().journal().bytes}});
+}
+
 }  // namespace
 
 void add_annotate(CLI::App& program)
@@ -202,8 +253,10 @@ void add_annotate(CLI::App& program)
     auto options = std::make_shared<AnnotateCommandOptions>();
     CLI::App* command = program.add_subcommand("annotate", "Runs annotation commands from a script");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
-    command->add_option("--script", options->script, "Commands, one JSON object a line; - is standard input")
-        ->required();
+    CLI::Option* const script =
+        command->add_option("--script", options->script, "Commands, one JSON object a line; - is standard input");
+    command->add_option("--actions", options->actions, "What was done in the window, as shvr view --log writes it")
+        ->excludes(script);
     command->add_flag("--fresh", options->fresh,
                       "Start without the existing annotation; its journal is kept as JOURNAL.old");
     command->add_flag("--verbose", options->verbose, "A line for each command that paints or adds a node");
@@ -216,7 +269,14 @@ void add_annotate(CLI::App& program)
         "\"path\":[[40,52,18],[41,53,30]]}\n  {\"op\":\"node\",\"at\":[40,52,18],\"radius\":3,\"group\":2}\n"
         "  {\"op\":\"density\",\"brush\":\"flood\",\"threshold\":900,\"offset\":\"automatic\",\"falloff\":"
         "\"distance\",\"radius\":8,\"path\":[[40,52,18]]}\n  {\"op\":\"undo\",\"count\":1}\n  {\"op\":\"save\"}");
-    command->callback([options] { run_annotate(*options); });
+    command->callback([options] {
+        if (options->script.empty() && options->actions.empty())
+            throw UsageError("neither --script nor --actions is given; expected one of them");
+        if (options->script.empty())
+            run_actions(*options);
+        else
+            run_annotate(*options);
+    });
 }
 
 }  // namespace shvr::cli

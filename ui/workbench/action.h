@@ -129,6 +129,10 @@ struct ChooseBelief {
 struct WorkOnCopy {};
 
 // ---- The window
+/// The picture is so large now; what pixels of panes mean depends on it.
+struct Resize {
+    glm::uvec2 pixels{0};
+};
 struct ShowHelp {
     bool on = true;
 };
@@ -156,7 +160,7 @@ using Action = std::variant<
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, Resize, ShowHelp, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

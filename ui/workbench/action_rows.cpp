@@ -64,6 +64,7 @@ constexpr ActionRow ROWS[] = {
     {"work_on_copy", "Work on a copy", WORK, "saves all that is shown under new names, and opens that"},
     {"choose_keys", "Choose the keys", WINDOW, "takes one of the two sets of keys that ship"},
     {"bind_keys", "Other keys", WINDOW, "gives a shortcut other keys than those that ship"},
+    {"resize", "Resize", WINDOW, "the picture has so many pixels, across and down"},
     {"show_help", "Keys and mouse", WINDOW, "shows or hides the list of keys"},
     {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
     {"quit", "Quit", WINDOW, "saves the work and closes the window"},
@@ -209,6 +210,12 @@ void fields(Fields& f, BindKeys& a)
 {
     f.text("shortcut", a.shortcut, {.is_required = true});
     f.text("keys", a.keys, {});
+}
+void fields(Fields& f, Resize& a)
+{
+    std::vector<int64_t> pixels{a.pixels.x, a.pixels.y};
+    f.wholes("pixels", pixels, 0, 65536, {.is_required = true});
+    a.pixels = {pixels[0], pixels[1]};
 }
 void fields(Fields& f, ShowFullScreen& a)
 {

@@ -63,6 +63,11 @@ bool Workbench::apply(const Action& action)
     }
 }
 
+void Workbench::act(const Resize& action)
+{
+    if (std::exchange(pixels_, action.pixels) != action.pixels) look_again();
+}
+
 void Workbench::act(const ShowHelp& action)
 {
     shows_help_ = action.on;
@@ -235,7 +240,7 @@ void Workbench::note_failure(Attempt& state, const std::string& why)
 
 void Workbench::set_pixels(const glm::uvec2& pixels)
 {
-    if (std::exchange(pixels_, pixels) != pixels) look_again();
+    if (pixels != pixels_) perform(Resize{pixels});
 }
 
 bool Workbench::has_work() const

@@ -147,6 +147,7 @@ private:
     void act(const WorkOnCopy& action);
     void act(const ChooseKeys& action);
     void act(const BindKeys& action);
+    void act(const Resize& action);
     void act(const ShowHelp& action);
     void act(const ShowFullScreen& action);
     void act(const Quit& action);

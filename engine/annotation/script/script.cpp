@@ -305,21 +305,26 @@ std::string name_of_script(const std::filesystem::path& path)
     return path == "-" ? "standard input" : path.string();
 }
 
-std::vector<ScriptLine> read_script(const std::filesystem::path& path)
+void for_each_line(const std::filesystem::path& path, const std::function<void(const JsonNode& line, int number)>& take)
 {
     const std::string name = name_of_script(path);
     std::error_code ignored;
     const bool is_pipe = path == "-" || std::filesystem::is_fifo(path, ignored);
     std::istringstream text(is_pipe ? read_stream(path, name) : read_text(path, LARGEST_SCRIPT));
-    std::vector<ScriptLine> script;
     std::string line;
     for (int number = 1; std::getline(text, line); ++number) {
         const size_t start = line.find_first_not_of(" \t\r");
         if (start == std::string::npos || line.compare(start, 2, "//") == 0) continue;
         const JsonDocument document(line, sentence(name, ":", number),
-                                    {.depth = 8, .expected = "an object on the line"});
-        script.push_back({number, read_script_op(document.root())});
+                                    {.depth = 16, .expected = "an object on the line"});
+        take(document.root(), number);
     }
+}
+
+std::vector<ScriptLine> read_script(const std::filesystem::path& path)
+{
+    std::vector<ScriptLine> script;
+    for_each_line(path, [&](const JsonNode& line, int number) { script.push_back({number, read_script_op(line)}); });
     return script;
 }
 

@@ -3,6 +3,7 @@
 // sends the same structs, so keys, menus, scripts and a stylus share one language.
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,8 +48,13 @@ ScriptOp read_script_op(const JsonNode& line);
 /// The line that reads as the same operation.
 std::string line_of(const ScriptOp& op);
 
+/// Calls `take` with each line that holds an operation, whatever it is, and its number from 1; both are valid during
+/// the call. "-" is standard input; that and pipes are read to their end. Fails where a line is no JSON object.
+void for_each_line(const std::filesystem::path& path,
+                   const std::function<void(const JsonNode& line, int number)>& take);
+
 /// Reads and checks the whole script before anything runs. Errors name file, line, key, value and what was expected;
-/// unknown keys and operations are refused. "-" is standard input; that and pipes are read to their end.
+/// unknown keys and operations are refused.
 std::vector<ScriptLine> read_script(const std::filesystem::path& path);
 /// "standard input" for "-".
 std::string name_of_script(const std::filesystem::path& path);

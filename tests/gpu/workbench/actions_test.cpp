@@ -108,6 +108,7 @@ const Row ROWS[] = {
      {STROKE}},
     {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
     {R"({"op":"bind_keys","shortcut":"undo","keys":"Ctrl+U"})", "file preferences.json, keys"},
+    {R"({"op":"resize","pixels":[64,48]})", ""},
     {R"({"op":"show_help","on":true})", "help"},
     {R"({"op":"full_screen","on":true})", "full_screen"},
     {R"({"op":"quit"})", ""},
