@@ -125,9 +125,10 @@ void check(const ImportTask& task)
     if (task.downscale < 1 || task.downscale > LARGEST_DOWNSCALE)
         throw UsageError(sentence(name("downscale"), " is ", task.downscale, "; expected 1 to ", LARGEST_DOWNSCALE));
     if (task.shards && task.version != OmeZarrVersion::v0_5)
-        throw UsageError(task.names == OptionNames::command_line
-                             ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
-                             : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
+        throw UsageError(
+            task.names == OptionNames::command_line
+                ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
+                : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
     check_threads(task.threads, task.names);
     if (task.volume.empty() || task.project.empty())
         throw UsageError(sentence("no ", name(task.volume.empty() ? "volume" : "project"), " is given; expected both"));

@@ -215,6 +215,7 @@ void run_actions(const AnnotateCommandOptions& options)
         throw JournalTaken(sentence(options.project, ": is open for writing in ", bench.document().holder,
                                     "; expected it to be closed there first"));
     static_cast<void>(work.begin("replaying " + name));
+    bench.set_hand_down(true);  // the log says where a step of settings ends
     size_t done = 0;
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);
@@ -228,7 +229,7 @@ void run_actions(const AnnotateCommandOptions& options)
     }
     const std::string unpainted = bench.finish_stroke();
     if (!unpainted.empty()) fail(name, ": the last stroke was not painted: ", unpainted);
-    for (int turn = 0; turn < 3; ++turn) bench.advance();  // settings become a step once the hand has let go
+    bench.perform(ui::EndStep{});
     const ui::Document& document = bench.document();
     const std::vector<std::string> messages = renderer.device().take_validation_messages();
     if (!messages.empty()) fail(messages.size(), " validation messages, the first: ", messages.front());

@@ -69,6 +69,9 @@ struct Set {
     std::string patch;
 };
 
+/// What was set since the last step becomes one; it does by itself when the hand lets go.
+struct EndStep {};
+
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
     size_t pane = 0;
@@ -154,7 +157,7 @@ using Action = std::variant<
     Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, MoveCut, MoveClip, ResetCuts,
     UpdateOcclusion,
     // settings, the probe
-    Set, ProbeTo, ProbeOnto, PushProbe, PlaceProbe, ScaleProbe,
+    Set, EndStep, ProbeTo, ProbeOnto, PushProbe, PlaceProbe, ScaleProbe,
     // painting and tracing
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp,

@@ -30,6 +30,7 @@ constexpr ActionRow ROWS[] = {
     {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
     {"update_occlusion", "Update ambient occlusion", LOOKING, "computes it anew where it is not automatic"},
     {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
+    {"end_step", "End the step", SETTINGS, "makes one step of what was set since the last; it comes by itself"},
     {"probe_to", "Move the probe", PROBE, "the probe goes to a pixel of a pane, in its plane"},
     {"probe_onto", "Put the probe onto what is seen", PROBE, "the probe goes to the surface seen at a pixel of a pane"},
     {"push_probe", "Push the probe", PROBE, "the probe goes away from the viewer of a pane"},

@@ -211,11 +211,11 @@ void Document::keep_view()
     }
 }
 
-void Document::record_settings()
+bool Document::record_settings()
 {
-    if (only_looks()) return;
+    if (only_looks()) return false;
     const SettingValues now = lasting_settings(session);
-    annotator.change_settings(difference_of(annotator.work().settings(), now), now);
+    return annotator.change_settings(difference_of(annotator.work().settings(), now), now) != nullptr;
 }
 
 void Document::take_settings()

@@ -74,7 +74,8 @@ struct Document {
     /// Puts view, probe and the like into the journal, where there is one; no step of the history.
     void keep_settings();
     /// Makes a step of the history of what was set since the last one. Not while a stroke is running.
-    void record_settings();
+    /// Returns whether there was anything to record.
+    bool record_settings();
     /// Takes the settings of the work, after undo and redo.
     void take_settings();
     /// Writes the mask, the offsets and the trace, then the session; each file appears whole or not at all. What others

@@ -113,6 +113,7 @@ private:
     void act(const ResetCuts& action);
     void act(const UpdateOcclusion& action);
     void act(const Set& action);
+    void act(const EndStep& action);
     void act(const ProbeTo& action);
     void act(const ProbeOnto& action);
     void act(const PushProbe& action);

@@ -81,6 +81,11 @@ void Workbench::act(const Set& action)
     if (!said.empty()) say(std::move(said));
 }
 
+void Workbench::act(const EndStep&)
+{
+    record_settings();
+}
+
 void Workbench::take_session(Session session)
 {
     Document& document = *document_;
@@ -151,7 +156,7 @@ void Workbench::record_settings()
 {
     if (document_->annotator.stroke_is_running()) return;
     settings_to_record_ = false;
-    document_->record_settings();
+    if (document_->record_settings() && log_) log_(line_of(EndStep{}));
 }
 
 }  // namespace shvr::ui

@@ -58,6 +58,7 @@ const Row ROWS[] = {
     {R"({"op":"set","values":{"view":{"arrangement":"slices"}}})", "saved, view"},
     {R"({"op":"set","values":{"render":{"step_voxels":0.7}}})", "render, saved"},
     {R"({"op":"set","values":{"interaction":{"resolution":0.5}}})", "interaction, saved"},
+    {R"({"op":"end_step"})", ""},
     {R"({"op":"probe_to","pixel":[20,20]})", "place"},
     {R"({"op":"probe_onto","pixel":[48,40]})", "place"},
     {R"({"op":"push_probe","voxels":2})", "place"},

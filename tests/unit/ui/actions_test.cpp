@@ -33,6 +33,7 @@ std::vector<Action> samples()
             ResetCuts{},
             UpdateOcclusion{},
             Set{R"({"light":{"ambient":0.45}})"},
+            EndStep{},
             ProbeTo{3, {1.5, 2.5}},
             ProbeOnto{0, {9, 8}},
             PushProbe{1, -2.5},

@@ -223,7 +223,7 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {"{\"op\":\"\xff\"}", {"is not JSON"}},
         // The parser treats a zero byte as the end and would miss the rest.
         {std::string("{\"op\":\"save\"}\0{\"op\":\"undo\"}", 27), {"is not JSON: byte 14 is zero"}},
-        {R"({"op":"save","a":[[[[[[[[[[[[1]]]]]]]]]]]]})", {"nests"}},
+        {R"({"op":"save","a":[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]})", {"nests"}},
     };
     for (const BadLine& bad : bad_lines) {
         CAPTURE(bad.line);
