@@ -1,6 +1,9 @@
 #include "engine/formats/dicom/dicom_file.h"
 
 #include <gdcmBoxRegion.h>
+#include <gdcmDict.h>
+#include <gdcmDicts.h>
+#include <gdcmGlobal.h>
 #include <gdcmImageReader.h>
 #include <gdcmImageRegionReader.h>
 #include <gdcmReader.h>
@@ -283,6 +286,31 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     }
 }
 
+/// What GDCM's readers of pictures look at by the dictionary's types; they end the program at a value of another type.
+bool is_of_pictures(const Tag& tag)
+{
+    static const std::set<Tag> OTHERS{Tag(0x0018, 0x0088), Tag(0x0018, 0x1164), Tag(0x0020, 0x0032),
+                                      Tag(0x0020, 0x0037), Tag(0x3004, 0x000c)};
+    return tag.GetGroup() == 0x0028 || OTHERS.contains(tag);
+}
+
+/// Fails at a value whose type is not the dictionary's; also within sequences, whose depth was checked
+/// (dicom_layout.h).
+void check_types(const DataSet& set, const std::filesystem::path& path)
+{
+    const gdcm::Dict& dictionary = gdcm::Global::GetInstance().GetDicts().GetPublicDict();
+    for (const gdcm::DataElement& element : set.GetDES()) {
+        const gdcm::VR known = dictionary.GetDictEntry(element.GetTag()).GetVR(), stated = element.GetVR();
+        const bool is_read = is_of_pictures(element.GetTag()) && known != gdcm::VR::INVALID;
+        if (is_read && stated != gdcm::VR::INVALID && !known.Compatible(stated))
+            fail(path.string(), ": element ", element.GetTag(), " is of type ", stated, "; expected ", known);
+        if (!(stated & gdcm::VR::SQ)) continue;
+        const gdcm::SmartPointer<gdcm::SequenceOfItems> items = element.GetValueAsSQ();
+        for (gdcm::SequenceOfItems::SizeType i = 1; items && i <= items->GetNumberOfItems(); ++i)
+            check_types(items->GetItem(i).GetNestedDataSet(), path);
+    }
+}
+
 }  // namespace
 
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
@@ -296,6 +324,7 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
     DicomFile file{.path = path};
     try {
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");
+        check_types(reader.GetFile().GetDataSet(), path);
         read_values(reader.GetFile().GetDataSet(), *layout, file);
     } catch (const Error&) {
         throw;
