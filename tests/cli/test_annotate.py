@@ -266,7 +266,7 @@ class Journal(CliTest):
         self.journal.write_text("What is this?")
         script = self.write_script("script.jsonl", [])
         self.check_refused("annotate", self.session, "--script", script,
-                           says=["session.journal: begins with other bytes than SHVRJRNL"])
+                           says=["session.journal: does not begin with SHVRJRNL"])
 
     def test_a_folder_that_takes_no_journal_takes_no_paint(self):
         self.journal.symlink_to(self.folder / "nowhere" / "session.journal")

@@ -1,0 +1,78 @@
+// A save includes the stroke under way, waits for its bricks, and not for ever.
+
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/file.h"
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+/// A paged scan, whose bricks are requested when something needs them.
+std::filesystem::path write_paged_session(const std::filesystem::path& folder)
+{
+    std::ofstream(folder / "scan.json") << R"({"shvr_session": 1,
+        "volume": {"procedural": "tubes", "size": [200, 200, 200], "seed": 5}, "render": {"paging": "always"},
+        "probe": {"brush": "fill", "radius_voxels": 20, "voxel": [100, 100, 100], "paint_threshold": 1},
+        "annotation": {"mask": "scan.mask"}})";
+    return folder / "scan.json";
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "a save in the middle of a stroke holds all that the stroke covers")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.open(write_paged_session(folder.path), {});
+    bench.perform(Paint{true});
+    bench.perform(PlaceProbe{{60, 100, 100}});
+    bench.perform(SaveOp{});
+    CHECK_FALSE(bench.model().is_painting);
+    CHECK(bench.model().voxels_by_group[1] > 33000);  // two balls of radius 20
+    CHECK(read_text(folder.path / "scan.mask", int64_t{1} << 24).find(char(1)) != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a save whose bricks do not arrive within 20 s is made without the rest of the stroke")
+{
+    TemporaryFolder folder;
+    double now_s = 0.0;
+    bool is_late = false;
+    Workbench bench(renderer(), {.has_servo = false, .now_s = [&] { return now_s += is_late ? 15.0 : 0.0; }});
+    bench.open(write_paged_session(folder.path), {});
+    bench.perform(Paint{true});
+    is_late = true;  // the second look at the clock is 30 s after the first, and no brick has come
+    bench.perform(SaveOp{});
+    CHECK(bench.messages().last().find(
+              "the rest of the stroke was not painted: its bricks did not arrive within 20 s") != std::string::npos);
+    CHECK_FALSE(bench.model().is_painting);
+    CHECK(std::filesystem::exists(folder.path / "scan.mask"));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a part of a turn that fails is said once, and everything else goes on")
+{
+    TemporaryFolder folder;
+    double now_s = 0.0;
+    Workbench bench(renderer(), {.has_servo = false, .now_s = [&] { return now_s += 0.01; }});
+    bench.set_pixels({48, 40});
+    bench.open(write_tubes_session(folder.path), {});
+    settle(bench);
+    // A brush that is too large for its preview fails in every turn.
+    bench.perform(Set{R"({"probe":{"preview":true,"radius_voxels":126}})"});
+    for (int turn = 0; turn < 200; ++turn) bench.advance();
+    int failures = 0;
+    for (const Message& message : bench.messages().all()) failures += message.weight == Weight::error;
+    CHECK(failures <= 1);
+    bench.perform(Set{R"({"probe":{"preview":false,"radius_voxels":4}})"});
+    bench.perform(Paint{true});
+    bench.perform(Paint{false});
+    settle(bench);
+    CHECK(bench.model().undoable == 1);
+}
