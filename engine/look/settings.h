@@ -76,6 +76,7 @@ struct RenderSettings {
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classify steps by both of their ends (preintegration.h); for steps of at most 1
+    double saturation = 1.0;      ///< of all that is drawn, before lines over it; 0: greys of the same luminance
     bool operator==(const RenderSettings&) const = default;
 };
 

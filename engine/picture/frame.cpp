@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/passes/anaglyph.h"
+#include "engine/passes/saturation.h"
 #include "engine/picture/ray_params.h"
 
 namespace shvr {
@@ -71,9 +72,9 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// The picture of one eye. A preview is drawn before the rays, so that they end at it, and then over the picture.
-Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
-                  const PicturePart& part, Resource target, const WaitingRays* rays = nullptr, size_t eye = 0)
+/// The volume and what is in it. A preview is drawn before the rays, so that they end at it, and then over the picture.
+Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
+                       const PicturePart& part, Resource target, const WaitingRays* rays, size_t eye)
 {
     RaysInWaiting waiting;
     if (rays) {
@@ -97,6 +98,17 @@ Resource draw_eye(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastIn
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
+/// The picture of one eye.
+Resource draw_eye(FrameGraph& graph, Scene& scene, const Look& look, Prepared& prepared, const RaycastInput& input,
+                  const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays, size_t eye)
+{
+    const Resource picture = draw_contents(graph, scene, prepared, input, camera, part, target, rays, eye);
+    if (look.render.saturation == 1.0) return picture;
+    return saturation(
+        graph, picture,
+        {.target = input.params.target, .size = part.end - part.begin, .saturation = float(look.render.saturation)});
+}
+
 }  // namespace
 
 WaitingRays::WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int eyes)
@@ -118,7 +130,7 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
     prepared.input.count_work = count_work;
     Drawn drawn;
     if (!shot.right_eye) {
-        drawn.target = draw_eye(graph, scene, prepared, prepared.input, shot.camera, part, target, waiting);
+        drawn.target = draw_eye(graph, scene, look, prepared, prepared.input, shot.camera, part, target, waiting, 0);
     } else {
         const glm::uvec2 size = part.end - part.begin;
         const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
@@ -126,9 +138,9 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
         left.params.target = right.params.target = glm::uvec2(0);
         set_rays(right.params, look, *shot.right_eye, scene.info(), part.pixels);
         const Resource by_left =
-            draw_eye(graph, scene, prepared, left, shot.camera, part, graph.create("left eye", desc), waiting, 0);
-        const Resource by_right =
-            draw_eye(graph, scene, prepared, right, *shot.right_eye, part, graph.create("right eye", desc), waiting, 1);
+            draw_eye(graph, scene, look, prepared, left, shot.camera, part, graph.create("left eye", desc), waiting, 0);
+        const Resource by_right = draw_eye(graph, scene, look, prepared, right, *shot.right_eye, part,
+                                           graph.create("right eye", desc), waiting, 1);
         drawn.target = anaglyph(graph, by_left, by_right, target, size, part.target);
     }
     if (waiting) waiting->have_begun();

@@ -10,7 +10,8 @@
 //   preview    [preview]                                                               (what a brush would change)
 //   rays       raycast, one thread a pixel
 //   preview    [preview_over]
-//   anaglyph   the last four for each eye, then anaglyph
+//   colours    [saturation]
+//   anaglyph   the last five for each eye, then anaglyph
 //
 // Beside pictures: next_preparation and next_refinement (the leap grid's stages, one at a time) and next_occlusion
 // (occlusion_cells, occlusion_gather, occlusion_bake). One thread, the one that owns the device.

@@ -91,6 +91,10 @@ void fields(Fields& f, RenderSettings& render)
          "steep edges; steps of at most 1"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
+    f.number(
+        "saturation", render.saturation, SHARE,
+        {"of the picture's colours, background included; 0: greys of the same luminance, for print, or for anaglyphs "
+         "of things that one eye alone would see; lines over the picture keep theirs"});
 }
 
 void fields(Fields& f, StereoSettings& stereo)

@@ -108,6 +108,7 @@ const std::vector<Feature> FEATURES{
      {}},
     {"work counters", [](Scenery& s) { s.options.count_work = true; }, {}},
     {"pre-integration", [](Scenery& s) { s.session.render.preintegration = true; }, {}},
+    {"saturation", [](Scenery& s) { s.session.render.saturation = 0.3; }, {"saturation"}},
     {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }, {}},
     {"bricks that come and go",
      [](Scenery& s) { s.paging = Paging::always; },

@@ -11,6 +11,7 @@
 #include "shaders/preview.h"
 #include "shaders/raycast.h"
 #include "shaders/regions/regions.h"
+#include "shaders/saturation.h"
 #include "shaders/surfaces.h"
 
 using namespace shvr;
@@ -187,6 +188,9 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members(
         "preview_over", "push",
         {MEMBER(PreviewOverParams, target), MEMBER(PreviewOverParams, size), MEMBER(PreviewOverParams, share)});
+    check_members(
+        "saturation", "push",
+        {MEMBER(SaturationParams, target), MEMBER(SaturationParams, size), MEMBER(SaturationParams, saturation)});
     check_members("surfaces_listed", "surface_nodes",
                   {MEMBER(SurfaceNode, lower), MEMBER(SurfaceNode, upper), MEMBER(SurfaceNode, skip),
                    MEMBER(SurfaceNode, begin), MEMBER(SurfaceNode, end)});

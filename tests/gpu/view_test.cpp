@@ -113,6 +113,21 @@ TEST_CASE_FIXTURE(Seen, "surfaces are in the sketch, in the tiles and around the
     }
 }
 
+TEST_CASE_FIXTURE(Seen, "a view with less colour comes to rest on the direct picture, a moving probe's pixels included")
+{
+    View view(renderer(), CRAWLING);
+    for (const double saturation : {0.25, 1.0, 0.0}) {
+        session.render.saturation = saturation;
+        for (const double x : {12.0, 20.0}) {
+            probe = ProbeLook{.center = {x, 16, 25}, .radius = 6.0, .color = {0.9, 0.1, 0.1}};
+            view.look(session, camera({1, 2, 3}), pixels());
+            view.show_probe(probe);
+            settle(view);
+            CHECK(shown(view) == direct(camera({1, 2, 3})));
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Seen, "nothing is submitted when nothing changed")
 {
     View view(renderer());
