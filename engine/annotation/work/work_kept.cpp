@@ -106,7 +106,8 @@ void Work::keep_settings(const SettingValues& values)
     if (!differs || only_looks_) return;
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
-    if (!is_there || !disputes_.empty() || cannot_keep_) return;
+    // Without a hold another program may write the journal, until a command takes it.
+    if (!is_there || !hold_ || !disputes_.empty() || cannot_keep_) return;
     try {
         open_journal();
     } catch (const Error&) {
