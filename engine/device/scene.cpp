@@ -190,9 +190,8 @@ void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const O
     const uint64_t left = memory.device_bytes_left(), bytes = ResidentVolume::bytes_for(source.info());
     if (pages(memory, source, options)) {
         const uint64_t atlas = atlas_bytes(memory, source.info(), options.with_occlusion, 0);
-        if (source.levels() > 1)
-            PagedVolume::check_room(memory.device().traits(), source.info(), source.levels(), atlas);
-        check_levels(source, options.host_bytes);
+        const int levels = planned_levels(source, options.host_bytes);
+        PagedVolume::check_room(memory.device().traits(), source.info(), levels, atlas);
     } else if (bytes > left) {
         throw gpu::BudgetError(sentence(source.info().name, ": render.paging is never, and its bricks need ",
                                         gpu::mebibytes(bytes), " of device memory, of which ", gpu::mebibytes(left),

@@ -153,9 +153,10 @@ Plan checked_plan_of(const VolumeSource& source, uint64_t host_budget_bytes)
 
 }  // namespace
 
-void check_levels(const VolumeSource& source, uint64_t host_budget_bytes)
+int planned_levels(const VolumeSource& source, uint64_t host_budget_bytes)
 {
-    static_cast<void>(checked_plan_of(source, host_budget_bytes));
+    const int levels = checked_plan_of(source, host_budget_bytes).levels;
+    return levels == 0 ? source.levels() : levels;
 }
 
 std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,

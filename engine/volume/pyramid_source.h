@@ -16,7 +16,7 @@ inline constexpr uint64_t LEVELS_SHARE_OF_HOST = 4;
 /// reading if the levels, plus two slices while they are made, need more than a quarter of `host_budget_bytes`.
 std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
                                                 const Progress& progress = {});
-/// Fails where with_levels would, from sizes alone.
-void check_levels(const VolumeSource& source, uint64_t host_budget_bytes);
+/// How many levels with_levels() would give it. Fails where that would, from sizes alone.
+int planned_levels(const VolumeSource& source, uint64_t host_budget_bytes);
 
 }  // namespace shvr
