@@ -132,6 +132,19 @@ struct WorkOnCopy {};
 struct ShowHelp {
     bool on = true;
 };
+/// All that was said, with its weight; while it is shown, all of it has been read.
+struct ShowMessages {
+    bool on = true;
+};
+/// A box to type in, which finds all shortcuts, actions and settings.
+struct ShowPalette {
+    bool on = true;
+};
+/// The next key that is pressed is bound to that shortcut; Escape leaves it as it is, Delete takes its keys away. An
+/// empty id: none is waited for any more.
+struct AwaitKey {
+    std::string shortcut;
+};
 /// One of the two sets of keys (shortcuts.h).
 struct ChooseKeys {
     std::string set;
@@ -156,7 +169,8 @@ using Action = std::variant<
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, AwaitKey, ShowHelp, ShowMessages, ShowPalette,
+    ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

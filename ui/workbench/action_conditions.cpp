@@ -162,7 +162,8 @@ std::string why(const Model& model, const ChooseBelief&)
 template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
-constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys,
+                                           AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
 
 }  // namespace
 

@@ -67,7 +67,10 @@ std::vector<Action> samples()
             WorkOnCopy{},
             ChooseKeys{"thesis"},
             BindKeys{"undo", "Ctrl+U F2"},
+            AwaitKey{"undo"},
             ShowHelp{false},
+            ShowMessages{false},
+            ShowPalette{false},
             ShowFullScreen{false},
             Quit{}};
 }
