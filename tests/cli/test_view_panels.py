@@ -1,10 +1,10 @@
-"""Panels on what the workbench knows, by real keys and clicks: the palette, the keys in the help window, the history."""
+"""Panels on what the workbench knows, by real keys: the palette, and keys that are changed."""
 import json
 import unittest
 from pathlib import Path
 
 from harness import ENVIRONMENT
-from test_view import WINDOW, Window
+from test_view import Window
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 
@@ -56,24 +56,6 @@ class Panels(Window):
         self.assertEqual(kept, {"overview": "", "shell": "Ctrl+J"})
         # The light is a step, so two are undone: it and the third dab.
         self.assertEqual((report["undoable"], report["redoable"]), (3, 1), report["messages"])
-
-    def test_the_history_jumps_and_messages_are_read(self):
-        session, log = self.write_ball(), self.folder / "log.jsonl"
-        self.check("annotate", session, "--script",
-                   self.write_script("s.jsonl", [{**DAB, "group": group} for group in (3, 4, 5)] + [{"op": "save"}]))
-        self.view(session, log)
-        # The last click of the wheel is far below the sections of the side panel.
-        self.do("mousemove", WINDOW[0] - 150, 300, "click", "--repeat", 60, "--delay", 15, 5, pause_s=1.5)
-        for y in range(WINDOW[1] - 40, WINDOW[1] - 130, -14):  # the header "History", above "GPU passes"
-            self.do("mousemove", WINDOW[0] - 150, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mouseup", 1, pause_s=0.5)
-            self.do("mousemove", WINDOW[0] - 150, 300, "click", "--repeat", 30, "--delay", 15, 5, pause_s=0.8)
-            if '"undo"' in log.read_text():
-                break
-        self.do("mousemove", 100, WINDOW[1] - 10, "sleep", 0.2, "mousedown", 1, "sleep", 0.2, "mouseup", 1, pause_s=0.8)
-        self.finish()
-        lines = self.actions(log)
-        self.assertTrue([line for line in lines if line["op"] == "undo"], lines)
-        self.assertIn({"op": "show_messages", "on": True}, lines)
 
 
 if __name__ == "__main__":
