@@ -31,9 +31,10 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     set_style(window_.content_scale());
     window_.attach(renderer_->device(), renderer_->memory());
     attached_.reset(&window_);
-    WorkbenchOptions wanted{.allow_force = options.allow_force, .preferences = options.preferences, .now_s = [this] {
-                                return window_.now_s();
-                            }};
+    WorkbenchOptions wanted{.allow_force = options.allow_force,
+                            .preferences = options.preferences,
+                            .now_s = [this] { return window_.now_s(); },
+                            .version = options.version};
     wanted.view.swap_red_blue = window_.swaps_red_and_blue();
     bench_ = std::make_unique<Workbench>(*renderer_, std::move(wanted));
     if (!options.log.empty()) {

@@ -30,6 +30,7 @@ struct AppOptions {
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};      ///< the file (workbench/preferences.h); empty: none are read or kept
     std::filesystem::path log{};              ///< each action is written there as a line that replays it; empty: none
+    std::string version{};                    ///< of the program, for reports
     glm::uvec2 window_size{1280, 800};
 };
 

@@ -80,6 +80,20 @@ double rate(const Shortcut& shortcut, int mods)
     return shortcut.is_slowed() && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
+/// The key that a person chose for a shortcut. Modifiers alone, and keys without a name, are waited on.
+void bind(const KeyEvent& event, const Model& model, Actions& actions)
+{
+    const Shortcut* const shortcut = shortcut_named(model.awaits_key);
+    const std::string key = shortcut && shortcut->is_by_position ? name_at_place(event.key) : name_in_layout(event);
+    const std::string text = text_of(chord_with(key, event.mods));
+    if (event.key == GLFW_KEY_ESCAPE)
+        actions.push_back(AwaitKey{});
+    else if (event.key == GLFW_KEY_DELETE && event.mods == 0)
+        actions.push_back(BindKeys{std::string(model.awaits_key), ""});
+    else if (!event.repeated && chord_of(text))
+        actions.push_back(BindKeys{std::string(model.awaits_key), text});
+}
+
 }  // namespace
 
 void Keyboard::release(const Held& held, const Model& model, Actions& actions)
@@ -97,6 +111,7 @@ void Keyboard::handle(const KeyEvent& event, const Model& model, bool ui_has_key
         return;
     }
     if (ui_has_keys) return;
+    if (!model.awaits_key.empty()) return bind(event, model, actions);
     Held held{.pressed = event};
     for (const Shortcut* shortcut : shortcuts_for(event, event.mods, model.keymap)) {
         const bool lasts = shortcut->mode == Shortcut::Mode::while_held;

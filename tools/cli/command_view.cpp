@@ -84,7 +84,8 @@ void run_view(const ViewCommandOptions& options)
                           .validation = validation && *validation == '1',
                           .allow_force = options.allow_force,
                           .preferences = ui::preferences_file(),
-                          .log = options.log};
+                          .log = options.log,
+                          .version = SHVR_VERSION};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
     const StopRequest stop;
     wanted.stop = &stop.flag();

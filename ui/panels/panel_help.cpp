@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
 
+#include "engine/base/error.h"
+#include "ui/panels/widgets.h"
 #include "ui/workbench/keymap.h"
+#include "ui/workbench/lists/palette.h"
+#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
@@ -48,25 +54,83 @@ void row(const char* left, const char* right)
 bool begin_list(const char* id)
 {
     if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit)) return false;
-    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, 10.5f * ImGui::GetFontSize());
     ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
 
-/// The shortcuts under headings; the table is ordered by group.
-void key_list(std::span<const Shortcut> listed, const Keymap& keymap)
+std::string all_keys_of(const Shortcut& shortcut, const Keymap& keymap)
 {
-    const char* group = "";
-    for (const Shortcut& shortcut : listed) {
-        if (std::strcmp(group, shortcut.group) != 0) heading(group = shortcut.group);
-        row(keymap.text_of(shortcut).c_str(), shortcut.name);
+    std::string text;
+    for (const Chord& chord : keymap.chords_of(shortcut)) text += (text.empty() ? "" : ", ") + in_words(chord);
+    return text;
+}
+
+/// A button with its keys, which waits for the next key.
+void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
+{
+    const bool waits = model.awaits_key == shortcut.id;
+    const std::string keys = all_keys_of(shortcut, model.keymap);
+    const std::string label = waits ? "press a key ..." : keys.empty() ? "(no key)" : keys;
+    ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0.0f, 0.5f});
+    if (waits) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (ImGui::Button(label.c_str(), {10.5f * ImGui::GetFontSize(), 0.0f}))
+        actions.push_back(AwaitKey{waits ? "" : shortcut.id});
+    if (waits) ImGui::PopStyleColor();
+    ImGui::PopStyleVar();
+    hint(waits ? "Escape leaves it as it is; Delete takes the key away."
+               : "Click, then press another key for it. Escape leaves it as it is; Delete takes the key away.");
+}
+
+/// What it means; who else has its keys; and the way back to what ships.
+void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
+{
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(shortcut.name);
+    if (model.preferences.keys.contains(shortcut.id)) {
+        ImGui::SameLine();
+        const char* const shipped = shortcut.keys[size_t(model.preferences.key_set)];
+        if (ImGui::SmallButton("Reset")) actions.push_back(BindKeys{shortcut.id, shipped});
+        hint(sentence("What ships: ", *shipped ? shipped : "no key").c_str());
+    }
+    for (const Shortcut* rival : model.keymap.rivals_of(shortcut)) {
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextWrapped("also means: %s", rival->name);
+        ImGui::PopStyleColor();
     }
 }
 
-void mouse_list()
+bool is_found(const Shortcut& shortcut, const Model& model, const std::string& text)
 {
-    heading("Mouse");
-    for (const Gesture& gesture : GESTURES) row(gesture.what, gesture.meaning);
+    return has_words(
+        sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', all_keys_of(shortcut, model.keymap)), text);
+}
+
+/// The shortcuts under headings; the table is ordered by group.
+void key_list(std::span<const Shortcut> listed, const Model& model, const std::string& text, Actions& actions)
+{
+    const char* group = "";
+    for (const Shortcut& shortcut : listed) {
+        if (!is_found(shortcut, model, text)) continue;
+        if (std::strcmp(group, shortcut.group) != 0) heading(group = shortcut.group);
+        ImGui::PushID(shortcut.id);
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        keys_of(shortcut, model, actions);
+        ImGui::TableNextColumn();
+        meaning_of(shortcut, model, actions);
+        ImGui::PopID();
+    }
+}
+
+void mouse_list(const std::string& text)
+{
+    bool is_first = true;
+    for (const Gesture& gesture : GESTURES) {
+        if (!has_words(sentence("Mouse ", gesture.what, ' ', gesture.meaning), text)) continue;
+        if (std::exchange(is_first, false)) heading("Mouse");
+        row(gesture.what, gesture.meaning);
+    }
 }
 
 /// The first shortcut of a group near the middle, so that both columns are about equally long.
@@ -77,27 +141,43 @@ size_t middle(std::span<const Shortcut> listed)
     return std::min(at, listed.size());
 }
 
-void both_columns(const Keymap& keymap)
+void both_columns(const Model& model, const std::string& text, Actions& actions)
 {
     const std::span<const Shortcut> listed = shortcuts();
-    const size_t split = middle(listed);
+    const size_t split = text.empty() ? middle(listed) : listed.size();
     ImGui::TableNextColumn();
     if (begin_list("left")) {
-        key_list(listed.first(split), keymap);
+        key_list(listed.first(split), model, text, actions);
         ImGui::EndTable();
     }
     ImGui::TableNextColumn();
     if (begin_list("right")) {
-        mouse_list();
-        key_list(listed.subspan(split), keymap);
+        mouse_list(text);
+        key_list(listed.subspan(split), model, text, actions);
         ImGui::EndTable();
     }
+}
+
+void head(const Model& model, std::string& text, Actions& actions)
+{
+    ImGui::SetNextItemWidth(16.0f * ImGui::GetFontSize());
+    ImGui::InputTextWithHint("##search", "search: a name or a key", &text);
+    ImGui::SameLine(0.0f, 2.0f * ImGui::GetFontSize());
+    ImGui::TextUnformatted("Keys");
+    for (const auto& [set, name] :
+         {std::pair{KeySet::modern, "of today"}, std::pair{KeySet::thesis, "of the thesis"}}) {
+        ImGui::SameLine();
+        if (ImGui::RadioButton(name, model.preferences.key_set == set))
+            actions.push_back(ChooseKeys{std::string(KEY_SETS[size_t(set)].name)});
+    }
+    ImGui::TextDisabled("Keys for turning, moving and cutting repeat while held; with Shift slowly.");
 }
 
 }  // namespace
 
 void help_window(const Model& model, Actions& actions)
 {
+    static std::string text;
     bool is_open = model.shows_help;
     const float font = ImGui::GetFontSize();
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();
@@ -105,11 +185,11 @@ void help_window(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
     ImGui::SetNextWindowPos(viewport.GetWorkCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     if (ImGui::Begin("Keys and mouse", &is_open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-        ImGui::TextDisabled("Keys for turning, moving and cutting repeat while held; with Shift slowly.");
-        if (ImGui::BeginTable("columns", 2)) {
+        head(model, text, actions);
+        if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_ScrollY)) {
             ImGui::TableSetupColumn("left", ImGuiTableColumnFlags_WidthStretch, 0.42f);
             ImGui::TableSetupColumn("right", ImGuiTableColumnFlags_WidthStretch, 0.58f);
-            both_columns(model.keymap);
+            both_columns(model, text, actions);
             ImGui::EndTable();
         }
     }

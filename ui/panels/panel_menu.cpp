@@ -14,6 +14,7 @@
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/keymap.h"
+#include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
@@ -219,6 +220,8 @@ void help_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Help")) return;
     item("help", model, actions, model.shows_help);
+    item("palette", model, actions);
+    item("messages", model, actions, model.shows_messages);
     ImGui::EndMenu();
 }
 
@@ -237,6 +240,37 @@ void align_right(const std::string& text)
     ImGui::SameLine();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
     ImGui::TextUnformatted(text.c_str());
+}
+
+/// The last message, and how many errors and warnings nobody has looked at; a click shows all.
+void said(const Model& model, const std::string& right, Actions& actions)
+{
+    const std::string unread = unread_in_words(model.messages);
+    const float gap = 2.0f * ImGui::GetFontSize(), begin = ImGui::GetCursorPosX(), top = ImGui::GetCursorPosY();
+    const float end =
+        ImGui::GetContentRegionMax().x - (right.empty() ? 0.0f : ImGui::CalcTextSize(right.c_str()).x + gap);
+    const float unread_at = end - ImGui::CalcTextSize(unread.c_str()).x;
+    const bool is_bad = !model.messages.all().empty() && model.messages.all().back().weight == Weight::error;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::max((unread.empty() ? end : unread_at - gap) - begin, 1.0f);
+    ImGui::PushClipRect(at, {at.x + width, at.y + ImGui::GetFrameHeight()}, true);
+    ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? WARNING : ImGui::GetColorU32(ImGuiCol_Text));
+    ImGui::TextUnformatted(model.status().c_str());
+    ImGui::PopStyleColor();
+    bool is_clicked = ImGui::IsItemClicked();
+    hint("A click shows all messages.");
+    ImGui::PopClipRect();
+    if (!unread.empty()) {
+        ImGui::SetCursorPos({unread_at, top});
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextUnformatted(unread.c_str());
+        ImGui::PopStyleColor();
+        is_clicked |= ImGui::IsItemClicked();
+        hint("Nobody has looked at these yet; a click shows all messages.");
+    }
+    if (is_clicked) actions.push_back(ShowMessages{});
+    ImGui::SetCursorPos({begin, top});
+    ImGui::Dummy({0.0f, 0.0f});
 }
 
 }  // namespace
@@ -258,7 +292,7 @@ void menu_bar(const Model& model, Actions& actions)
     task_dialogs(actions);
 }
 
-void status_bar(const Model& model, const glm::uvec2& window)
+void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
 {
     const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
     const float width = float(window.x) / (scale.x > 0.0f ? scale.x : 1.0f);
@@ -275,15 +309,14 @@ void status_bar(const Model& model, const glm::uvec2& window)
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
-    const bool is_bad = !model.messages.all().empty() && model.messages.all().back().weight == Weight::error;
-    ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? WARNING : ImGui::GetColorU32(ImGuiCol_Text));
-    ImGui::TextUnformatted(model.status().c_str());
-    ImGui::PopStyleColor();
-    if (model.is_open)
-        align_right(place_of(model.probe_voxel) + "    |    " + (model.is_saved ? "saved" : "not saved") + "    |    " +
-                    (!model.view_is_complete ? "refining"
-                     : model.view_is_limited ? "coarser than the screen: device budget"
-                                             : "sharp"));
+    const std::string right = !model.is_open ? std::string()
+                                             : place_of(model.probe_voxel) + "    |    " +
+                                                   (model.is_saved ? "saved" : "not saved") + "    |    " +
+                                                   (!model.view_is_complete ? "refining"
+                                                    : model.view_is_limited ? "coarser than the screen: device budget"
+                                                                            : "sharp");
+    said(model, right, actions);
+    align_right(right);
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);

@@ -126,6 +126,7 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     section("Ambient occlusion", false, occlusion_panel, model, actions);
     section("Views", false, views_panel, model, actions);
     section("Colour groups", true, groups_panel, model, actions);
+    section("History", false, history_panel, model, actions);
     section("GPU passes", false, passes_panel, model, actions);
     ImGui::End();
     ImGui::PopStyleVar();
@@ -156,9 +157,11 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
         side_panel({size.x - panel, bar}, {panel, std::max(size.y - 2.0f * bar, 1.0f)}, model, actions);
     else
         start_page(model, actions);
-    status_bar(model, window);
+    status_bar(model, window, actions);
     notices(model, {0.0f, bar}, size.x - panel, actions);
     if (model.shows_help) help_window(model, actions);
+    if (model.shows_palette) palette_window(model, actions);
+    if (model.shows_messages) messages_window(model, actions);
     jobs_window(model, {0.0f, size.y - bar}, actions);
 
     const glm::vec2 begin(0.0f, bar);

@@ -29,7 +29,10 @@ void occlusion_panel(const Model& model, Actions& actions);
 void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
+void history_panel(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
+void palette_window(const Model& model, Actions& actions);
+void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
 /// Shows the dialog that asks for a file, from the next frame on.
 void ask_for_file();
@@ -44,7 +47,7 @@ void task_dialogs(Actions& actions);
 void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions);
 /// What is there while nothing is open.
 void start_page(const Model& model, Actions& actions);
-void status_bar(const Model& model, const glm::uvec2& window);
+void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);
 /// That this window only looks, at the upper edge of the graphics window; and the question which files to believe.
 void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 

@@ -139,6 +139,19 @@ struct Resize {
 struct ShowHelp {
     bool on = true;
 };
+/// All that was said, with its weight; while it is shown, all of it has been read.
+struct ShowMessages {
+    bool on = true;
+};
+/// A box to type in, which finds all shortcuts, actions and settings.
+struct ShowPalette {
+    bool on = true;
+};
+/// The next key that is pressed is bound to that shortcut; Escape leaves it as it is, Delete takes its keys away. An
+/// empty id: none is waited for any more.
+struct AwaitKey {
+    std::string shortcut;
+};
 /// One of the two sets of keys (shortcuts.h).
 struct ChooseKeys {
     std::string set;
@@ -163,7 +176,8 @@ using Action = std::variant<
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, Resize, ShowHelp, ShowFullScreen, Quit>;
+    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette,
+    ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

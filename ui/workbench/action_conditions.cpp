@@ -163,7 +163,7 @@ template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
 constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys,
-                                           Resize, ShowHelp, ShowFullScreen, Quit>;
+                                           Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
 
 }  // namespace
 

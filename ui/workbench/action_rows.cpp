@@ -66,7 +66,10 @@ constexpr ActionRow ROWS[] = {
     {"choose_keys", "Choose the keys", WINDOW, "takes one of the two sets of keys that ship"},
     {"bind_keys", "Other keys", WINDOW, "gives a shortcut other keys than those that ship"},
     {"resize", "Resize", WINDOW, "the picture has so many pixels, across and down"},
+    {"await_key", "Press a key for it", WINDOW, "the next key that is pressed is bound to a shortcut"},
     {"show_help", "Keys and mouse", WINDOW, "shows or hides the list of keys"},
+    {"show_messages", "Messages", WINDOW, "shows or hides all that was said, and takes it as read"},
+    {"show_palette", "Find anything", WINDOW, "shows or hides a box that finds shortcuts, actions and settings"},
     {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
     {"quit", "Quit", WINDOW, "saves the work and closes the window"},
 };
@@ -202,6 +205,18 @@ void fields(Fields& f, ChooseBelief& a)
 void fields(Fields& f, ShowHelp& a)
 {
     f.flag("on", a.on, {});
+}
+void fields(Fields& f, ShowMessages& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, ShowPalette& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, AwaitKey& a)
+{
+    f.text("shortcut", a.shortcut, {});
 }
 void fields(Fields& f, ChooseKeys& a)
 {

@@ -64,6 +64,11 @@ std::optional<Chord> chord_of(std::string_view text)
     return chord;
 }
 
+std::string text_of(const Chord& chord)
+{
+    return sentence(chord.control ? "Ctrl+" : "", chord.alt ? "Alt+" : "", chord.shift ? "Shift+" : "", chord.key);
+}
+
 std::string in_words(const Chord& chord)
 {
     std::string text;
@@ -114,6 +119,16 @@ std::string Keymap::text_of(const Shortcut& shortcut) const
 {
     const std::vector<Chord>& chords = chords_of(shortcut);
     return chords.empty() ? std::string() : in_words(chords.front());
+}
+
+std::vector<const Shortcut*> Keymap::rivals_of(const Shortcut& shortcut) const
+{
+    std::vector<const Shortcut*> rivals;
+    for (const Shortcut& other : shortcuts())
+        if (&other != &shortcut &&
+            std::ranges::find_first_of(chords_of(other), chords_of(shortcut)) != chords_of(other).end())
+            rivals.push_back(&other);
+    return rivals;
 }
 
 std::vector<std::string> Keymap::conflicts() const

@@ -19,6 +19,8 @@ struct Chord {
 };
 /// "Ctrl+Shift+Z"; nothing where the text is no chord.
 std::optional<Chord> chord_of(std::string_view text);
+/// The text that `chord_of` reads as this chord.
+std::string text_of(const Chord& chord);
 /// The same for people: "Ctrl + Shift + Z", "Page Up".
 std::string in_words(const Chord& chord);
 
@@ -36,6 +38,8 @@ public:
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
     /// The first, in words; empty where there is none.
     std::string text_of(const Shortcut& shortcut) const;
+    /// Others that have one of its chords.
+    std::vector<const Shortcut*> rivals_of(const Shortcut& shortcut) const;
     /// Chords that mean more than one shortcut, each in a sentence.
     std::vector<std::string> conflicts() const;
 

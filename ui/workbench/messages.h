@@ -1,7 +1,9 @@
 #pragma once
 // What the program has told the person at it, with its weight. The main thread.
 
+#include <array>
 #include <cstdint>
+#include <ctime>
 #include <deque>
 #include <string>
 
@@ -16,6 +18,7 @@ enum class Weight {
 struct Message {
     uint64_t number = 0;  ///< counted from 1
     double time_s = 0.0;  ///< of the workbench's clock
+    std::time_t at = 0;   ///< by the clock on the wall
     Weight weight = Weight::done;
     std::string text;
 };
@@ -27,7 +30,8 @@ public:
 
     void add(double time_s, Weight weight, std::string text)
     {
-        messages_.push_back({++count_, time_s, weight, std::move(text)});
+        messages_.push_back({++count_, time_s, std::time(nullptr), weight, std::move(text)});
+        ++unread_[size_t(weight)];
         if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
     }
     /// Replaces the text of the last message, as progress does; adds one where there is none.
@@ -45,10 +49,14 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
+    /// Messages of that weight since `note_read`, forgotten ones too.
+    uint64_t unread(Weight weight) const { return unread_[size_t(weight)]; }
+    void note_read() { unread_ = {}; }
 
 private:
     std::deque<Message> messages_;
     uint64_t count_ = 0;
+    std::array<uint64_t, 3> unread_{};
 };
 
 }  // namespace shvr::ui

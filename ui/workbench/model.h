@@ -19,6 +19,7 @@
 
 namespace shvr::ui {
 class Keymap;
+class RecentActions;
 struct Preferences;
 }  // namespace shvr::ui
 
@@ -49,7 +50,8 @@ struct Model {
 
     // The work
     std::array<int64_t, 256> voxels_by_group{};
-    size_t undoable = 0, redoable = 0;
+    const History* history = nullptr;   ///< null where nothing is open
+    size_t undoable = 0, redoable = 0;  ///< a setting that is not a step of the history yet counts as undoable
     bool is_saved = true;
     std::string_view holder{};  ///< who writes the project, if that is another process: then this window only looks
     const std::filesystem::path& session_path;
@@ -58,7 +60,10 @@ struct Model {
     const MessageLog& messages;
     const Keymap& keymap;
     const Preferences& preferences;
-    bool shows_help = false, is_full_screen = false;
+    const RecentActions* recent = nullptr;  ///< the last actions; null where nobody remembers them
+    std::string_view version{};             ///< of the program
+    bool shows_help = false, shows_messages = false, shows_palette = false, is_full_screen = false;
+    std::string_view awaits_key{};  ///< id of the shortcut that the next key is for; empty: none
 
     // The device
     std::string_view gpu_name{};

@@ -169,6 +169,12 @@ constexpr Shortcut SHORTCUTS[] = {
      Mode::tap,
      [](const Model& model, double) -> Action { return ShowHelp{!model.shows_help}; },
      {"F1 F12", "F12"}},
+    both(
+        "messages", WORK_KEYS, "Messages", Mode::tap,
+        [](const Model& model, double) -> Action { return ShowMessages{!model.shows_messages}; }, ""),
+    both(
+        "palette", WORK_KEYS, "Find anything", Mode::tap,
+        [](const Model& model, double) -> Action { return ShowPalette{!model.shows_palette}; }, "Ctrl+Shift+P"),
     both("quit", WORK_KEYS, "Quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
 
     both("slices", VIEWS_KEYS, "Slices", Mode::tap, arrange<Arrangement::slices>, "F6"),

@@ -40,6 +40,7 @@ Workbench::~Workbench() = default;
 void Workbench::say(std::string text, Weight weight)
 {
     messages_.add(options_.now_s(), weight, std::move(text));
+    if (shows_messages_) messages_.note_read();
 }
 
 // ---- Actions --------------------------------------------------------------------------------------------------------
@@ -48,7 +49,9 @@ void Workbench::perform(const Action& action)
 {
     if (!document_ && !ui::why_not(model(), action).empty()) fail("Nothing is open");
     if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
+    recent_.begin(action);
     std::visit([&](const auto& each) { act(each); }, action);
+    recent_.note_done();
     if (log_) log_(line_of(action));
 }
 
@@ -71,6 +74,18 @@ void Workbench::act(const Resize& action)
 void Workbench::act(const ShowHelp& action)
 {
     shows_help_ = action.on;
+    if (!action.on) awaits_key_.clear();
+}
+
+void Workbench::act(const ShowMessages& action)
+{
+    shows_messages_ = action.on;
+    messages_.note_read();
+}
+
+void Workbench::act(const ShowPalette& action)
+{
+    shows_palette_ = action.on;
 }
 
 void Workbench::act(const ShowFullScreen& action)
@@ -132,10 +147,22 @@ void Workbench::act(const BindKeys& action)
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
+    // What ships is no change, so that it goes along with another choice of the set.
+    if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
+        Keymap(preferences.key_set).chords_of(*shortcut))
+        preferences.keys.erase(action.shortcut);
     prefer(std::move(preferences));
+    awaits_key_.clear();
     const std::string keys = keymap_.text_of(*shortcut);
     say(keys.empty() ? sentence("'", shortcut->name, "' has no key") : sentence(keys, ": ", shortcut->name));
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+void Workbench::act(const AwaitKey& action)
+{
+    if (!action.shortcut.empty() && !shortcut_named(action.shortcut))
+        fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+    awaits_key_ = action.shortcut;
 }
 
 // ---- Documents ------------------------------------------------------------------------------------------------------
@@ -344,8 +371,13 @@ Model Workbench::model() const
                 .messages = messages_,
                 .keymap = keymap_,
                 .preferences = preferences_,
+                .recent = &recent_,
+                .version = options_.version,
                 .shows_help = shows_help_,
+                .shows_messages = shows_messages_,
+                .shows_palette = shows_palette_,
                 .is_full_screen = is_full_screen_,
+                .awaits_key = awaits_key_,
                 .gpu_name = renderer_.device().traits().name};
     const Document& document = *document_;
     const Previewer& previewer = document.previewer;
@@ -367,6 +399,7 @@ Model Workbench::model() const
             .drags_node = document.drags_node,
             .previewed_voxels = has_preview ? std::optional(previewer.shown()->voxels) : std::nullopt,
             .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
+            .history = &document.annotator.history(),
             .undoable = document.annotator.history().undoable() + settings_to_record_,
             .redoable = document.annotator.history().redoable(),
             .is_saved = document.is_saved(),
@@ -377,8 +410,13 @@ Model Workbench::model() const
             .messages = messages_,
             .keymap = keymap_,
             .preferences = preferences_,
+            .recent = &recent_,
+            .version = options_.version,
             .shows_help = shows_help_,
+            .shows_messages = shows_messages_,
+            .shows_palette = shows_palette_,
             .is_full_screen = is_full_screen_,
+            .awaits_key = awaits_key_,
             .gpu_name = renderer_.device().traits().name,
             .view_is_complete = document.screen.complete(),
             .view_is_limited = renderer_.volume().state() == DeviceVolume::State::limited,

@@ -15,6 +15,7 @@
 #include "engine/jobs/jobs.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/document.h"
+#include "ui/workbench/lists/recent_actions.h"
 #include "ui/workbench/messages.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/screenshots.h"
@@ -27,6 +28,7 @@ struct WorkbenchOptions {
     bool allow_force = false;  ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};  ///< the file (preferences.h); empty: none are read or kept
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
+    std::string version{};                ///< of the program, for reports; empty: not told
 };
 
 class Workbench {
@@ -150,6 +152,9 @@ private:
     void act(const BindKeys& action);
     void act(const Resize& action);
     void act(const ShowHelp& action);
+    void act(const AwaitKey& action);
+    void act(const ShowMessages& action);
+    void act(const ShowPalette& action);
     void act(const ShowFullScreen& action);
     void act(const Quit& action);
 
@@ -203,9 +208,11 @@ private:
     MessageLog messages_;
     Preferences preferences_;
     Keymap keymap_;
+    std::string awaits_key_;  ///< id of the shortcut that the next key is for; empty: none
     bool are_preferences_kept_ = false;
     Screenshots screenshots_;
     std::function<void(const std::string&)> log_;
+    RecentActions recent_;
     Jobs jobs_;
     Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, photographing_;
     glm::uvec2 pixels_{0};
@@ -219,7 +226,7 @@ private:
     glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to
     std::string journal_failure_;                 ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
-    bool shows_help_ = false, is_full_screen_ = false, quits_ = false;
+    bool shows_help_ = false, shows_messages_ = false, shows_palette_ = false, is_full_screen_ = false, quits_ = false;
     double opened_s_ = 0.0;
     uint64_t openings_ = 0;
     /// What a model refers to where nothing is open.

@@ -86,13 +86,26 @@ void History::note_redo()
     ++done_;
 }
 
-void History::bring(Entry& entry)
+std::vector<Change> History::fetched(const Entry& entry) const
 {
-    if (entry.is_here) return;
     std::vector<Change> changes;
     for (const RecordNumber record : entry.records)
         for (Change& change : fetch_(record)) changes.push_back(std::move(change));
-    entry.command.changes = std::move(changes);
+    return changes;
+}
+
+void History::look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const
+{
+    SHVR_CHECK(step < commands_.size(), step, " of ", commands_.size());
+    const Entry& entry = commands_[step];
+    if (entry.is_here) return visit(entry.command.changes);
+    visit(fetched(entry));
+}
+
+void History::bring(Entry& entry)
+{
+    if (entry.is_here) return;
+    entry.command.changes = fetched(entry);
     entry.memory = memory_of(entry.command.changes);
     entry.is_here = true;
     memory_ += entry.memory;

@@ -39,6 +39,12 @@ public:
     size_t undoable() const { return done_; }
     size_t redoable() const { return commands_.size() - done_; }
 
+    /// Of the step with that number, from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
+    const std::string& label_of(size_t step) const { return commands_[step].command.label; }
+    /// What it changes; fetched where it was dropped, which fails if it cannot be read. `visit` gets a span that is
+    /// valid during the call.
+    void look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const;
+
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
     /// Drops changes of the oldest commands until at most `max_bytes` are left; only of commands whose records, at
@@ -54,6 +60,7 @@ private:
     };
     void push(Entry entry);
     void bring(Entry& entry);
+    std::vector<Change> fetched(const Entry& entry) const;
 
     std::vector<Entry> commands_;
     size_t done_ = 0;     ///< commands_[0 .. done_) are in effect

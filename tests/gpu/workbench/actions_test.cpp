@@ -110,7 +110,10 @@ const Row ROWS[] = {
     {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
     {R"({"op":"bind_keys","shortcut":"undo","keys":"Ctrl+U"})", "file preferences.json, keys"},
     {R"({"op":"resize","pixels":[64,48]})", ""},
+    {R"({"op":"await_key","shortcut":"undo"})", "awaits_key"},
     {R"({"op":"show_help","on":true})", "help"},
+    {R"({"op":"show_messages","on":true})", "messages"},
+    {R"({"op":"show_palette","on":true})", "palette"},
     {R"({"op":"full_screen","on":true})", "full_screen"},
     {R"({"op":"quit"})", ""},
 };

@@ -74,7 +74,10 @@ std::vector<Action> samples()
             ChooseKeys{"thesis"},
             BindKeys{"undo", "Ctrl+U F2"},
             Resize{{640, 480}},
+            AwaitKey{"undo"},
             ShowHelp{false},
+            ShowMessages{false},
+            ShowPalette{false},
             ShowFullScreen{false},
             Quit{}};
 }

@@ -9,6 +9,7 @@
 
 #include "engine/session/session_patch.h"
 #include "ui/workbench/action_rows.h"
+#include "ui/workbench/lists/palette.h"
 #include "ui/workbench/preferences.h"
 
 using namespace shvr;
@@ -403,4 +404,60 @@ TEST_CASE("cutting planes move inwards, and outwards with Alt")
     CHECK(upper.upper);
     CHECK(upper.share == doctest::Approx(0.01));
     CHECK(only<MoveCut>(actions_of(world, 'K', 0)).share == doctest::Approx(-0.01));
+}
+
+TEST_CASE("the key that a shortcut waits for is bound to it; Escape leaves it, Delete takes it away")
+{
+    World world;
+    world.model.awaits_key = "shell";
+    const auto bound = [&](int key, int mods, const std::string& character = {}) {
+        const Actions actions = actions_of(world, key, mods, false, character);
+        return actions.empty() ? std::string() : text_of(actions.at(0));
+    };
+    constexpr int ESCAPE = 256, DELETE = 261, LEFT_CONTROL = 341;
+    CHECK(bound('J', CONTROL | SHIFT) == R"(bind_keys shortcut="shell" keys="Ctrl+Shift+J")");
+    CHECK(bound('Y', CONTROL, "z") == R"(bind_keys shortcut="shell" keys="Ctrl+Z")");
+    CHECK(bound(LEFT_CONTROL, CONTROL).empty());
+    CHECK(bound(ESCAPE, 0) == text_of(AwaitKey{}));
+    CHECK(bound(DELETE, 0) == text_of(BindKeys{"shell", ""}));
+    CHECK(bound(DELETE, CONTROL) == R"(bind_keys shortcut="shell" keys="Ctrl+Delete")");
+    world.model.awaits_key = "move_forward";  // by place
+    CHECK(bound('Q', 0, "a") == R"(bind_keys shortcut="move_forward" keys="Q")");
+    for (const Shortcut& shortcut : shortcuts())
+        for (const Chord& chord : world.keymap.chords_of(shortcut)) CHECK(chord_of(text_of(chord)) == chord);
+}
+
+TEST_CASE("shortcuts with the same key know of each other")
+{
+    const Keymap keymap(KeySet::modern, {{"redo", {"F5", "Ctrl+R"}}});
+    const auto rivals = keymap.rivals_of(*shortcut_named("redo"));
+    REQUIRE(rivals.size() == 1);
+    CHECK(std::string(rivals[0]->id) == "preview");
+    CHECK(std::string(keymap.rivals_of(*rivals[0]).at(0)->id) == "redo");
+    CHECK(keymap.rivals_of(*shortcut_named("undo")).empty());
+}
+
+TEST_CASE("the palette finds shortcuts by words, actions by their text and settings by their keys")
+{
+    World world;
+    CHECK(palette_entries(world.model, "").size() == shortcuts().size());
+    const auto first = [&](const char* text) {
+        const std::vector<PaletteEntry> entries = palette_entries(world.model, text);
+        REQUIRE_FALSE(entries.empty());
+        return entries.front();
+    };
+    CHECK(first("LARGE shot").name == "Large screenshot");
+    CHECK(first("LARGE shot").keys == "Ctrl + P");
+    CHECK(first("undo ").why_not == "there is nothing to undo");
+    CHECK(text_of(*first(" look_from camera=top").action) == text_of(LookFrom{"top"}));
+    CHECK(first("look_from").why_not.find("camera") != std::string::npos);
+    CHECK(first("orbit right_degrees=x").why_not.find("right_degrees") != std::string::npos);
+    CHECK(std::get<Set>(*first("light.ambient=0.4").action).patch == R"({"light":{"ambient":0.4}})");
+    CHECK(first("light.ambient=0.4").why_not.empty());
+    CHECK(first("light.ambient=7").why_not.find("ambient") != std::string::npos);
+    CHECK(first("light.ambiance=0.4").why_not.find("ambiance") != std::string::npos);
+    CHECK(first("light.amb").completion == "light.ambient=");
+    CHECK(first("look_f").completion == "look_from ");
+    CHECK(first("paint while").why_not == "goes on while its key is held");
+    CHECK(palette_entries(world.model, "no such thing at all").empty());
 }

@@ -1,0 +1,122 @@
+// A box to type in, which finds what can be done: by name, as an action's text, or as a setting.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/lists/palette.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr int MAX_PALETTE_LINES = 16;
+
+struct Palette {
+    std::string text;
+    int chosen = 0;
+    int shown_frame = -1;      ///< the last frame it was drawn in
+    bool takes_keys = true;    ///< the next frame gives the box the keyboard
+    bool ends_at_end = false;  ///< and puts the cursor behind the text
+};
+Palette palette;
+
+int put_cursor_behind(ImGuiInputTextCallbackData* data)
+{
+    if (std::exchange(palette.ends_at_end, false))
+        data->CursorPos = data->SelectionStart = data->SelectionEnd = data->BufTextLen;
+    return 0;
+}
+
+void choose(const PaletteEntry& entry, Actions& actions)
+{
+    if (!entry.completion.empty()) {
+        palette.text = entry.completion;
+        palette.takes_keys = palette.ends_at_end = true;
+        palette.chosen = 0;
+    } else if (entry.action && entry.why_not.empty()) {
+        actions.push_back(ShowPalette{false});
+        actions.push_back(*entry.action);
+    } else {
+        palette.takes_keys = palette.ends_at_end = true;
+    }
+}
+
+bool is_pressed(ImGuiKey key)
+{
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
+}
+
+/// Name, what it belongs to or why it cannot be done, and its keys.
+bool line(const PaletteEntry& entry, bool is_chosen, int number)
+{
+    const bool is_grey = !entry.why_not.empty();
+    ImGui::PushID(number);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    if (is_grey) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    const bool is_clicked = ImGui::Selectable(entry.name.c_str(), is_chosen, ImGuiSelectableFlags_SpanAllColumns);
+    if (is_grey) ImGui::PopStyleColor();
+    if (is_chosen && !ImGui::IsItemVisible()) ImGui::SetScrollHereY();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", is_grey ? entry.why_not.c_str() : entry.group.c_str());
+    if (is_grey) hint(entry.why_not.c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", entry.keys.c_str());
+    ImGui::PopID();
+    return is_clicked;
+}
+
+void list(const std::vector<PaletteEntry>& entries, Actions& actions)
+{
+    const float height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
+    if (!ImGui::BeginTable("found", 3, ImGuiTableFlags_ScrollY, {0.0f, height * MAX_PALETTE_LINES})) return;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.42f);
+    ImGui::TableSetupColumn("group", ImGuiTableColumnFlags_WidthStretch, 0.4f);
+    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.18f);
+    for (int i = 0; i < int(entries.size()); ++i)
+        if (line(entries[size_t(i)], i == palette.chosen, i)) choose(entries[size_t(i)], actions);
+    ImGui::EndTable();
+}
+
+}  // namespace
+
+void palette_window(const Model& model, Actions& actions)
+{
+    if (palette.shown_frame + 1 != ImGui::GetFrameCount()) palette = {};
+    palette.shown_frame = ImGui::GetFrameCount();
+    const float font = ImGui::GetFontSize();
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    ImGui::SetNextWindowSize({std::min(50.0f * font, viewport.WorkSize.x), 0.0f});
+    ImGui::SetNextWindowPos({viewport.GetWorkCenter().x, viewport.WorkPos.y + 2.0f * font}, ImGuiCond_Always,
+                            {0.5f, 0.0f});
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+    if (palette.takes_keys) ImGui::SetNextWindowFocus();
+    ImGui::Begin("Find anything", nullptr, flags);
+    if (std::exchange(palette.takes_keys, false)) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0f);
+    const std::string before = palette.text;
+    const bool is_entered = ImGui::InputTextWithHint(
+        "##text", "a name, an action (look_from camera=top) or a setting (light.ambient=0.4)", &palette.text,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
+    if (before != palette.text) palette.chosen = 0;
+    const std::vector<PaletteEntry> entries = palette_entries(model, palette.text);
+    if (is_pressed(ImGuiKey_DownArrow)) ++palette.chosen;
+    if (is_pressed(ImGuiKey_UpArrow)) --palette.chosen;
+    palette.chosen = std::clamp(palette.chosen, 0, std::max(int(entries.size()) - 1, 0));
+    list(entries, actions);
+    if (entries.empty()) ImGui::TextDisabled("Nothing has these words in its name.");
+    if (!entries.empty() && !entries[size_t(palette.chosen)].why_not.empty())
+        ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
+    if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);
+    if (is_pressed(ImGuiKey_Escape)) actions.push_back(ShowPalette{false});
+    ImGui::End();
+}
+
+}  // namespace shvr::ui
