@@ -55,6 +55,7 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     const ui::Model model = bench.model();
     state["open"] = sentence(model.is_open, ' ', model.session_path.string());
     state["help"] = sentence(model.shows_help);
+    state["asks"] = sentence(model.asks_what_to_open);
     state["full_screen"] = sentence(model.is_full_screen);
     state["keys"] = sentence(spelled(model.preferences.key_set), ' ', model.preferences.keys.size());
     for (const auto& entry : std::filesystem::directory_iterator(folder))

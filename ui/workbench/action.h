@@ -128,7 +128,15 @@ struct ChooseBelief {
 /// Saves all that is shown under names of its own, and opens that.
 struct WorkOnCopy {};
 
+/// No longer among what was opened last; the file stays.
+struct ForgetRecent {
+    std::filesystem::path path;
+};
+
 // ---- The window
+struct AskOpen {  ///< shows or hides the file chooser
+    bool on = true;
+};
 struct ShowHelp {
     bool on = true;
 };
@@ -156,7 +164,8 @@ using Action = std::variant<
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen, Quit>;
+    Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, ShowHelp, ShowFullScreen,
+    Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

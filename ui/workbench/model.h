@@ -58,7 +58,7 @@ struct Model {
     const MessageLog& messages;
     const Keymap& keymap;
     const Preferences& preferences;
-    bool shows_help = false, is_full_screen = false;
+    bool shows_help = false, is_full_screen = false, asks_what_to_open = false;
 
     // The device
     std::string_view gpu_name{};

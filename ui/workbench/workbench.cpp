@@ -63,6 +63,18 @@ bool Workbench::apply(const Action& action)
     }
 }
 
+void Workbench::perform(const ForgetRecent& action)
+{
+    Preferences preferences = preferences_;
+    std::erase(preferences.recent, action.path);
+    prefer(std::move(preferences));
+}
+
+void Workbench::perform(const AskOpen& action)
+{
+    asks_what_to_open_ = action.on;
+}
+
 void Workbench::perform(const ShowHelp& action)
 {
     shows_help_ = action.on;
@@ -341,6 +353,7 @@ Model Workbench::model() const
                 .preferences = preferences_,
                 .shows_help = shows_help_,
                 .is_full_screen = is_full_screen_,
+                .asks_what_to_open = asks_what_to_open_,
                 .gpu_name = renderer_.device().traits().name};
     const Document& document = *document_;
     const Previewer& previewer = document.previewer;
@@ -374,6 +387,7 @@ Model Workbench::model() const
             .preferences = preferences_,
             .shows_help = shows_help_,
             .is_full_screen = is_full_screen_,
+            .asks_what_to_open = asks_what_to_open_,
             .gpu_name = renderer_.device().traits().name,
             .view_is_complete = document.screen.complete(),
             .view_is_limited = renderer_.volume().state() == DeviceVolume::State::limited,

@@ -147,6 +147,8 @@ private:
     void perform(const WorkOnCopy& action);
     void perform(const ChooseKeys& action);
     void perform(const BindKeys& action);
+    void perform(const ForgetRecent& action);
+    void perform(const AskOpen& action);
     void perform(const ShowHelp& action);
     void perform(const ShowFullScreen& action);
     void perform(const Quit& action);
@@ -217,7 +219,7 @@ private:
     glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to
     std::string journal_failure_;                 ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
-    bool shows_help_ = false, is_full_screen_ = false, quits_ = false;
+    bool shows_help_ = false, is_full_screen_ = false, asks_what_to_open_ = false, quits_ = false;
     double opened_s_ = 0.0;
     uint64_t openings_ = 0;
     /// What a model refers to where nothing is open.

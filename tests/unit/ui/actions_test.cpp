@@ -63,10 +63,12 @@ std::vector<Action> samples()
             CopySession{"/tmp/c.json"},
             Screenshot{true},
             Open{"/tmp/a b.json"},
+            ForgetRecent{"/tmp/gone.nrrd"},
             ChooseBelief{true},
             WorkOnCopy{},
             ChooseKeys{"thesis"},
             BindKeys{"undo", "Ctrl+U F2"},
+            AskOpen{false},
             ShowHelp{false},
             ShowFullScreen{false},
             Quit{}};
