@@ -56,7 +56,8 @@ MAY_INCLUDE = {
     "haptics": "engine/base",
     "ui/workbench": "engine/base engine/look engine/annotation/script engine/annotation/trace engine/annotation/work "
     "engine/session engine/jobs engine/tasks engine/picture engine/live haptics",
-    "ui": "engine/base engine/gpu engine/session engine/live haptics ui/workbench",
+    "ui/files": "engine/base engine/formats",
+    "ui": "engine/base engine/gpu engine/session engine/live haptics ui/files ui/workbench",
     "tests": "*",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders ui ui/workbench",

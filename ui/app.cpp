@@ -138,7 +138,7 @@ bool App::refuses_to_close(const std::string& why)
 
 bool App::something_moves() const
 {
-    if (window_.now_s() < ui_until_s_ || report_.has_unanswered()) return true;
+    if (window_.now_s() < ui_until_s_ || report_.has_unanswered() || choosers_are_busy()) return true;
     if (!bench_->is_open()) return false;
     constexpr double STIR_VOXELS = 0.05;
     return bench_->is_stirring() || glm::distance(bench_->document().probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
@@ -172,13 +172,13 @@ void App::handle_events(double timeout_s)
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
         const ImGuiIO& io = ImGui::GetIO();
         if (key)
-            keyboard_.handle(*key, model(), io.WantTextInput, actions_);
+            keyboard_.handle(*key, model(), io.WantTextInput || choosers_have_keys(), actions_);
         else
             viewport_.handle(event, model(), io.WantCaptureMouse, actions_);
         apply_all();  // the next event may depend on it: the probe's position, the selection
     }
     const double now = window_.now_s();
-    if (!ImGui::GetIO().WantTextInput)
+    if (!ImGui::GetIO().WantTextInput && !choosers_have_keys())
         keyboard_.hold(
             std::min(now - last_keys_s_, 0.1), mods_held(window_), [this](int key) { return window_.is_down(key); },
             model(), actions_);

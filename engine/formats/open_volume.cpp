@@ -1,6 +1,7 @@
 #include "engine/formats/open_volume.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -15,18 +16,19 @@ namespace {
 struct Reader {
     const char* name;
     std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
-    bool reads_folders = false;  ///< others are not tried on folders
+    bool reads_folders = false;                 ///< others are not tried on folders
+    std::array<std::string_view, 4> endings{};  ///< of names, in lower case
 };
 
 /// In this order: headers are tried before the raw voxels that they may describe.
 constexpr Reader READERS[] = {
-    {"OME-Zarr", open_ome_zarr, true},
-    {"TIFF", open_tiff, true},
-    {"NRRD", open_nrrd},
-    {"MetaImage", open_mhd},
-    {"NIfTI", open_nifti},
-    {"DICOM", open_dicom, true},
-    {"RAW with a side-car", open_raw_with_side_car},
+    {"OME-Zarr", open_ome_zarr, true, {".ozx", ".zip"}},
+    {"TIFF", open_tiff, true, {".tif", ".tiff"}},
+    {"NRRD", open_nrrd, false, {".nrrd", ".nhdr"}},
+    {"MetaImage", open_mhd, false, {".mhd", ".mha"}},
+    {"NIfTI", open_nifti, false, {".nii", ".nii.gz", ".hdr", ".hdr.gz"}},
+    {"DICOM", open_dicom, true, {".dcm", ".ima"}},
+    {"RAW with a side-car", open_raw_with_side_car, false, {".raw", ".vol", ".bin", ".dat"}},
 };
 
 void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
@@ -105,6 +107,15 @@ bool is_address(std::string_view path)
     const size_t end = path.find("://");
     return end != std::string_view::npos && end > 0 && is_letter(path.front()) &&
            std::ranges::all_of(path.substr(0, end), belongs);
+}
+
+std::string_view format_of_name(std::string_view name)
+{
+    const std::string lower = lower_case(name);
+    for (const Reader& reader : READERS)
+        for (const std::string_view ending : reader.endings)
+            if (!ending.empty() && lower.size() > ending.size() && lower.ends_with(ending)) return reader.name;
+    return {};
 }
 
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)

@@ -33,6 +33,14 @@ bool leads_into_archive(const std::filesystem::path& path);
 /// directory.
 std::string archived_project(const std::filesystem::path& path);
 
+/// Name of the format that readers take a file of that name for, such as "NIfTI" for scan.nii.gz; empty: none does by
+/// its name. Files may be of another format, or of one without an ending of its own. Reads nothing.
+std::string_view format_of_name(std::string_view name);
+inline bool is_volume_name(std::string_view name)
+{
+    return !format_of_name(name).empty();
+}
+
 /// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
 /// `path` is one file; or the first of numbered files ("head.1", "slice007.raw") with one slice each; or a folder of

@@ -5,6 +5,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "ui/panels/file_chooser.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -19,6 +20,13 @@ std::string title_of(std::string_view key)
     if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
     return title;
 }
+
+/// One for all fields: at most one is shown.
+FileChooser chooser({.title = "Choose a file or a folder",
+                     .verb = "Choose",
+                     .note = "A new name can be typed, too.",
+                     .wanted = FileChooser::Wanted::any});
+ImGuiID chooser_of = 0;
 
 class Widgets : public Fields {
 public:
@@ -65,8 +73,23 @@ public:
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
     {
         std::string shown = value.string();
-        if (ImGui::InputText(title_of(name).c_str(), &shown)) value = shown;
+        ImGui::PushID(std::string(name).c_str());
+        const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+        ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - button);
+        if (ImGui::InputText("##path", &shown)) value = shown;
         tell(about);
+        ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+        const ImGuiID id = ImGui::GetID("##path");
+        if (ImGui::Button("...", {ImGui::GetFrameHeight(), 0.0f})) {
+            chooser_of = id;
+            chooser.ask(value, places(value, {}));
+        }
+        // A chooser is drawn by the field that asked for it.
+        if (chooser_of == id)
+            if (const auto path = chooser.draw()) value = *path;
+        ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+        ImGui::TextUnformatted(title_of(name).c_str());
+        ImGui::PopID();
     }
     void color(std::string_view, std::optional<glm::dvec4>&, bool, const About&) override {}
     void vector(std::string_view name, std::optional<glm::dvec3>& value, const NumberRange&,
@@ -119,12 +142,14 @@ private:
 
 }  // namespace
 
-void draw_fields(const Fields::Visit& visit)
+bool draw_fields(const Fields::Visit& visit)
 {
+    const bool has_chooser = chooser.is_open();
     Widgets widgets;
     ImGui::PushItemWidth(22.0f * ImGui::GetFontSize());
     visit(widgets);
     ImGui::PopItemWidth();
+    return has_chooser;
 }
 
 }  // namespace shvr::ui

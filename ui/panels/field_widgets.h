@@ -7,6 +7,7 @@
 namespace shvr::ui {
 
 /// Draws the keys and changes the values. Keys that need a form of their own (Fields::other, lists) are left out.
-void draw_fields(const Fields::Visit& visit);
+/// Returns whether a chooser of one of them was in front, which Escape then closed.
+bool draw_fields(const Fields::Visit& visit);
 
 }  // namespace shvr::ui

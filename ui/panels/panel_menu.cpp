@@ -63,7 +63,7 @@ void held_items(const char* group, const Model& model, Actions& actions)
 void file_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("File")) return;
-    if (ImGui::MenuItem("Open...")) ask_for_file();
+    item("open", model, actions);
     if (ImGui::BeginMenu("Open recent", !model.preferences.recent.empty())) {
         for (const std::filesystem::path& path : model.preferences.recent)
             if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
@@ -287,7 +287,7 @@ void menu_bar(const Model& model, Actions& actions)
         help_menu(model, actions);
         ImGui::EndMainMenuBar();
     }
-    open_dialog(actions);
+    open_dialog(model, actions);
     save_as_dialog(actions);
     task_dialogs(actions);
 }

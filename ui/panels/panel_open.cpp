@@ -5,75 +5,114 @@
 #include <utility>
 
 #include <imgui/imgui.h>
-#include <imgui/imgui_stdlib.h>
 
+#include "ui/panels/file_chooser.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
 #include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
 namespace {
 
-constexpr const char* OPEN_TITLE = "Open a volume or a session";
+FileChooser opening({.title = "Open a volume, a session or a project",
+                     .verb = "Open",
+                     .note = "TIFF, DICOM, NIfTI, NRRD, MetaImage, OME-Zarr and raw; Tab completes a path."});
+FileChooser saving({.title = "Go on under another name",
+                    .verb = "Save",
+                    .note = "Session (.json); mask, trace and history are written beside it. The files so far stay.",
+                    .wanted = FileChooser::Wanted::new_file});
 
-constexpr const char* SAVE_AS_TITLE = "Go on under another name";
-
-struct PathDialog {
-    bool is_asked_for = false;
-    std::string path;
-};
-PathDialog opening, saving;
-
-/// A dialog with one path. `says`: above it; `hint`: below. Returns whether the path was accepted.
-bool path_dialog(PathDialog& dialog, const char* title, const char* verb, const char* says, const char* note)
+std::vector<Place> places_of(const Model& model)
 {
-    if (dialog.is_asked_for) ImGui::OpenPopup(title);
-    const bool appears = std::exchange(dialog.is_asked_for, false);
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return false;
-    ImGui::TextUnformatted(says);
-    ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
-    if (appears) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##path", &dialog.path,
-                                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    ImGui::TextDisabled("%s", note);
-    const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
-    ImGui::BeginDisabled(dialog.path.empty());
-    const bool accepted = (ImGui::Button(verb, button) || entered) && !dialog.path.empty();
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    const bool cancelled = ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-    if (accepted || cancelled) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-    return accepted;
+    return places(model.is_open ? model.session.volume_path : std::filesystem::path(), model.preferences.recent);
+}
+
+/// Which paths are gone is found out when the list changes, not in each frame: a network may be slow.
+bool is_gone(const std::filesystem::path& path, const std::vector<std::filesystem::path>& recent)
+{
+    static std::vector<std::filesystem::path> known;
+    static std::vector<std::filesystem::path> gone;
+    if (known != recent) {
+        known = recent;
+        gone.clear();
+        std::error_code ignored;
+        for (const std::filesystem::path& each : recent)
+            if (!std::filesystem::exists(each, ignored) && !is_within_archive(each)) gone.push_back(each);
+    }
+    return std::ranges::find(gone, path) != gone.end();
+}
+
+/// What was opened last: the name, its folder, and a cross that takes it from the list where it is gone.
+void recent_list(const Model& model, Actions& actions)
+{
+    const auto& recent = model.preferences.recent;
+    const float cross = ImGui::GetFrameHeight();
+    for (size_t i = 0; i < recent.size(); ++i) {
+        const std::filesystem::path& path = recent[i];
+        const bool gone = is_gone(path, recent);
+        ImGui::PushID(int(i));
+        const float width = ImGui::GetContentRegionAvail().x - (gone ? cross + ImGui::GetStyle().ItemSpacing.x : 0.0f);
+        const ImVec2 at = ImGui::GetCursorPos();
+        if (ImGui::Selectable("##recent", false, gone ? ImGuiSelectableFlags_Disabled : 0, {width, cross}))
+            actions.push_back(Open{path});
+        if (gone) {
+            ImGui::SameLine();
+            if (ImGui::Button("x", {cross, cross})) actions.push_back(ForgetRecent{path});
+            hint("is no longer there: forget it");
+        }
+        const ImVec2 next = ImGui::GetCursorPos();
+        ImGui::SetCursorPos({at.x + 4.0f, at.y + 0.5f * (cross - ImGui::GetTextLineHeight())});
+        if (gone)
+            ImGui::TextDisabled("%s", path.filename().c_str());
+        else
+            ImGui::TextUnformatted(path.filename().c_str());
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s%s", path.parent_path().c_str(), gone ? "   (gone)" : "");
+        ImGui::SetCursorPos(next);
+        ImGui::PopID();
+    }
 }
 
 }  // namespace
 
-void ask_for_file()
+bool choosers_have_keys()
 {
-    opening.is_asked_for = true;
+    return FileChooser::has_keys();
 }
 
-void open_dialog(Actions& actions)
+bool choosers_are_busy()
 {
-    if (path_dialog(opening, OPEN_TITLE, "Open", "Path of a volume, a session (.json) or a project folder:",
-                    "TIFF, DICOM, NIfTI, NRRD, MetaImage, OME-Zarr and raw; a file can also be dropped."))
-        actions.push_back(Open{opening.path});
+    return FileChooser::is_busy();
+}
+
+void open_dialog(const Model& model, Actions& actions)
+{
+    static bool was_asked = false;
+    if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
+        // The first time beside what is open or was opened last; later where it was left.
+        static bool was_shown = false;
+        const auto& recent = model.preferences.recent;
+        const std::filesystem::path begin =
+            std::exchange(was_shown, true) || recent.empty() ? std::filesystem::path() : recent.front().parent_path();
+        opening.ask(begin, places_of(model));
+    }
+    if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
+    if (const auto path = opening.draw()) actions.push_back(Open{*path});
+    if (was_asked && !opening.is_open()) {
+        was_asked = false;
+        actions.push_back(AskOpen{false});
+    }
 }
 
 void ask_for_name(const Model& model)
 {
-    saving = {.is_asked_for = true,
-              .path = std::filesystem::path(model.session_path).replace_extension().string() + "-2.json"};
+    saving.ask(std::filesystem::path(model.session_path).replace_extension().string() + "-2.json", places_of(model));
 }
 
 void save_as_dialog(Actions& actions)
 {
-    if (path_dialog(saving, SAVE_AS_TITLE, "Save",
-                    "Path of the new session (.json); mask, trace and history go with it:",
-                    "The files so far stay as they are."))
-        actions.push_back(SaveAs{saving.path});
+    if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
 }
 
 void start_page(const Model& model, Actions& actions)
@@ -84,14 +123,19 @@ void start_page(const Model& model, Actions& actions)
     ImGui::Begin("Start", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize);
-    if (ImGui::Button("Open...", {8.0f * font, 0.0f})) ask_for_file();
+    ImGui::TextUnformatted("SHVR");
     ImGui::SameLine();
-    ImGui::TextDisabled("or drop a scan, a session or a project folder here");
+    ImGui::TextDisabled("look at, paint and trace volumes");
+    ImGui::Spacing();
+    if (ImGui::Button("Open...", {8.0f * font, 0.0f})) actions.push_back(AskOpen{true});
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("or drop a scan, a folder of slices, a session or a project here");
     if (!model.preferences.recent.empty()) {
         ImGui::Spacing();
-        ImGui::TextUnformatted("Opened last");
-        for (const std::filesystem::path& path : model.preferences.recent)
-            if (ImGui::Selectable(path.c_str())) actions.push_back(Open{path});
+        ImGui::Separator();
+        ImGui::TextDisabled("Opened last");
+        recent_list(model, actions);
     }
     ImGui::End();
 }

@@ -26,7 +26,7 @@ struct TaskDialog {
         if (std::exchange(is_asked_for, false)) ImGui::OpenPopup(Task::TITLE);
         ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
         if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-        draw_fields([&](Fields& f) { fields(f, task); });
+        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); });
         const std::string why = why_not();
         ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
@@ -37,7 +37,8 @@ struct TaskDialog {
         }
         ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+        if (ImGui::Button("Cancel", button) ||
+            (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))))
             ImGui::CloseCurrentPopup();
         ImGui::EndPopup();
     }

@@ -34,10 +34,12 @@ void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
-/// Shows the dialog that asks for a file, from the next frame on.
-void ask_for_file();
-void open_dialog(Actions& actions);
-/// The same for the dialog that asks for another name to go on under.
+/// The file chooser, while the model says that it is asked what to open.
+void open_dialog(const Model& model, Actions& actions);
+/// Whether keys are for a file chooser; and whether one wants another frame, since it is reading a folder.
+bool choosers_have_keys();
+bool choosers_are_busy();
+/// Shows the dialog that asks for another name to go on under, from the next frame on.
 void ask_for_name(const Model& model);
 void save_as_dialog(Actions& actions);
 /// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.

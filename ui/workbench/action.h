@@ -131,7 +131,15 @@ struct ChooseBelief {
 /// Saves all that is shown under names of its own, and opens that.
 struct WorkOnCopy {};
 
+/// No longer among what was opened last; the file stays.
+struct ForgetRecent {
+    std::filesystem::path path;
+};
+
 // ---- The window
+struct AskOpen {  ///< shows or hides the file chooser
+    bool on = true;
+};
 /// The picture is so large now; what pixels of panes mean depends on it.
 struct Resize {
     glm::uvec2 pixels{0};
@@ -176,8 +184,8 @@ using Action = std::variant<
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ChooseBelief, WorkOnCopy, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette,
-    ShowFullScreen, Quit>;
+    Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,
+    ShowMessages, ShowPalette, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

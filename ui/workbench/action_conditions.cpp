@@ -1,6 +1,9 @@
 // Why actions would do nothing just now, in words that fit after a colon or into a tooltip.
 
+#include <algorithm>
+
 #include "ui/workbench/action_rows.h"
+#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
@@ -154,6 +157,14 @@ std::string why(const Model& model, const CancelJob& action)
     return sentence("there is no job ", action.number);
 }
 
+std::string why(const Model& model, const ForgetRecent& action)
+{
+    const auto& recent = model.preferences.recent;
+    return std::ranges::find(recent, action.path) != recent.end()
+               ? ""
+               : sentence(action.path.string(), " is not among what was opened last");
+}
+
 std::string why(const Model& model, const ChooseBelief&)
 {
     return model.disputes.empty() ? "no saved file was changed by another program" : "";
@@ -162,8 +173,9 @@ std::string why(const Model& model, const ChooseBelief&)
 template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
-constexpr bool NEEDS_DOCUMENT = !IS_ONE_OF<Kind, Open, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys,
-                                           Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
+constexpr bool NEEDS_DOCUMENT =
+    !IS_ONE_OF<Kind, Open, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, Resize,
+               AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
 
 }  // namespace
 

@@ -61,8 +61,10 @@ constexpr ActionRow ROWS[] = {
     {"cancel_job", "Cancel", WORK, "ends a job that runs or waits"},
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
     {"open", "Open", WORK, "opens a volume, a session or a project folder"},
+    {"forget_recent", "Forget", WORK, "takes a path from the list of what was opened last; the file stays"},
     {"choose_belief", "Files or journal", WORK, "says whether changed files or the journal are right"},
     {"work_on_copy", "Work on a copy", WORK, "saves all that is shown under new names, and opens that"},
+    {"ask_open", "Open...", WINDOW, "shows or hides the file chooser, which asks what to open"},
     {"choose_keys", "Choose the keys", WINDOW, "takes one of the two sets of keys that ship"},
     {"bind_keys", "Other keys", WINDOW, "gives a shortcut other keys than those that ship"},
     {"resize", "Resize", WINDOW, "the picture has so many pixels, across and down"},
@@ -197,6 +199,14 @@ void fields(Fields& f, Screenshot& a)
 void fields(Fields& f, Open& a)
 {
     f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, ForgetRecent& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, AskOpen& a)
+{
+    f.flag("on", a.on, {});
 }
 void fields(Fields& f, ChooseBelief& a)
 {

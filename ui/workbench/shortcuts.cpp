@@ -157,6 +157,12 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
 constexpr Shortcut SHORTCUTS[] = {
     {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},
+    {"open",
+     WORK_KEYS,
+     "Open...",
+     Mode::tap,
+     [](const Model& model, double) -> Action { return AskOpen{!model.asks_what_to_open}; },
+     {"Ctrl+O", "Ctrl+O"}},
     both("save", WORK_KEYS, "Save", Mode::tap, plain<SaveOp>, "Ctrl+S"),
     both("screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, "P"),
     both(

@@ -66,6 +66,18 @@ bool Workbench::apply(const Action& action)
     }
 }
 
+void Workbench::act(const ForgetRecent& action)
+{
+    Preferences preferences = preferences_;
+    std::erase(preferences.recent, action.path);
+    prefer(std::move(preferences));
+}
+
+void Workbench::act(const AskOpen& action)
+{
+    asks_what_to_open_ = action.on;
+}
+
 void Workbench::act(const Resize& action)
 {
     if (std::exchange(pixels_, action.pixels) != action.pixels) look_again();
@@ -377,6 +389,7 @@ Model Workbench::model() const
                 .shows_messages = shows_messages_,
                 .shows_palette = shows_palette_,
                 .is_full_screen = is_full_screen_,
+                .asks_what_to_open = asks_what_to_open_,
                 .awaits_key = awaits_key_,
                 .gpu_name = renderer_.device().traits().name};
     const Document& document = *document_;
@@ -416,6 +429,7 @@ Model Workbench::model() const
             .shows_messages = shows_messages_,
             .shows_palette = shows_palette_,
             .is_full_screen = is_full_screen_,
+            .asks_what_to_open = asks_what_to_open_,
             .awaits_key = awaits_key_,
             .gpu_name = renderer_.device().traits().name,
             .view_is_complete = document.screen.complete(),

@@ -151,6 +151,8 @@ private:
     void act(const ChooseKeys& action);
     void act(const BindKeys& action);
     void act(const Resize& action);
+    void act(const ForgetRecent& action);
+    void act(const AskOpen& action);
     void act(const ShowHelp& action);
     void act(const AwaitKey& action);
     void act(const ShowMessages& action);
@@ -227,6 +229,7 @@ private:
     std::string journal_failure_;                 ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
     bool shows_help_ = false, shows_messages_ = false, shows_palette_ = false, is_full_screen_ = false, quits_ = false;
+    bool asks_what_to_open_ = false;
     double opened_s_ = 0.0;
     uint64_t openings_ = 0;
     /// What a model refers to where nothing is open.

@@ -107,6 +107,8 @@ const Row ROWS[] = {
     {R"({"op":"work_on_copy"})",
      "cameras, file preferences.json, file scan-copy.json, file scan-copy.mask, file scan-copy.mask.json, open, undo",
      {STROKE}},
+    {R"({"op":"forget_recent","path":"FOLDER/scan.json"})", "file preferences.json"},
+    {R"({"op":"ask_open","on":true})", "asks"},
     {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
     {R"({"op":"bind_keys","shortcut":"undo","keys":"Ctrl+U"})", "file preferences.json, keys"},
     {R"({"op":"resize","pixels":[64,48]})", ""},

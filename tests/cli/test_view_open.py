@@ -1,0 +1,63 @@
+"""Opening by the file chooser, with real keys: a window that was started without anything."""
+import time
+import unittest
+
+from test_view import PATIENCE_S, Window
+
+
+class Open(Window):
+    def keys(self, *keys):
+        for key in keys:
+            self.do("keydown", key, "sleep", 0.1, "keyup", key, pause_s=0.4)
+
+    def begin(self):
+        """A folder `scans` with a session in it and a file that is none, and a window that shows nothing."""
+        self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]}).rename(self.folder / "ball.json")
+        (self.folder / "scans" / "deep").mkdir(parents=True)
+        (self.folder / "ball.json").rename(self.folder / "scans" / "deep" / "ball.json")
+        (self.folder / "scans" / "deep" / "broken.nrrd").write_text("no header")
+        self.start()
+        self.wait_for_window("SHVR")
+        self.do("mousemove", *self.middle(), pause_s=1.5)
+
+    def ask(self, folder):
+        self.keys("ctrl+o")
+        self.do("type", "--delay", 40, folder)
+        self.keys("Return")
+
+    def test_a_scan_is_found_with_keys_and_opened(self):
+        self.begin()
+        self.ask(self.folder / "scans")
+        # The folder in it, by its letter; into it; out of it, and in again; then the first file.
+        self.keys("d", "Return", "BackSpace", "Down", "Return", "b", "Return")
+        self.wait_for_window("sphere.* - SHVR")
+        messages = self.finish()["messages"]
+        self.assertTrue(any(line.startswith(f"Opened {self.folder}/scans/deep/ball.json") for line in messages), messages)
+        # What letters do in the list, they do nowhere else.
+        self.assertFalse(any("broken" in line for line in messages), messages)
+
+    def test_what_cannot_be_opened_says_why_and_the_chooser_is_where_it_was(self):
+        self.begin()
+        self.ask(f"{self.folder}/gone.nrrd")
+        # The chooser says so and keeps the path; the rest of another is typed over it.
+        self.keys("ctrl+a")
+        self.do("type", "--delay", 40, f"{self.folder}/scans/deep/br")
+        self.keys("Tab", "Return")
+        time.sleep(1)
+        # Open again, it shows the same folder and the same name, and the one above it opens.
+        self.keys("ctrl+o", "Up", "Return")
+        self.wait_for_window("sphere.* - SHVR")
+        messages = self.finish()["messages"]
+        self.assertTrue(any("broken.nrrd: " in line for line in messages), messages)
+        self.assertFalse(any("gone" in line for line in messages), messages)
+        self.assertTrue(any(line.startswith(f"Opened {self.folder}/scans/deep/ball.json") for line in messages), messages)
+
+    def test_escape_closes_it_and_keys_mean_again_what_they_did(self):
+        self.begin()
+        self.keys("ctrl+o", "Escape", "ctrl+q")
+        self.program.communicate(timeout=PATIENCE_S)
+        self.assertEqual(self.program.returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
