@@ -47,7 +47,7 @@ void choose(const PaletteEntry& entry, Actions& actions)
     }
 }
 
-bool is_pressed(ImGuiKey key)
+bool was_pressed(ImGuiKey key)
 {
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
@@ -107,15 +107,15 @@ void palette_window(const Model& model, Actions& actions)
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
     if (before != palette.text) palette.chosen = 0;
     const std::vector<PaletteEntry> entries = palette_entries(model, palette.text);
-    if (is_pressed(ImGuiKey_DownArrow)) ++palette.chosen;
-    if (is_pressed(ImGuiKey_UpArrow)) --palette.chosen;
+    if (was_pressed(ImGuiKey_DownArrow)) ++palette.chosen;
+    if (was_pressed(ImGuiKey_UpArrow)) --palette.chosen;
     palette.chosen = std::clamp(palette.chosen, 0, std::max(int(entries.size()) - 1, 0));
     list(entries, actions);
     if (entries.empty()) ImGui::TextDisabled("Nothing has these words in its name.");
     if (!entries.empty() && !entries[size_t(palette.chosen)].why_not.empty())
         ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
     if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);
-    if (is_pressed(ImGuiKey_Escape)) actions.push_back(ShowPalette{false});
+    if (was_pressed(ImGuiKey_Escape)) actions.push_back(ShowPalette{false});
     ImGui::End();
 }
 

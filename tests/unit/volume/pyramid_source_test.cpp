@@ -138,6 +138,6 @@ TEST_CASE("what levels would take is checked from sizes alone")
         void read(const VoxelBox& /*box*/, std::span<std::byte> /*voxels*/) const override { fail("was read"); }
     };
     CHECK(
-        contains(error_of([&] { check_levels(Unread(), uint64_t{2} << 30); }), "takes 2739 MiB; expected at most 512"));
-    CHECK(error_of([&] { check_levels(Unread(), uint64_t{12} << 30); }).empty());
+        contains(error_of([&] { planned_levels(Unread(), uint64_t{2} << 30); }), "takes 2739 MiB; expected at most 512"));
+    CHECK(error_of([&] { planned_levels(Unread(), uint64_t{12} << 30); }).empty());
 }
