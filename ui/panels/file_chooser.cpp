@@ -130,6 +130,11 @@ void FileChooser::accept(const std::string& typed, bool enters_folders)
         field_wants_keys_ = true;
         return;
     }
+    // Asked again, it shows the folder that a typed path led to.
+    if (path.parent_path() != list_.folder()) {
+        enter(path.parent_path());
+        wanted_name_ = path.filename().string();
+    }
     text_ = path.string();
     accepted_ = path;
 }

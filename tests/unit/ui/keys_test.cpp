@@ -415,14 +415,14 @@ TEST_CASE("the key that a shortcut waits for is bound to it; Escape leaves it, D
         return actions.empty() ? std::string() : text_of(actions.at(0));
     };
     constexpr int ESCAPE = 256, DELETE = 261, LEFT_CONTROL = 341;
-    CHECK(bound('J', CONTROL | SHIFT) == R"(bind_keys shortcut="shell" keys="Ctrl+Shift+J")");
-    CHECK(bound('Y', CONTROL, "z") == R"(bind_keys shortcut="shell" keys="Ctrl+Z")");
+    CHECK(bound('J', CONTROL | SHIFT) == R"(bind_keys keys="Ctrl+Shift+J" shortcut="shell")");
+    CHECK(bound('Y', CONTROL, "z") == R"(bind_keys keys="Ctrl+Z" shortcut="shell")");
     CHECK(bound(LEFT_CONTROL, CONTROL).empty());
     CHECK(bound(ESCAPE, 0) == text_of(AwaitKey{}));
     CHECK(bound(DELETE, 0) == text_of(BindKeys{"shell", ""}));
-    CHECK(bound(DELETE, CONTROL) == R"(bind_keys shortcut="shell" keys="Ctrl+Delete")");
+    CHECK(bound(DELETE, CONTROL) == R"(bind_keys keys="Ctrl+Delete" shortcut="shell")");
     world.model.awaits_key = "move_forward";  // by place
-    CHECK(bound('Q', 0, "a") == R"(bind_keys shortcut="move_forward" keys="Q")");
+    CHECK(bound('Q', 0, "a") == R"(bind_keys keys="Q" shortcut="move_forward")");
     for (const Shortcut& shortcut : shortcuts())
         for (const Chord& chord : world.keymap.chords_of(shortcut)) CHECK(chord_of(text_of(chord)) == chord);
 }
@@ -454,7 +454,7 @@ TEST_CASE("the palette finds shortcuts by words, actions by their text and setti
     CHECK(first("orbit right_degrees=x").why_not.find("right_degrees") != std::string::npos);
     CHECK(std::get<Set>(*first("light.ambient=0.4").action).patch == R"({"light":{"ambient":0.4}})");
     CHECK(first("light.ambient=0.4").why_not.empty());
-    CHECK(first("light.ambient=7").why_not.find("ambient") != std::string::npos);
+    CHECK(first("light.ambient=70").why_not.find("ambient") != std::string::npos);
     CHECK(first("light.ambiance=0.4").why_not.find("ambiance") != std::string::npos);
     CHECK(first("light.amb").completion == "light.ambient=");
     CHECK(first("look_f").completion == "look_from ");

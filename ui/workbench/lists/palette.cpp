@@ -97,9 +97,13 @@ bool has_words(std::string_view where, std::string_view text)
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text)
 {
     text = trimmed(text);
-    std::vector<PaletteEntry> entries;
-    add_typed(entries, model, text);
+    std::vector<PaletteEntry> entries, as_typed;
+    add_typed(as_typed, model, text);
+    // What cannot be done as it stands may be the beginning of a shortcut's name.
+    const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
+    if (is_done) entries = as_typed;
     add_shortcuts(entries, model, text);
+    if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);
     return entries;
 }
