@@ -137,7 +137,7 @@ TEST_CASE("what levels would take is checked from sizes alone")
         Unread() : VolumeSource({.name = "flat", .size = Size3(2714), .type = VoxelType::uint8}) {}
         void read(const VoxelBox& /*box*/, std::span<std::byte> /*voxels*/) const override { fail("was read"); }
     };
-    CHECK(
-        contains(error_of([&] { planned_levels(Unread(), uint64_t{2} << 30); }), "takes 2739 MiB; expected at most 512"));
+    CHECK(contains(error_of([&] { planned_levels(Unread(), uint64_t{2} << 30); }),
+                   "takes 2739 MiB; expected at most 512"));
     CHECK(error_of([&] { planned_levels(Unread(), uint64_t{12} << 30); }).empty());
 }
