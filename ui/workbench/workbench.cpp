@@ -211,8 +211,7 @@ void Workbench::open(OpenedSession opened, const std::filesystem::path& path, co
     session_before_hand_.reset();
     journal_failure_.clear();
     std::string device_said;
-    if (std::unique_ptr<HapticDevice> device = find_device(device_said))
-        document_->touch.use(std::move(device), "haptic device");
+    if (std::unique_ptr<HapticDevice> device = find_device(device_said)) use_device(std::move(device), "haptic device");
     std::string status = "Opened " + path.string();
     if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
     for (const std::string& loss : losses) status += "; " + loss;
@@ -235,6 +234,11 @@ void Workbench::bring_back(const std::string& why)
         fail(why, "; ", before, " cannot be shown again either: ", error.what(), "; it is saved");
     }
     fail(why, "; ", before, " stays open");
+}
+
+void Workbench::use_device(std::unique_ptr<HapticDevice> device, const std::string& name)
+{
+    document_->touch.use(std::move(device), name);
 }
 
 /// If the device cannot be used, reports that; the mouse is used instead.

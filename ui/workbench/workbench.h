@@ -46,6 +46,8 @@ public:
     /// Opens at once, with settings as --set takes them; the action Open does it beside the work.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
     void say(std::string text, Weight weight = Weight::done);
+    /// From now on this device moves the probe of what is open, and its button paints.
+    void use_device(std::unique_ptr<HapticDevice> device, const std::string& name);
     /// Called with each action that was carried out, as a line that replays it (action_rows.h).
     void log_to(std::function<void(const std::string& line)> log) { log_ = std::move(log); }
 

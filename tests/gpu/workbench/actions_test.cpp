@@ -184,8 +184,8 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
 TEST_CASE("ACTIONS.md says of each action what the program says")
 {
     std::string expected =
-        "# Actions\n\nWhat a person can do, as lines of a script or a log; each with what it changes, as "
-        "`tests/gpu/workbench/actions_test.cpp` tries it.\nThat test prints this file where it differs.\n";
+        "# Actions\n\nWhat a person can do, as lines of a script or a log; each with what it changes, as\n"
+        "`tests/gpu/workbench/actions_test.cpp` tries it. That test prints this file where it differs.\n";
     std::string group;
     for (const ActionRow& action : action_rows()) {
         if (std::exchange(group, action.group) != action.group)

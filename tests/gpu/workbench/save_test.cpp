@@ -1,10 +1,13 @@
 // A save includes the stroke under way, waits for its bricks, and not for ever.
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
+#include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
@@ -45,10 +48,10 @@ TEST_CASE_FIXTURE(OnDevice, "a save whose bricks do not arrive within 20 s is ma
     TemporaryFolder folder;
     double now_s = 0.0;
     bool is_late = false;
-    Workbench bench(renderer(), {.has_servo = false, .now_s = [&] { return now_s += is_late ? 15.0 : 0.0; }});
+    Workbench bench(renderer(), {.has_servo = false, .now_s = [&] { return now_s += is_late ? 30.0 : 0.0; }});
     bench.open(write_paged_session(folder.path), {});
     bench.perform(Paint{true});
-    is_late = true;  // the second look at the clock is 30 s after the first, and no brick has come
+    is_late = true;  // from one look at the clock to the next
     bench.perform(SaveOp{});
     CHECK(bench.messages().last().find(
               "the rest of the stroke was not painted: its bricks did not arrive within 20 s") != std::string::npos);
@@ -75,4 +78,32 @@ TEST_CASE_FIXTURE(OnDevice, "a part of a turn that fails is said once, and every
     bench.perform(Paint{false});
     settle(bench);
     CHECK(bench.model().undoable == 1);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a button of a device that cannot do what it is for says why, and the work goes on")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {});
+    bench.open(write_tubes_session(folder.path), {});
+    auto device = std::make_unique<SimulatedDevice>();
+    Latest<HandWish>& hand = device->wish();
+    bench.use_device(std::move(device), "a hand");
+    // With the eraser no node can be added.
+    bench.perform(Set{R"({"probe":{"tool":"trace","group":0}})"});
+    const auto press = [&](uint32_t buttons) {
+        hand.publish({.buttons = buttons});
+        const uint64_t messages = bench.messages().count();
+        for (int turn = 0; turn < 2000 && bench.messages().count() == messages; ++turn) {
+            bench.advance();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            if (buttons == 0 && turn > 100) return;
+        }
+    };
+    press(PAINT_BUTTON);
+    CHECK(bench.messages().last() == "Group 0 is the eraser; choose a group from 1 up for the node");
+    CHECK(bench.messages().all().back().weight == Weight::error);
+    press(0);
+    bench.perform(Set{R"({"probe":{"group":4}})"});
+    press(PAINT_BUTTON);
+    CHECK(bench.model().trace.nodes().size() == 1);
 }
