@@ -39,11 +39,11 @@ void blend_controls(const Model& model, Actions& actions)
     bool changed = explained_slider(
         "Blend size", blend.size, 2.0,
         "Distance blending: how much of another colour there is at the far end of the volume. 0 is off. "
-        "Keys: T, Ctrl + T.");
+        "Keys: menu View, Distance blending.");
     changed |= explained_slider(
         "Blend rate", blend.rate, 10.0,
-        "How it grows with depth: 0 the same everywhere, 1 evenly, above 1 near things stay clear. Keys: R, "
-        "Ctrl + R.");
+        "How it grows with depth: 0 the same everywhere, 1 evenly, above 1 near things stay clear. Keys: menu "
+        "View, Distance blending.");
     const glm::dvec3 color = blend.color.value_or(glm::dvec3(model.session.render.background));
     float shown[3];
     for (int i = 0; i < 3; ++i) shown[i] = float(srgb_encode(std::clamp(color[i], 0.0, 1.0)));
