@@ -10,7 +10,7 @@
 
 #include "engine/base/error.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 #include "ui/workbench/lists/palette.h"
 #include "ui/workbench/preferences.h"
 

@@ -13,7 +13,7 @@
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 
 namespace shvr::ui {
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/lists/history_list.h"
 #include "ui/workbench/lists/recent_actions.h"

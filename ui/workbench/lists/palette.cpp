@@ -7,7 +7,7 @@
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 
 namespace shvr::ui {
 

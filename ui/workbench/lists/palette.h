@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ui/workbench/model.h"
-#include "ui/workbench/shortcuts.h"
+#include "ui/workbench/bindings/shortcuts.h"
 
 namespace shvr::ui {
 

@@ -1,4 +1,4 @@
-#include "ui/workbench/keymap.h"
+#include "ui/workbench/bindings/keymap.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-#include "ui/panels/field_widgets.h"
+#include "ui/panels/dialogs/field_widgets.h"
 
 #include <algorithm>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
-#include "ui/panels/file_chooser.h"
+#include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {

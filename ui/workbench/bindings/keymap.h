@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/workbench/shortcuts.h"
+#include "ui/workbench/bindings/shortcuts.h"
 
 namespace shvr::ui {
 

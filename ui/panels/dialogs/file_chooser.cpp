@@ -1,4 +1,4 @@
-#include "ui/panels/file_chooser.h"
+#include "ui/panels/dialogs/file_chooser.h"
 
 #include <algorithm>
 #include <utility>

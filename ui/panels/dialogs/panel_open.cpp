@@ -6,7 +6,7 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/panels/file_chooser.h"
+#include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/preferences.h"

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/progress.h"
-#include "ui/panels/field_widgets.h"
+#include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 

@@ -1,4 +1,4 @@
-#include "ui/workbench/shortcuts.h"
+#include "ui/workbench/bindings/shortcuts.h"
 
 #include <algorithm>
 #include <cmath>
