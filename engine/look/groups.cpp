@@ -1,8 +1,7 @@
 #include "engine/look/groups.h"
 
-#include <iterator>
+#include <array>
 
-#include "engine/base/error.h"
 #include "engine/look/session_color.h"
 
 namespace shvr {
@@ -12,13 +11,23 @@ namespace {
 constexpr const char* GROUP_COLORS[] = {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
                                         "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"};
 
+/// Decoded once: every picture asks for the looks of all groups.
+const std::array<glm::dvec3, std::size(GROUP_COLORS)>& group_colors()
+{
+    static const auto colors = [] {
+        std::array<glm::dvec3, std::size(GROUP_COLORS)> decoded{};
+        for (size_t i = 0; i < decoded.size(); ++i) decoded[i] = glm::dvec3(color_of(GROUP_COLORS[i]).value());
+        return decoded;
+    }();
+    return colors;
+}
+
 }  // namespace
 
 ColorGroup default_group(uint8_t group)
 {
     if (group == 0) return {.name = "unpainted", .opacity = 0.0};
-    const char* color = GROUP_COLORS[(group - 1u) % std::size(GROUP_COLORS)];
-    return {.name = sentence("group ", int{group}), .color = glm::dvec3(color_of(color).value())};
+    return {.name = "group " + std::to_string(group), .color = group_colors()[(group - 1u) % std::size(GROUP_COLORS)]};
 }
 
 uint8_t parent_of(const Groups& groups, uint8_t group)
