@@ -69,7 +69,7 @@ MAX_SOURCES = 30  # in a folder
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
-    "Vulkan": (r"vulkan/", r"engine/gpu/|ui/swapchain\.cpp"),
+    "Vulkan": (r"vulkan/", r"engine/gpu/|ui/swapchain(_frame)?\.cpp|tests/layers/"),
     "hidapi": (r"hidapi", r"haptics/hid_device\.cpp"),
     "GLFW": (r"GLFW/", r"ui/(?!workbench/)"),
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/(?!workbench/)"),

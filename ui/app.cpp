@@ -29,8 +29,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     renderer_ = std::make_unique<Renderer>(
         Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
     set_style(window_.content_scale());
-    window_.attach(renderer_->device(), renderer_->memory());
-    attached_.reset(&window_);
+    attach();
     WorkbenchOptions wanted{.allow_force = options.allow_force,
                             .preferences = options.preferences,
                             .now_s = [this] { return window_.now_s(); },
@@ -54,26 +53,38 @@ App::~App() = default;
 
 void App::run()
 {
-    while (!closes()) {
+    for (bool goes_on = true; goes_on;) {
         try {
-            handle_events(time_to_wait());
-        } catch (const std::exception& error) {
-            bench_->say(error.what(), Weight::error);
+            goes_on = !closes();
+            if (goes_on) turn();
+        } catch (const DeviceLost& error) {
+            restart_device(error.what());
         }
-        apply_all();
-        bench_->set_pixels(bench_->is_open() ? viewport_.pixels() : glm::uvec2(0));
-        bench_->set_hand_down(ImGui::IsAnyMouseDown());
-        bench_->set_still(!something_moves());
-        bench_->advance();
-        follow_workbench();
-        report_.done(window_.frames_done(), window_.now_s());
-        const double now = window_.now_s();
-        if (now < next_frame_s_ || now < next_reason_to_draw_s()) continue;
-        draw();
-        const double frames_per_second = bench_->model().session.interaction.frames_per_second;
-        next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
     }
     bench_->wait_for_screenshots();
+}
+
+void App::turn()
+{
+    try {
+        handle_events(time_to_wait());
+    } catch (const DeviceLost&) {
+        throw;
+    } catch (const std::exception& error) {
+        bench_->say(error.what(), Weight::error);
+    }
+    apply_all();
+    bench_->set_pixels(bench_->is_open() ? viewport_.pixels() : glm::uvec2(0));
+    bench_->set_hand_down(ImGui::IsAnyMouseDown());
+    bench_->set_still(!something_moves());
+    bench_->advance();
+    follow_workbench();
+    report_.done(window_.frames_done(), window_.now_s());
+    const double now = window_.now_s();
+    if (now < next_frame_s_ || now < next_reason_to_draw_s()) return;
+    draw();
+    const double frames_per_second = bench_->model().session.interaction.frames_per_second;
+    next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
 }
 
 /// What the window itself has to do about what was done.
@@ -97,6 +108,8 @@ void App::draw()
         draw_ui();
         frame_failure_.clear();
         return undrawn_since_s_.reset();
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const std::exception& error) {
         if (std::exchange(frame_failure_, error.what()) != error.what()) bench_->say(error.what(), Weight::error);
     }
@@ -114,6 +127,8 @@ bool App::closes()
     try {
         bench_->save_before_leaving();
         return true;
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const std::exception& error) {
         return !refuses_to_close(error.what());
     }

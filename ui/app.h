@@ -44,6 +44,9 @@ public:
     AppReport report();
 
 private:
+    void turn();
+    void attach();
+    void restart_device(const std::string& why);
     void handle_events(double timeout_s);
     void apply_all();
     void follow_workbench();

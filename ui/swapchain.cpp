@@ -10,49 +10,11 @@
 
 namespace shvr::ui {
 
-namespace {
-
-constexpr VkClearColorValue BACKDROP{{0.09f, 0.09f, 0.10f, 1.0f}};
-
-void image_barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
-                   VkPipelineStageFlags2 after, VkAccessFlags2 written, VkPipelineStageFlags2 before,
-                   VkAccessFlags2 touched)
+void Swapchain::check(VkResult result, const char* call)
 {
-    const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                        .srcStageMask = after,
-                                        .srcAccessMask = written,
-                                        .dstStageMask = before,
-                                        .dstAccessMask = touched,
-                                        .oldLayout = from,
-                                        .newLayout = to,
-                                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .image = image,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkDependencyInfo info{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(commands, &info);
+    if (result == VK_ERROR_SURFACE_LOST_KHR) throw SurfaceLost(sentence(call, ": the window's surface is lost"));
+    gpu::check(result, call);
 }
-
-void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags2 after, VkAccessFlags2 written,
-                    VkPipelineStageFlags2 before, VkAccessFlags2 touched)
-{
-    const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = after,
-                                   .srcAccessMask = written,
-                                   .dstStageMask = before,
-                                   .dstAccessMask = touched};
-    const VkDependencyInfo info{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(commands, &info);
-}
-
-VkOffset3D offset(const glm::ivec2& at)
-{
-    return {at.x, at.y, 0};
-}
-
-}  // namespace
 
 Swapchain::Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window)
     : device_(device), memory_(memory), window_(window)
@@ -77,16 +39,35 @@ void Swapchain::begin_ui()
 
 void Swapchain::create()
 {
-    SHVR_VK(glfwCreateWindowSurface(device_.instance(), window_, nullptr, &surface_));
-    VkBool32 presents = VK_FALSE;
-    SHVR_VK(vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queue_family(), surface_, &presents));
-    if (!presents)
-        fail("device ", device_.traits().name, " cannot show pictures in this window_; --device chooses another");
+    create_surface();
     choose_format();
     create_render_pass();
     create_frames();
     create_swapchain();
     create_imgui();
+}
+
+void Swapchain::create_surface()
+{
+    SHVR_VK(glfwCreateWindowSurface(device_.instance(), window_, nullptr, &surface_));
+    VkBool32 presents = VK_FALSE;
+    SHVR_VK(vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queue_family(), surface_, &presents));
+    if (!presents)
+        fail("device ", device_.traits().name, " cannot show pictures in this window; --device chooses another");
+}
+
+/// The swapchain follows with the next frame.
+void Swapchain::renew_surface()
+{
+    device_.wait_idle();
+    destroy_targets();
+    vkDestroySwapchainKHR(device_.handle(), std::exchange(swapchain_, VK_NULL_HANDLE), nullptr);
+    vkDestroySurfaceKHR(device_.instance(), std::exchange(surface_, VK_NULL_HANDLE), nullptr);
+    create_surface();
+    const VkSurfaceFormatKHR before = format_;
+    choose_format();
+    if (format_.format != before.format)
+        fail("the window's new surface has another format than before; close and start again to go on");
 }
 
 void Swapchain::choose_format()
@@ -139,11 +120,7 @@ void Swapchain::create_frames()
                                                    .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                    .commandBufferCount = 1};
         SHVR_VK(vkAllocateCommandBuffers(device_.handle(), &commands, &frame.commands));
-        const VkSemaphoreCreateInfo semaphore{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
-        SHVR_VK(vkCreateSemaphore(device_.handle(), &semaphore, nullptr, &frame.acquired));
-        const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
-                                      .flags = VK_FENCE_CREATE_SIGNALED_BIT};
-        SHVR_VK(vkCreateFence(device_.handle(), &fence, nullptr, &frame.done));
+        complete(frame);
     }
 }
 
@@ -189,8 +166,10 @@ void Swapchain::create_swapchain()
 {
     device_.wait_idle();
     destroy_targets();
+    if (!surface_) create_surface();  // which could not be had when it was lost
     VkSurfaceCapabilitiesKHR capabilities;
-    SHVR_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities));
+    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
+          "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
     extent_ = capabilities.currentExtent;
     if (extent_.width == ~0u) {  // the surface accepts any size
         glm::ivec2 size(0);
@@ -219,11 +198,13 @@ void Swapchain::create_swapchain()
     swapchain_ = VK_NULL_HANDLE;
     const VkResult result = vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain_);
     if (old) vkDestroySwapchainKHR(device_.handle(), old, nullptr);
-    gpu::check(result, "vkCreateSwapchainKHR");
-
-    const auto chain = gpu::enumerate<VkImage>(
-        [&](uint32_t* count, VkImage* items) { vkGetSwapchainImagesKHR(device_.handle(), swapchain_, count, items); });
+    check(result, "vkCreateSwapchainKHR");
+    is_stale_ = true;  // until it has all its targets
+    const auto chain = gpu::enumerate<VkImage>([&](uint32_t* count, VkImage* items) {
+        SHVR_VK(vkGetSwapchainImagesKHR(device_.handle(), swapchain_, count, items));
+    });
     for (VkImage image : chain) add_target(image);
+    is_stale_ = false;
 }
 
 void Swapchain::add_target(VkImage image)
@@ -273,139 +254,6 @@ void Swapchain::destroy()
     vkDestroyDescriptorPool(device_.handle(), descriptors_, nullptr);
     vkDestroyRenderPass(device_.handle(), render_pass_, nullptr);
     vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
-}
-
-void Swapchain::draw_layers(VkCommandBuffer commands, VkImage target, const std::vector<View::Layer>& layers,
-                            const glm::uvec2& origin) const
-{
-    const glm::ivec2 window_size(extent_.width, extent_.height);
-    const VkImageSubresourceLayers color{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    for (size_t first = 0; first < layers.size();) {
-        const VkImage source = memory_.object(layers[first].image.id).image;
-        std::vector<VkImageCopy> regions;
-        size_t last = first;
-        for (; last < layers.size() && layers[last].image.id == layers[first].image.id; ++last) {
-            const View::Layer& layer = layers[last];
-            const glm::ivec2 begin(layer.target.begin + origin);
-            const glm::uvec2 size = layer.target.end - layer.target.begin;
-            // The window may have shrunk since the layers were drawn.
-            if (glm::any(glm::greaterThan(begin + glm::ivec2(size), window_size))) continue;
-            regions.push_back({.srcSubresource = color,
-                               .srcOffset = offset(layer.source.begin),
-                               .dstSubresource = color,
-                               .dstOffset = offset(begin),
-                               .extent = {size.x, size.y, 1}});
-        }
-        if (!regions.empty()) {
-            if (first > 0)  // overwrites earlier copies
-                memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                               VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            // A copy, not a blit: on a software device a blit of the whole view takes longer than the whole interface.
-            vkCmdCopyImage(commands, source, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                           uint32_t(regions.size()), regions.data());
-        }
-        first = last;
-    }
-}
-
-void Swapchain::record(const Frame& frame, const Target& target, const std::vector<View::Layer>& layers,
-                       const glm::uvec2& origin) const
-{
-    constexpr VkPipelineStageFlags2 TRANSFER = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    constexpr VkPipelineStageFlags2 WORK = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | TRANSFER;
-    const VkCommandBuffer commands = frame.commands;
-    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    SHVR_VK(vkBeginCommandBuffer(commands, &begin));
-    device_.begin_label(commands, "window");
-    image_barrier(commands, target.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, TRANSFER, 0,
-                  TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-    const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &BACKDROP, 1, &whole);
-    // The writes of the view's frames and the clear come before the copy of the layers.
-    memory_barrier(commands, WORK, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT, TRANSFER,
-                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
-    draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader.
-    memory_barrier(commands, TRANSFER, 0, WORK, 0);
-    image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
-    const VkRenderPassBeginInfo pass{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                     .renderPass = render_pass_,
-                                     .framebuffer = target.framebuffer,
-                                     .renderArea = {{0, 0}, extent_}};
-    vkCmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
-    vkCmdEndRenderPass(commands);
-    device_.end_label(commands);
-    SHVR_VK(vkEndCommandBuffer(commands));
-}
-
-bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
-{
-    glm::ivec2 size(0);
-    glfwGetFramebufferSize(window_, &size.x, &size.y);
-    if (size.x <= 0 || size.y <= 0) return false;
-    if (!swapchain_ || extent_.width != uint32_t(size.x) || extent_.height != uint32_t(size.y)) create_swapchain();
-    if (targets_.empty()) return false;
-
-    Frame& frame = frames_[next_frame_];
-    SHVR_VK(vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, UINT64_MAX));
-    uint32_t index = 0;
-    VkResult acquired =
-        vkAcquireNextImageKHR(device_.handle(), swapchain_, UINT64_MAX, frame.acquired, VK_NULL_HANDLE, &index);
-    if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
-        create_swapchain();
-        return false;
-    }
-    gpu::check(acquired, "vkAcquireNextImageKHR");
-    SHVR_VK(vkResetFences(device_.handle(), 1, &frame.done));
-    record(frame, targets_[index], layers, origin);
-
-    const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                             .commandBuffer = frame.commands};
-    const VkSemaphoreSubmitInfo wait{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                     .semaphore = frame.acquired,
-                                     .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT};
-    const VkSemaphoreSubmitInfo signal{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                       .semaphore = targets_[index].drawn,
-                                       .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
-    const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                               .waitSemaphoreInfoCount = 1,
-                               .pWaitSemaphoreInfos = &wait,
-                               .commandBufferInfoCount = 1,
-                               .pCommandBufferInfos = &commands,
-                               .signalSemaphoreInfoCount = 1,
-                               .pSignalSemaphoreInfos = &signal};
-    SHVR_VK(vkQueueSubmit2(device_.queue(), 1, &submit, frame.done));
-    frame.number = ++presented_;
-    next_frame_ = (next_frame_ + 1) % FRAMES_IN_FLIGHT;
-    const VkPresentInfoKHR present_info{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
-                                        .waitSemaphoreCount = 1,
-                                        .pWaitSemaphores = &targets_[index].drawn,
-                                        .swapchainCount = 1,
-                                        .pSwapchains = &swapchain_,
-                                        .pImageIndices = &index};
-    const VkResult shown = vkQueuePresentKHR(device_.queue(), &present_info);
-    if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR)
-        create_swapchain();
-    else
-        gpu::check(shown, "vkQueuePresentKHR");
-    return true;
-}
-
-uint64_t Swapchain::frames_done() const
-{
-    uint64_t done = 0;
-    uint64_t running = presented_ + 1;
-    for (const Frame& frame : frames_)
-        if (vkGetFenceStatus(device_.handle(), frame.done) == VK_SUCCESS)
-            done = std::max(done, frame.number);
-        else
-            running = std::min(running, frame.number);
-    return std::min(done, running - 1);
 }
 
 }  // namespace shvr::ui

@@ -1,5 +1,6 @@
 #pragma once
-// The window's swapchain, and Dear ImGui's Vulkan back end. The only files outside engine/gpu that call Vulkan.
+// The window's swapchain, and Dear ImGui's Vulkan back end: swapchain.cpp makes them, swapchain_frame.cpp draws with
+// them. The only files outside engine/gpu that call Vulkan.
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
 //
@@ -27,7 +28,8 @@ public:
     bool swaps_red_and_blue() const { return format_.format == VK_FORMAT_B8G8R8A8_UNORM; }
     /// Before ImGui::NewFrame.
     static void begin_ui();
-    /// As Window::present, after ImGui::Render.
+    /// As Window::present, after ImGui::Render. A frame that fails leaves nothing behind that later ones trip over; a
+    /// surface that is lost is made anew, and the frame is not shown.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
 
     uint64_t frames_presented() const { return presented_; }
@@ -48,10 +50,21 @@ private:
         uint64_t number = 0;  ///< last frame that used it
     };
 
+    /// Is made anew; other failures are the caller's.
+    class SurfaceLost : public Error {
+    public:
+        using Error::Error;
+    };
+    static void check(VkResult result, const char* call);
     void create();
+    void create_surface();
+    void renew_surface();
     void choose_format();
     void create_render_pass();
     void create_frames();
+    void complete(Frame& frame) const;
+    void abandon(Frame& frame);
+    bool show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin);
     void create_imgui();
     void create_swapchain();
     void add_target(VkImage image);
@@ -76,6 +89,8 @@ private:
     std::array<Frame, FRAMES_IN_FLIGHT> frames_;
     uint32_t next_frame_ = 0;
     uint64_t presented_ = 0;
+    bool is_stale_ = false;               ///< must be made anew before the next frame
+    bool is_as_good_as_it_gets_ = false;  ///< suboptimal even when it was new
     bool imgui_is_ready_ = false;
 };
 

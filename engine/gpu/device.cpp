@@ -19,6 +19,8 @@ const char* name_of(VkResult result)
         case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory";
         case VK_ERROR_INITIALIZATION_FAILED: return "initialization failed";
         case VK_ERROR_DEVICE_LOST: return "device lost";
+        case VK_ERROR_SURFACE_LOST_KHR: return "surface lost";
+        case VK_ERROR_OUT_OF_DATE_KHR: return "out of date";
         case VK_ERROR_LAYER_NOT_PRESENT: return "layer not present";
         case VK_ERROR_EXTENSION_NOT_PRESENT: return "extension not present";
         case VK_ERROR_FEATURE_NOT_PRESENT: return "feature not present";
@@ -74,6 +76,10 @@ std::optional<uint32_t> compute_family(VkPhysicalDevice physical)
 void check(VkResult result, const char* call)
 {
     if (result >= 0) return;
+    if (result == VK_ERROR_DEVICE_LOST)
+        throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
+                                  "): its driver was reset or it was taken away; start again, or choose another device "
+                                  "with --device"));
     fail("Vulkan: ", call, " returned ", int(result), " (", name_of(result), ")");
 }
 
@@ -304,6 +310,8 @@ std::vector<std::string> Device::take_validation_messages()
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
 {
+    // The loader, too, speaks here: of layers that the environment adds.
+    if (data->pMessageIdName && std::strcmp(data->pMessageIdName, "Loader Message") == 0) return VK_FALSE;
     Device& device = *static_cast<Device*>(self);
     const std::lock_guard lock(device.messages_mutex_);
     device.messages_.emplace_back(data->pMessage ? data->pMessage : "(no text)");

@@ -15,7 +15,14 @@
 
 namespace shvr::gpu {
 
-/// Throws `Error`, naming the call and the result, if `result` is a failure.
+/// The device stopped answering: its driver was reset, or it was taken away. All that was on it is gone, and every
+/// later call fails likewise, until the device is made anew.
+class DeviceLost : public Error {
+public:
+    using Error::Error;
+};
+
+/// Throws `Error`, naming the call and the result, if `result` is a failure; `DeviceLost`, if it is that.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 

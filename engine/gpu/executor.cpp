@@ -83,7 +83,8 @@ struct Submission::Frame {
         uint64_t counters_offset = 0;
         uint32_t dispatches = 0;
     };
-    std::vector<Prepared> prepared;  // per step
+    std::vector<Prepared> prepared;             // per step
+    std::vector<Memory::Object*> transitioned;  // images that the first chunk takes out of the undefined layout
 
     Frame(Executor& owner, FrameGraph frame_graph, const Executor::Options& frame_options)
         : executor(owner), graph(std::move(frame_graph)), options(frame_options), compiled(graph.compile())
@@ -129,7 +130,7 @@ struct Submission::Frame {
     void record();
     void record_pass(const Step& step, Prepared& state);
     void record_dispatches(const PassData& pass, Prepared& state);
-    void transition_new_images() const;
+    void transition_new_images();
     void submit();
     bool done() const;
     void wait() const;
@@ -249,15 +250,15 @@ void Submission::Frame::end_chunk() const
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
-/// Images are created in an undefined layout and stay in GENERAL from their first frame on.
-void Submission::Frame::transition_new_images() const
+/// Images are created in an undefined layout and stay in GENERAL from the first frame on that is submitted.
+void Submission::Frame::transition_new_images()
 {
     std::vector<VkImageMemoryBarrier2> barriers;
     for (uint32_t i = 0; i < storages.size(); ++i) {
         if (!compiled.used[i]) continue;
         Memory::Object& image = object(i);
         if (!image.image || image.in_general_layout) continue;
-        image.in_general_layout = true;
+        transitioned.push_back(&image);
         barriers.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                             .dstStageMask = vulkan_stages(STAGE_COMPUTE | STAGE_TRANSFER),
                             .dstAccessMask = touched_by(STAGE_COMPUTE | STAGE_TRANSFER),
@@ -400,6 +401,8 @@ void Submission::Frame::submit()
             vkDestroyFence(device, created, nullptr);
             check(result, "vkQueueSubmit2");
         }
+        if (i == 0)
+            for (Memory::Object* image : transitioned) image->in_general_layout = true;
     }
     fence = created;
     // Barriers are global, so they also affect imports that no kept pass uses.

@@ -33,6 +33,12 @@ bool Previewer::is_current() const
     return wanted_ ? answered_ == Asked{*wanted_, annotator_.revision()} : shown_ == nullptr;
 }
 
+void Previewer::drop()
+{
+    query_.drop();
+    asked_.reset();
+}
+
 void Previewer::advance()
 {
     if (query_.is_asking()) {

@@ -25,6 +25,8 @@ public:
     void want(const std::optional<PaintOp>& brush);
     /// Collects a finished answer and submits the next query.
     void advance();
+    /// Forgets a query that is in flight; it is asked again.
+    void drop();
 
     /// The newest answer; null where none is wanted or the first has not arrived.
     const std::shared_ptr<const PaintPreview>& shown() const { return shown_; }

@@ -56,6 +56,8 @@ public:
     bool is_answered() const { return frame_ && frame_.done(); }
     /// The answers, one per region, in order. Waits if necessary; afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
+    /// Forgets the query that is in flight, if there is one.
+    void drop() { frame_ = {}; }
     /// Device time of the last answer; 0 where the device has no timestamps.
     double gpu_ms() const { return gpu_ms_; }
 

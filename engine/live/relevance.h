@@ -32,6 +32,7 @@ public:
     /// while bricks of the cube are being loaded. Fails where the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
+    void drop() { query_.drop(); }
     /// The answer; null until the device has finished.
     std::optional<RelevanceBits> take();
 

@@ -54,6 +54,16 @@ void Screen::clear()
     turn_ = 0;
 }
 
+void Screen::drop()
+{
+    for (const Part& part : parts_) {
+        retired_submissions_ += part.view->submissions();
+        retired_revisions_ += part.view->revision() + 1;
+    }
+    parts_.clear();
+    turn_ = 0;
+}
+
 void Screen::show_probe(const ProbeLook& probe)
 {
     // Of the probe, slices show only what its brush would change. A twentieth of a voxel is less than a pixel of any

@@ -29,6 +29,8 @@ public:
     void wait();
     /// Frees all panes and their device memory; look() makes new ones.
     void clear();
+    /// The same, after the device was lost: waits for nothing.
+    void drop();
     bool complete() const;
 
     struct Part {

@@ -21,12 +21,20 @@ int worker_count(int wanted)
 }  // namespace
 
 Renderer::Renderer(const Options& options)
-    : device_(options.device),
+    : device_options_(options.device),
+      device_budget_(options.budget.device_bytes),
       host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : AUTOMATIC_HOST_BYTES),
-      memory_(device_, {options.budget.device_bytes, host_budget_ / 2}),
-      executor_(device_, memory_),
       threads_(worker_count(options.threads))
-{}
+{
+    restart();
+}
+
+void Renderer::restart()
+{
+    scene_.reset();
+    on_device_.reset();
+    on_device_ = std::make_unique<OnDevice>(device_options_, gpu::Budget{device_budget_, host_budget_ / 2});
+}
 
 Scene::Options Renderer::scene_options(const RenderSettings& settings, bool with_occlusion) const
 {
@@ -39,7 +47,7 @@ Scene::Options Renderer::scene_options(const RenderSettings& settings, bool with
 
 void Renderer::check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion)
 {
-    Scene::check_sizes(memory_, source, scene_options(settings, with_occlusion));
+    Scene::check_sizes(memory(), source, scene_options(settings, with_occlusion));
 }
 
 void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
@@ -47,8 +55,8 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
 {
     Scene::Options options = scene_options(settings, with_occlusion);
     options.progress = progress;
-    if (!Scene::fits_now(memory_, *source, options)) scene_.reset();
-    scene_ = std::make_unique<Scene>(executor_, memory_, std::move(source), statistics, options);
+    if (!Scene::fits_now(memory(), *source, options)) scene_.reset();
+    scene_ = std::make_unique<Scene>(executor(), memory(), std::move(source), statistics, options);
 }
 
 Scene& Renderer::scene() const
@@ -60,13 +68,13 @@ Scene& Renderer::scene() const
 uint64_t Renderer::host_bytes() const
 {
     const auto counts = scene_ ? scene_->volume().counts() : std::nullopt;
-    return memory_.host_bytes() + (counts ? counts->host_bytes : 0) + picture_bytes_;
+    return on_device_->memory.host_bytes() + (counts ? counts->host_bytes : 0) + picture_bytes_;
 }
 
 uint64_t Renderer::peak_host_bytes() const
 {
     const auto counts = scene_ ? scene_->volume().counts() : std::nullopt;
-    return memory_.peak_host_bytes() + (counts ? counts->peak_host_bytes : 0) + peak_picture_bytes_;
+    return on_device_->memory.peak_host_bytes() + (counts ? counts->peak_host_bytes : 0) + peak_picture_bytes_;
 }
 
 void Renderer::note_picture_bytes(uint64_t bytes)
@@ -100,7 +108,7 @@ std::optional<glm::dvec3> Renderer::pick(const Look& look, const Camera& camera,
     const PicturePart part{
         .pixels = pixels, .begin = pixel, .end = pixel + 1u, .always_shown = voxels_of_shell(probe, scene().info())};
     const uint32_t index = graph.read_back(shvr::pick(graph, scene(), look, camera, part));
-    const gpu::FrameResult result = executor_.run(std::move(graph), {.timestamps = false});
+    const gpu::FrameResult result = executor().run(std::move(graph), {.timestamps = false});
     glm::vec4 voxel_and_hit;
     std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);
     if (voxel_and_hit.w == 0.0f) return std::nullopt;

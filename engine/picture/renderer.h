@@ -12,6 +12,9 @@
 
 namespace shvr {
 
+/// Any call here may fail so; then restart() is all that helps.
+using gpu::DeviceLost;
+
 struct RenderOptions {
     std::optional<ProbeLook> probe;
     bool outlines_probe = false;  ///< draws its outline over what hides it, or an arrow where it is out of sight
@@ -43,9 +46,12 @@ public:
     };
     explicit Renderer(const Options& options);
 
-    gpu::Device& device() { return device_; }
-    gpu::Memory& memory() { return memory_; }
-    gpu::Executor& executor() { return executor_; }
+    gpu::Device& device() { return on_device_->device; }
+    gpu::Memory& memory() { return on_device_->memory; }
+    gpu::Executor& executor() { return on_device_->executor; }
+    /// Makes a lost device anew, without a scene. Nothing that was on the old one may be held any more: storages,
+    /// submissions, the window's. Where it fails there is no device: try again, or end.
+    void restart();
     /// The host's part of the budget, in bytes.
     uint64_t host_budget() const { return host_budget_; }
     /// Host bytes in use: mapped memory, bricks kept on the host, and a picture that is being made.
@@ -77,11 +83,19 @@ public:
 private:
     Scene::Options scene_options(const RenderSettings& settings, bool with_occlusion) const;
 
-    gpu::Device device_;
-    uint64_t host_budget_;
-    gpu::Memory memory_;
-    gpu::Executor executor_;
+    struct OnDevice {
+        gpu::Device device;
+        gpu::Memory memory;
+        gpu::Executor executor;
+        OnDevice(const gpu::DeviceOptions& options, const gpu::Budget& budget)
+            : device(options), memory(device, budget), executor(device, memory)
+        {}
+    };
+
+    gpu::DeviceOptions device_options_;
+    uint64_t device_budget_, host_budget_;
     int threads_;
+    std::unique_ptr<OnDevice> on_device_;
     uint64_t picture_bytes_ = 0, peak_picture_bytes_ = 0;
     std::unique_ptr<Scene> scene_;
 };

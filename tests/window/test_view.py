@@ -41,10 +41,11 @@ class Window(CliTest):
         cls.display = Display()
         cls.addClassCleanup(cls.display.close)
 
-    def start(self, *arguments):
+    def start(self, *arguments, environment=None):
         self.program = subprocess.Popen(
             [SHVR, "view", *map(str, arguments), "--json", "--size", f"{WINDOW[0]}x{WINDOW[1]}"],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**ENVIRONMENT, "DISPLAY": self.display.name})
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env={**ENVIRONMENT, "DISPLAY": self.display.name, **{k: str(v) for k, v in (environment or {}).items()}})
         self.addCleanup(self.program.kill)
 
     def wait_for_window(self, title):
@@ -100,6 +101,14 @@ class Window(CliTest):
     def middle(self):
         """Centre of the graphics window: left of the side panel, between menu and status bar."""
         return (WINDOW[0] - 330) // 2, WINDOW[1] // 2
+
+    def check_photograph(self, session, photograph):
+        """The picture equals `shvr render` of the saved session, except for the probe's ball."""
+        size = read_png_header(photograph)
+        picture = self.folder / "render.png"
+        self.check("render", session, "-o", picture, "--size", f"{size[0]}x{size[1]}")
+        difference = self.check_json("compare", photograph, picture)
+        self.assertLess(difference["fraction_over_1"], 0.03)
 
 
 class View(Window):
@@ -178,14 +187,6 @@ class View(Window):
         picture = self.folder / "render.png"
         self.check("render", session, "-o", picture, "--size", f"{width}x{height}")
         self.assertEqual(self.check_json("compare", photograph, picture)["max_abs"], 0)
-
-    def check_photograph(self, session, photograph):
-        """The picture equals `shvr render` of the saved session, except for the probe's ball."""
-        size = read_png_header(photograph)
-        picture = self.folder / "render.png"
-        self.check("render", session, "-o", picture, "--size", f"{size[0]}x{size[1]}")
-        difference = self.check_json("compare", photograph, picture)
-        self.assertLess(difference["fraction_over_1"], 0.03)
 
     def test_assistance_guides_the_probe_and_the_servo_keeps_time(self):
         self.start(self.write_ball())

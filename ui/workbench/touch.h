@@ -41,6 +41,8 @@ public:
     void wish(const glm::dvec3& point);
     /// Receives from the servo and the device, and sends what they need.
     void advance(const TouchSettings& settings);
+    /// Forgets what the graphics device was asked.
+    void drop_queries() { relevance_.drop(); }
 
     glm::dvec3 probe() const { return probe_; }
     /// Null while no servo runs.

@@ -60,6 +60,8 @@ bool Workbench::apply(const Action& action)
     try {
         perform(action);
         return true;
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const std::exception& error) {
         say(error.what(), Weight::error);
         return false;
@@ -267,6 +269,8 @@ void Workbench::attempt(Attempt& state, Part part)
     if (options_.now_s() < state.again_s) return;
     try {
         part();
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const std::exception& error) {
         note_failure(state, error.what());
     }

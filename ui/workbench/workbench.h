@@ -41,11 +41,15 @@ public:
 
     /// Carries it out. Fails, with nothing changed, with the reason; then the caller says it.
     void perform(const Action& action);
-    /// The same; a failure becomes a message. Returns whether it was carried out.
+    /// The same; a failure becomes a message, but for DeviceLost. Returns whether it was carried out.
     bool apply(const Action& action);
     /// Opens at once, with settings as --set takes them; the action Open does it beside the work.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
     void say(std::string text, Weight weight = Weight::done);
+    /// After the graphics device was lost (DeviceLost, from any function here): drops what the workbench has on it,
+    /// calls `make_anew`, and shows all again. What is recorded is all there; of a stroke under way, what was not
+    /// painted yet is not.
+    void restart_device(const std::function<void()>& make_anew);
     /// From now on this device moves the probe of what is open, and its button paints.
     void use_device(std::unique_ptr<HapticDevice> device, const std::string& name);
     /// Called with each action that was carried out, as a line that replays it (action_rows.h).
@@ -60,7 +64,7 @@ public:
     /// Nothing else waits for the device: large screenshots may go on.
     void set_still(bool is_still) { is_still_ = is_still; }
     /// Does a turn of all that goes on beside the actions. Failures become messages, and that part is tried again a
-    /// little later: whatever fails, the rest goes on and no work is lost.
+    /// little later: whatever fails, the rest goes on and no work is lost. DeviceLost is thrown.
     void advance();
     /// Turns until a running stroke is painted. Returns why part of it was not; empty if all was.
     std::string finish_stroke();
@@ -166,6 +170,7 @@ private:
     void open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings);
     void follow_jobs();
     [[noreturn]] void bring_back(const std::string& why);
+    void show_again();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void save();
     std::filesystem::path screenshot_stem() const;
