@@ -12,8 +12,8 @@
 #include "engine/base/error.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/edit.h"
 #include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
 
