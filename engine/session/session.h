@@ -28,9 +28,21 @@ struct InteractionSettings {
     bool operator==(const InteractionSettings&) const = default;
 };
 
-/// What the right mouse button, F and the stylus do in the window, and which preview is shown.
-enum class Tool { paint, trace };
-inline constexpr Spelling<Tool> TOOLS[] = {{Tool::paint, "paint"}, {Tool::trace, "trace"}};
+/// What the left mouse button does in the window, where Alt is not held:
+///
+///   turn      turns the volume                            select    selects the node or internode that is clicked
+///   paint     paints with the active group while held     measure   a click is one end of a distance, the next the other
+///   erase     takes paint away while held, whatever the active group is
+///   trace     a click beside all nodes adds one, linked with the selected one; a click on a node selects it, and a drag
+///             moves it
+///
+/// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
+/// trace tool. Alt + left turns everywhere, and so do the middle and the right button outside the turn tool; Shift +
+/// left and Shift + middle move, as the middle button does in the turn tool.
+enum class Tool { turn, paint, erase, trace, select, measure };
+inline constexpr Spelling<Tool> TOOLS[] = {{Tool::turn, "turn"},     {Tool::paint, "paint"},
+                                           {Tool::erase, "erase"},   {Tool::trace, "trace"},
+                                           {Tool::select, "select"}, {Tool::measure, "measure"}};
 constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
 {
     return TOOLS;
@@ -55,9 +67,11 @@ struct ProbeSettings {
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
     bool preview = false;        ///< the brush's effect at the probe is drawn
-    Tool tool = Tool::paint;
+    Tool tool = Tool::turn;
     bool guided = false;
     Guidance guidance = Guidance::potential;
+    /// What painting gives voxels to: the active group, or 0.
+    uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
 };
 

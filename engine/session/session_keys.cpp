@@ -290,7 +290,7 @@ void fields(Fields& f, ProbeSettings& probe)
     f.number("shell_opacity", probe.shell_opacity, SHARE, {"of one crossing of it"});
     f.flag("preview", probe.preview,
            {"the voxels that painting would change now, in pictures and slices; striped where it would erase"});
-    f.choice("tool", probe.tool, {"what the right mouse button, F and the stylus do in the window"});
+    f.choice("tool", probe.tool, {"what the left mouse button does in the window"});
     f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"the law that pulls it"});
     const About density{

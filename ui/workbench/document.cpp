@@ -122,7 +122,9 @@ void Document::show_again(Renderer& renderer)
 
 ProbeLook Document::probe_look() const
 {
-    ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush().group)};
+    ProbeLook look{.center = touch.probe(),
+                   .radius = probe_radius(),
+                   .color = probe_color(session, session.probe.painted_group())};
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
@@ -339,7 +341,9 @@ void Document::name_trace()
 
 PaintOp Document::stroke() const
 {
-    return in_session(stroke_of(brush(), *brush().threshold), session);
+    BrushSettings used = brush();
+    used.group = session.probe.painted_group();
+    return in_session(stroke_of(used, *used.threshold), session);
 }
 
 PaintOp Document::dab() const

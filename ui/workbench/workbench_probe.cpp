@@ -117,7 +117,7 @@ void Workbench::stroke_ended()
 void Workbench::follow_preview()
 {
     Document& document = *document_;
-    const bool is_wanted = document.session.probe.preview && document.session.probe.tool == Tool::paint &&
+    const bool is_wanted = document.session.probe.preview && document.session.probe.tool != Tool::trace &&
                            !document.annotator.stroke_is_running();
     document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
     try {

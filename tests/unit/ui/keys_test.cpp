@@ -384,12 +384,28 @@ TEST_CASE("equals and minus change what is selected, or the internodes of the gr
     CHECK(nodes.group == 2);
 }
 
-TEST_CASE("X changes between painting and tracing")
+TEST_CASE("X changes between tracing and turning, Alt and a digit take each tool")
 {
     World world;
     CHECK((after(world, 'X').probe.tool == Tool::trace));
     world.session.probe.tool = Tool::trace;
-    CHECK((after(world, 'X').probe.tool == Tool::paint));
+    CHECK((after(world, 'X').probe.tool == Tool::turn));
+    world.session.probe.tool = Tool::measure;
+    int number = 0;
+    for (const Tool tool : {Tool::turn, Tool::paint, Tool::erase, Tool::trace, Tool::select})
+        CHECK((after(world, '1' + number++, ALT).probe.tool == tool));
+    world.session.probe.tool = Tool::turn;
+    CHECK((after(world, '6', ALT).probe.tool == Tool::measure));
+}
+
+TEST_CASE("The tool that erases paints with group 0 and leaves the active group as it is")
+{
+    ProbeSettings probe;
+    probe.brush.group = 7;
+    CHECK(probe.painted_group() == 7);
+    probe.tool = Tool::erase;
+    CHECK(probe.painted_group() == 0);
+    CHECK(probe.brush.group == 7);
 }
 
 TEST_CASE("cutting planes move inwards, and outwards with Alt")

@@ -67,10 +67,16 @@ Action next_guidance(const Model& model, double)
     });
 }
 
-Action next_tool(const Model& model, double)
+template <Tool TOOL>
+Action take(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.tool = TOOL; });
+}
+
+Action trace_or_turn(const Model& model, double)
 {
     return edited(model.session,
-                  [](Session& s) { s.probe.tool = s.probe.tool == Tool::paint ? Tool::trace : Tool::paint; });
+                  [](Session& s) { s.probe.tool = s.probe.tool == Tool::trace ? Tool::turn : Tool::trace; });
 }
 
 template <int RIGHT, int UP, int FORWARD>
@@ -142,9 +148,10 @@ Action begin_and_end(const Model&, double amount)
 // ---- The table ------------------------------------------------------------------------------------------------------
 
 using Mode = Shortcut::Mode;
-constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *PAINTING_KEYS = "Painting", *TRACING_KEYS = "Tracing",
-                     *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view", *MOVE_KEYS = "Move the view",
-                     *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes", *BLEND_KEYS = "Distance blending";
+constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *TOOL_KEYS = "Tools", *PAINTING_KEYS = "Painting",
+                     *TRACING_KEYS = "Tracing", *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view",
+                     *MOVE_KEYS = "Move the view", *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes",
+                     *BLEND_KEYS = "Distance blending";
 
 /// By one key in both sets.
 constexpr Shortcut both(const char* id, const char* group, const char* name, Mode mode,
@@ -194,6 +201,13 @@ constexpr Shortcut SHORTCUTS[] = {
      [](const Model& model, double) -> Action { return ShowFullScreen{!model.is_full_screen}; },
      {"F11", "Alt+Enter"}},
 
+    both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
+    both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),
+    both("tool_erase", TOOL_KEYS, "Erase with the mouse", Mode::tap, take<Tool::erase>, "Alt+3"),
+    both("tool_trace", TOOL_KEYS, "Trace with the mouse", Mode::tap, take<Tool::trace>, "Alt+4"),
+    both("tool_select", TOOL_KEYS, "Select with the mouse", Mode::tap, take<Tool::select>, "Alt+5"),
+    both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
+
     both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
     both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
     both("eraser", PAINTING_KEYS, "Eraser", Mode::tap, choose<0>, "0"),
@@ -210,7 +224,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
     both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
 
-    both("next_tool", TRACING_KEYS, "Paint or trace", Mode::tap, next_tool, "X"),
+    both("next_tool", TRACING_KEYS, "Trace, or back to turning", Mode::tap, trace_or_turn, "X"),
     both(
         "add_node", TRACING_KEYS, "Add a node, linked with the selected one", Mode::tap,
         [](const Model& model, double) -> Action { return node_at_probe(model); }, "N"),
