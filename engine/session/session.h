@@ -30,11 +30,12 @@ struct InteractionSettings {
 
 /// What the left mouse button does in the window, where Alt is not held:
 ///
-///   turn      turns the volume                            select    selects the node or internode that is clicked
-///   paint     paints with the active group while held     measure   a click is one end of a distance, the next the other
+///   turn      turns the volume
+///   paint     paints with the active group while held
 ///   erase     takes paint away while held, whatever the active group is
-///   trace     a click beside all nodes adds one, linked with the selected one; a click on a node selects it, and a drag
-///             moves it
+///   trace     a click beside all nodes adds one, linked with the selected one; on a node it selects, a drag moves it
+///   select    selects the node or internode that is clicked
+///   measure   a click is one end of a distance, the next one the other
 ///
 /// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
 /// trace tool. Alt + left turns everywhere, and so do the middle and the right button outside the turn tool; Shift +
