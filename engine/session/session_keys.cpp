@@ -293,6 +293,12 @@ void fields(Fields& f, ProbeSettings& probe)
     f.choice("tool", probe.tool, {"what the left mouse button does in the window"});
     f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"the law that pulls it"});
+    f.number("node_radius", probe.node_radius_voxels, above_zero(1e-3, 127.0),
+             {.meaning = "of new nodes of the trace, along x",
+              .allowed = "voxels, above 0 ... 127",
+              .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's"});
+    f.flag("measured_radius", probe.measured_radius,
+           {"the window makes new nodes as wide as what they lie in, above the paint threshold"});
     const About density{
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",

@@ -165,7 +165,7 @@ TEST_CASE("the thesis's set has the keys of its appendix C, and today's set thos
     means("Ctrl+Shift+Z", "redo");
     means("F1", "help");
     means("F11", "full_screen");
-    CHECK(modern.shortcuts_for(*chord_of("Ctrl+C")).empty());
+    means("Ctrl+C", "copy_measurements");
     CHECK(modern.shortcuts_for(*chord_of("Ctrl+V")).empty());
 }
 
@@ -338,7 +338,7 @@ TEST_CASE("keys of tracing become the operations that scripts have")
     trace_three(world);
     const NodeOp node = only<NodeOp>(actions_of(world, 'N', 0));
     CHECK(node.at == glm::dvec3(29, 10, 10));
-    CHECK(node.radius_voxels == 4.0);
+    CHECK(!node.radius_voxels.has_value());  // nodes have a radius of their own, not the brush's
     CHECK(node.group == uint8_t(2));
     const LinkOp link = only<LinkOp>(actions_of(world, ',', 0));
     CHECK(link.near == glm::dvec3(29, 10, 10));
