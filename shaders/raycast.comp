@@ -38,7 +38,8 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 // are linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-// Stores where the ray's opacity reached its limit (voxel space, 1) instead of a colour, or 0 if it did not.
+// Stores where the ray's opacity rises most (voxel space) and the ray's opacity instead of a colour, or 0 where it
+// rises too little to be seen. The target has PICK_LAYERS layers.
 layout(constant_id = 4) const uint PICK = 0u;
 // Records which bricks rays visit. Pictures that are complete do without.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
@@ -49,10 +50,14 @@ layout(constant_id = 7) const uint SLICE = 0u;
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
 #ifdef SHELLED
-layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
+layout(constant_id = 8) const uint SHELL = SHELL_BALL;  // the region's shape
 #endif
 
-layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+layout(binding = 0, scalar) readonly buffer Params
+{
+    RaycastParams data;
+}
+params_block;
 #ifndef PAGED
 layout(binding = 1, r32ui) uniform readonly uimage3D leap;
 #endif
@@ -75,19 +80,23 @@ layout(binding = 7, rgba32f) uniform readonly image3D groups;
 
 #ifdef OCCLUDED
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
-layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
+layout(binding = 11, scalar) readonly buffer Look
+{
+    OcclusionLook data;
+}
+occlusion_look;
 #endif
 #ifdef SURFACED
-layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
+layout(binding = 12, rgba32f) uniform readonly image3D surfaces;  // linear RGB, length along the ray
 #endif
 
 #if defined(PAGED) || defined(SHELLED)
 #define KEEPS
-layout(binding = 13, rgba32f) uniform image3D rays;   // raycast.h, KEPT; without it, one texel
+layout(binding = 13, rgba32f) uniform image3D rays;  // raycast.h, KEPT; without it, one texel
 #endif
 
-#include "library/rays.glsl"
 #include "library/counters.glsl"
+#include "library/rays.glsl"
 #ifdef MASKED
 #ifdef PAGED
 #define MASK_TABLE_HASHED
@@ -109,7 +118,7 @@ layout(binding = 13, rgba32f) uniform image3D rays;   // raycast.h, KEPT; withou
 #else
 // What a position is in: a region with nothing visible (distance > 0), or a brick.
 struct Place {
-    uint distance;   // in cells
+    uint distance;  // in cells
     uint slot;
     bool is_painted;  // perhaps
     bool is_missing;  // never
@@ -124,17 +133,17 @@ Place place_at(const RaycastParams params, vec3 position)
 
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
-const float NO_SHELL = 1e30;   // a length along a ray
+const float NO_SHELL = 1e30;  // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
 const float LEAST_ALPHA = 1e-30;
 
 struct Ray {
-    vec3 origin;      // voxel space, at length 0
-    vec3 direction;   // voxels per reference length
-    vec3 inverse;     // 1 / direction; a large number where the direction is 0
-    vec3 ahead;       // 1 where the direction is positive, else 0
-    vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
+    vec3 origin;     // voxel space, at length 0
+    vec3 direction;  // voxels per reference length
+    vec3 inverse;    // 1 / direction; a large number where the direction is 0
+    vec3 ahead;      // 1 where the direction is positive, else 0
+    vec3 half_way;   // unit, between the directions to the eye and to the light; 0 where they are opposite
 };
 
 struct Work {
@@ -174,7 +183,7 @@ vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
 // The density at a point at most half a voxel outside the brick whose first texel is at `slot`.
 float value_near(vec3 in_brick, ivec3 slot)
 {
-    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons included
+    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));  // its aprons included
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
@@ -186,7 +195,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
     // volume gives the same bits as one in a single texture.
 #ifdef PAGED
-    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
+    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;  // times 2^-level, exactly
     const uvec3 brick = uvec3(position) >> place.level + 5u;
 #else
     const vec3 lattice = position - 0.5;
@@ -205,8 +214,8 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
         const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
-        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
-                             part);
+        look =
+            classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot), part);
     } else {
         look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
     }
@@ -293,6 +302,34 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
+// What PICK looks for: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
+struct Rises {
+    float most, most_at;               // of the runs so far; lengths along the ray
+    float run, steepest, steepest_at;  // of this one
+    float peak, trough;                // largest opacity of a sample of this run, and smallest since then
+};
+
+// A run ends where the opacity of samples has fallen well below its peak and rises again: behind a structure comes
+// another. A little noise ends none.
+void note_rise(inout Rises rises, float added, float opacity, float at)
+{
+    if (rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough) {
+        rises.run = rises.steepest = 0.0;
+        rises.peak = opacity;
+    }
+    rises.trough = opacity >= rises.peak ? opacity : min(rises.trough, opacity);
+    rises.peak = max(rises.peak, opacity);
+    rises.run += added;
+    if (added > rises.steepest) {
+        rises.steepest = added;
+        rises.steepest_at = at;
+    }
+    if (rises.run > rises.most) {
+        rises.most = rises.run;
+        rises.most_at = rises.steepest_at;
+    }
+}
+
 #ifdef SHELLED
 #include "library/shell.glsl"
 #endif
@@ -340,12 +377,17 @@ void main()
 
     const ivec3 texel = ivec3(params.target + in_part, 0);
     vec4 sum = vec4(0.0);
-    bool begins_inside = false;   // of the iso-surface
+    bool begins_inside = false;  // of the iso-surface
+    Rises rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     if (params.first_step > 0u && KEPT != KEPT_ALL) {
         sum = imageLoad(color, texel);
         begins_inside = sum.a < 0.0;
         sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
-        if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
+        if (PICK != 0u && sum.a >= params.opacity_limit) return;  // what was found stays
+        if (PICK != 0u) {
+            const vec4 runs = imageLoad(color, texel + ivec3(0, 0, 1)), run = imageLoad(color, texel + ivec3(0, 0, 2));
+            rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
+        }
     }
     vec4 kept = vec4(NO_SHELL, -1.0, 0.0, 0.0);
     uint state = 0u;
@@ -394,6 +436,7 @@ void main()
             note(place, work);
             if (place.distance > 0u) {
                 i += steps_to_leave(params, ray, position, place);
+                rises.trough = 0.0;
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (place.distance > 0u && i < end_step);
@@ -405,11 +448,13 @@ void main()
         waits = waits || (i < end_step && place.is_missing && sum.a < params.opacity_limit);
         // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
         if (place.distance == 0u && i < end_step && !waits) {
-            accumulate(sum, sample_look(params, ray, position, 1.0, place, work));
+            const vec4 look = sample_look(params, ray, position, 1.0, place, work);
+            if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
+            accumulate(sum, look);
             ++i;
         }
     }
-    if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
+    if (KEPT == KEPT_ALL) i = min(i, steps);  // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
     const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
     count(COUNTER_CUT_SHORT, uint(is_cut_short));
@@ -427,8 +472,11 @@ void main()
             const Place place = place_at(params, position);
             note(place, work);
             waits = place.is_missing;
-            if (place.distance == 0u && !waits)
-                accumulate(sum, sample_look(params, ray, position, rest / params.step, place, work));
+            if (place.distance == 0u && !waits) {
+                const vec4 look = sample_look(params, ray, position, rest / params.step, place, work);
+                if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
+                accumulate(sum, look);
+            }
         }
         has_ended = !waits;
     }
@@ -472,18 +520,25 @@ void main()
         if (shell.is_inside) sum.a = -max(sum.a, LEAST_ALPHA);
 #endif
         imageStore(color, texel, sum);
+        if (PICK != 0u) {
+            imageStore(color, texel + ivec3(0, 0, 1), vec4(rises.most, rises.most_at, rises.run, rises.steepest));
+            imageStore(color, texel + ivec3(0, 0, 2), vec4(rises.steepest_at, rises.peak, rises.trough, 0.0));
+        }
         return;
     }
+    vec3 seen = position_at(params, ray, rises.most_at);
 #ifdef SURFACED
-    if (!is_stopped && surface.a < NO_SURFACE) accumulate(sum, vec4(surface.rgb, 1.0));
+    if (!is_stopped && surface.a < NO_SURFACE) {
+        if (PICK != 0u && 1.0 - sum.a > rises.most) {
+            rises.most = 1.0 - sum.a;
+            seen = ray.origin + surface.a * ray.direction;  // which may be outside the volume
+        }
+        accumulate(sum, vec4(surface.rgb, 1.0));
+    }
 #endif
 
     if (PICK != 0u) {
-        vec3 reached = position_at(params, ray, min(begin + (float(i) - 0.5) * params.step, end));
-#ifdef SURFACED
-        if (!is_stopped) reached = ray.origin + surface.a * ray.direction;  // which may be outside the volume
-#endif
-        imageStore(color, texel, sum.a >= params.opacity_limit ? vec4(reached, 1.0) : vec4(0.0));
+        imageStore(color, texel, rises.most >= LEAST_SEEN ? vec4(seen, sum.a) : vec4(0.0));
         return;
     }
     const float through = (1.0 - sum.a) * params.background.a;

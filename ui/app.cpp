@@ -14,6 +14,7 @@ namespace {
 /// While work is pending the loop runs at this interval, so that the device never runs out of work.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
+constexpr double CLICK_S = 0.05;  ///< while a click waits for its second
 /// Without input, sharper tiles are shown at this interval, since drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
 /// Widgets settle, hover and blink for that long after the last event.
@@ -90,6 +91,7 @@ void App::turn()
 /// What the window itself has to do about what was done.
 void App::follow_workbench()
 {
+    if (const std::string text = bench_->take_clipboard(); !text.empty()) ImGui::SetClipboardText(text.c_str());
     if (std::exchange(drawn_openings_, bench_->openings()) != bench_->openings()) {
         report_.opened(bench_->opened_s());
         window_.set_title("SHVR");  // until the volume is visible
@@ -176,22 +178,53 @@ double App::next_reason_to_draw_s() const
 double App::time_to_wait() const
 {
     const double until_frame = std::max(next_frame_s_, next_reason_to_draw_s()) - window_.now_s();
-    return std::clamp(until_frame, 0.0, bench_->has_work() ? WORK_S : IDLE_S);
+    return std::clamp(until_frame, 0.0, bench_->has_work() ? WORK_S : viewport_.is_waiting() ? CLICK_S : IDLE_S);
+}
+
+namespace {
+
+/// A motion that another follows at once, while nothing is held: only the last place matters.
+bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
+{
+    const size_t next = size_t(&event - events.data()) + 1;
+    return std::holds_alternative<MoveEvent>(event.what) && !ImGui::IsAnyMouseDown() && next < events.size() &&
+           std::holds_alternative<MoveEvent>(events[next].what);
+}
+
+}  // namespace
+
+/// What Dear ImGui says is of the frame before; where nothing is held or popped up, the windows under the pointer tell.
+bool App::ui_has_mouse(const InputEvent& event) const
+{
+    const ImGuiIO& io = ImGui::GetIO();
+    glm::dvec2 at(0.0);
+    if (const auto* move = std::get_if<MoveEvent>(&event.what))
+        at = move->at;
+    else if (const auto* button = std::get_if<ButtonEvent>(&event.what))
+        at = button->at;
+    else
+        return io.WantCaptureMouse;
+    if (ImGui::IsAnyMouseDown() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) return io.WantCaptureMouse;
+    return covers(at / glm::dvec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y));
 }
 
 void App::handle_events(double timeout_s)
 {
-    for (const InputEvent& event : window_.wait_events(timeout_s)) {
+    const std::vector<InputEvent> events = window_.wait_events(timeout_s);
+    for (const InputEvent& event : events) {
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
         const ImGuiIO& io = ImGui::GetIO();
         if (key)
             keyboard_.handle(*key, model(), io.WantTextInput || choosers_have_keys(), actions_);
-        else
-            viewport_.handle(event, model(), io.WantCaptureMouse, actions_);
+        else if (bench_->model().is_painting || !is_overtaken(events, event))
+            viewport_.handle(event, model(), ui_has_mouse(event), actions_);
+        bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on it: the probe's position, the selection
     }
+    viewport_.wait(window_.now_s(), actions_);
+    apply_all();
     const double now = window_.now_s();
     if (!ImGui::GetIO().WantTextInput && !choosers_have_keys())
         keyboard_.hold(

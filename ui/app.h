@@ -55,6 +55,7 @@ private:
     void draw_strokes() const;
     Model model() const;
     bool something_moves() const;
+    bool ui_has_mouse(const InputEvent& event) const;
     double next_reason_to_draw_s() const;
     double time_to_wait() const;
     bool closes();

@@ -6,6 +6,7 @@
 
 #include "engine/base/image.h"
 #include "ui/app.h"
+#include "ui/workbench/sight/marks.h"
 
 namespace shvr::ui {
 
@@ -15,6 +16,24 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
 {
     const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
+}
+
+constexpr double FONT_UNITS = 14.0;  ///< size of the font where a unit is a pixel
+
+/// Words lie on a dark ground, so that they are read on any picture.
+template <class OnScreen>
+void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
+{
+    constexpr float SPARE = 3.0f;
+    for (const Stroke& stroke : marks.strokes)
+        list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f), float(stroke.width));
+    for (const Label& label : marks.labels) {
+        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str()), at = on_screen(label.at);
+        const ImVec2 begin{at.x - float(label.anchor.x) * size.x, at.y - float(label.anchor.y) * size.y};
+        list.AddRectFilled({begin.x - SPARE, begin.y - 1.0f}, {begin.x + size.x + SPARE, begin.y + size.y + 1.0f},
+                           IM_COL32(20, 20, 20, 170), SPARE);
+        list.AddText(begin, color_of(label.color, 1.0f), label.text.c_str());
+    }
 }
 
 }  // namespace
@@ -59,6 +78,8 @@ void App::draw_strokes() const
     const TraceMarks marks = document.trace_marks();
     const ServoState* servo = document.touch.servo();
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const Model seen = model();
+    const double units = ImGui::GetFontSize() / FONT_UNITS;
     for (const Screen::Part& part : document.screen.parts()) {
         const glm::dvec2 origin(viewport_.layout().begin + part.pane.box.begin);
         const glm::uvec2 pixels = part.pane.box.end - part.pane.box.begin;
@@ -69,12 +90,10 @@ void App::draw_strokes() const
         for (const Stroke& stroke : document.screen.strokes(part, look, marks))
             list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
                          float(stroke.width));
-        if (document.screen.parts().size() > 1) {
-            const char* const name = part.pane.name.c_str();
-            const ImVec2 size = ImGui::CalcTextSize(name), at = on_screen({8.0, 6.0});
-            list.AddRectFilled({at.x - 4.0f, at.y - 2.0f}, {at.x + size.x + 4.0f, at.y + size.y + 2.0f},
-                               IM_COL32(20, 20, 20, 170), 3.0f);
-            list.AddText(at, IM_COL32(255, 255, 255, 235), name);
+        if (part.view->shown_camera()) {
+            Pane shown = part.pane;
+            shown.shot.camera = *part.view->shown_camera();
+            draw_over(marks_of(seen, shown, size_t(&part - document.screen.parts().data()), units), on_screen, list);
         }
         const Camera* const camera = part.view->shown_camera();
         if (servo && servo->step.in_contact && camera) {

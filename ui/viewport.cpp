@@ -1,8 +1,13 @@
 #include "ui/viewport.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <GLFW/glfw3.h>
+
+#include "ui/workbench/edit.h"
+#include "ui/workbench/sight/gestures.h"
+#include "ui/workbench/sight/hits.h"
 
 namespace shvr::ui {
 
@@ -12,6 +17,24 @@ constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turn
 constexpr double DOUBLE_CLICK_S = 0.35;
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
+
+bool paints(Tool tool)
+{
+    return tool == Tool::paint || tool == Tool::erase;
+}
+
+/// Slices' contrast, dragged.
+void drag_contrast(const glm::dvec2& heights, const Model& model, Actions& actions)
+{
+    const auto [lower, upper] = model.statistics.range();
+    const SliceSettings& slices = model.session.view.slices;
+    const ValueRange was{slices.black.value_or(lower), slices.white.value_or(upper)};
+    const ValueRange is = dragged_contrast(was, {lower, upper}, heights);
+    set(actions, model, [&](Session& s) {
+        s.view.slices.black = is.lower;
+        s.view.slices.white = is.upper;
+    });
+}
 
 }  // namespace
 
@@ -33,6 +56,16 @@ size_t Viewport::pane_at(const glm::dvec2& at, const Model& model) const
     return 0;
 }
 
+Pane::Kind Viewport::kind_of_pane(const Model& model) const
+{
+    return pane_ < model.panes.size() ? model.panes[pane_].pane.kind : Pane::Kind::main;
+}
+
+glm::uvec2 Viewport::pane_pixels(const Model& model) const
+{
+    return pane_ < model.panes.size() ? glm::max(model.panes[pane_].pane.pixels(), glm::uvec2(1)) : glm::uvec2(1);
+}
+
 /// In pixels of the pane under the mouse.
 glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
 {
@@ -40,43 +73,160 @@ glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
     return at - glm::dvec2(layout_.begin + origin);
 }
 
+/// What turning means in the pane.
+Viewport::Gesture Viewport::turning(const Model& model) const
+{
+    switch (kind_of_pane(model)) {
+        case Pane::Kind::map: return Gesture::move_in_map;
+        case Pane::Kind::slice: return Gesture::cross;
+        default: return Gesture::turn;
+    }
+}
+
+bool Viewport::is_double(double time_s, const glm::dvec2& at) const
+{
+    return last_click_s_ && time_s - *last_click_s_ < DOUBLE_CLICK_S &&
+           glm::distance(at, last_click_) < DOUBLE_CLICK_PIXELS;
+}
+
+// ---- Buttons --------------------------------------------------------------------------------------------------------
+
 void Viewport::press(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
 {
     if (gesture_ != Gesture::none) return;
     pane_ = pane_at(event.at, model);
-    const bool is_map = pane_ < model.panes.size() && model.panes[pane_].pane.kind == Pane::Kind::map;
+    const bool is_map = kind_of_pane(model) == Pane::Kind::map, is_slice = kind_of_pane(model) == Pane::Kind::slice;
+    const bool turns = model.tool() == Tool::turn, shift = event.mods & GLFW_MOD_SHIFT;
     button_ = event.button;
-    last_ = event.at;
-    if (event.button == GLFW_MOUSE_BUTTON_RIGHT) {
+    last_ = pressed_ = event.at;
+    was_elsewhere_ = false;
+    if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
+        // Where the pointer is now: it may have come from elsewhere since the probe followed it last.
+        if (!is_map) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
         actions.emplace_back(Paint{true});
-    } else if (event.button == GLFW_MOUSE_BUTTON_MIDDLE || (event.mods & GLFW_MOD_SHIFT)) {
-        gesture_ = is_map ? Gesture::move_in_map : Gesture::move;
+    } else if (event.button == GLFW_MOUSE_BUTTON_RIGHT) {
+        gesture_ = is_slice ? Gesture::contrast : turning(model);
+    } else if (event.button == GLFW_MOUSE_BUTTON_MIDDLE) {
+        gesture_ = is_map ? Gesture::move_in_map : turns || shift ? Gesture::move : turning(model);
     } else if (event.button == GLFW_MOUSE_BUTTON_LEFT) {
-        gesture_ = is_map ? Gesture::move_in_map : Gesture::turn;
-        const bool is_double = last_click_s_ && time_s - *last_click_s_ < DOUBLE_CLICK_S &&
-                               glm::distance(event.at, last_click_) < DOUBLE_CLICK_PIXELS;
-        if (is_double) actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
-        last_click_s_ = is_double ? std::nullopt : std::optional(time_s);
+        press_left(event, time_s, model, actions);
+    }
+    if (gesture_ != Gesture::press && gesture_ != Gesture::paint) click_.reset();
+}
+
+void Viewport::press_left(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
+{
+    const Pane::Kind kind = kind_of_pane(model);
+    pressed_node_.reset();
+    if (event.mods & GLFW_MOD_SHIFT) {
+        gesture_ = kind == Pane::Kind::map ? Gesture::move_in_map : Gesture::move;
+    } else if ((event.mods & GLFW_MOD_CONTROL) && kind == Pane::Kind::slice) {
+        gesture_ = Gesture::contrast;
+    } else if ((event.mods & GLFW_MOD_ALT) || kind == Pane::Kind::map) {
+        gesture_ = turning(model);
+        if (kind == Pane::Kind::map && is_double(time_s, event.at))
+            actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
+        last_click_s_ = time_s;
         last_click_ = event.at;
+    } else if (paints(model.tool())) {
+        gesture_ = Gesture::stroke;
+        actions.emplace_back(ProbeAlong{pane_, in_pane(event.at, model), true});
+        actions.emplace_back(Paint{true});
+    } else {
+        gesture_ = Gesture::press;
+        if (model.tool() == Tool::trace && pane_ < model.panes.size())
+            pressed_node_ =
+                trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume).node;
+        // In the turn tool a double click means something else than two clicks, and something at once.
+        if (model.tool() == Tool::turn && is_double(time_s, event.at)) {
+            click_.reset();
+            actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
+        }
     }
 }
 
-void Viewport::release(const ButtonEvent& event, Actions& actions)
+void Viewport::release(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
 {
     if (gesture_ == Gesture::none || event.button != button_) return;
-    if (gesture_ == Gesture::paint) actions.emplace_back(Paint{false});
+    if (gesture_ == Gesture::paint || gesture_ == Gesture::stroke) actions.emplace_back(Paint{false});
+    if (gesture_ == Gesture::node) actions.emplace_back(DragNode{false});
+    if (gesture_ == Gesture::press) click(time_s, model, actions);
     gesture_ = Gesture::none;
+}
+
+void Viewport::click(double time_s, const Model& model, Actions& actions)
+{
+    const glm::dvec2 pixel = in_pane(pressed_, model);
+    const bool is_second = is_double(time_s, pressed_);
+    last_click_s_ = is_second ? std::nullopt : std::optional(time_s);
+    last_click_ = pressed_;
+    switch (model.tool()) {
+        case Tool::turn:
+            if (!is_second) click_ = Click{{pane_, pixel, false}, time_s};
+            break;
+        case Tool::trace:
+            if (pressed_node_)
+                actions.emplace_back(SelectOp{.near = {}, .number = pressed_node_, .within_voxels = {}});
+            else
+                actions.emplace_back(NodeAt{pane_, pixel});
+            break;
+        case Tool::select: actions.emplace_back(SelectAt{pane_, pixel, is_second}); break;
+        case Tool::measure: actions.emplace_back(MeasureAt{pane_, pixel}); break;
+        case Tool::paint:
+        case Tool::erase: break;
+    }
+}
+
+void Viewport::wait(double time_s, Actions& actions)
+{
+    if (!click_ || time_s - click_->at_s < DOUBLE_CLICK_S) return;
+    actions.emplace_back(click_->what);
+    click_.reset();
+}
+
+// ---- Motion ---------------------------------------------------------------------------------------------------------
+
+/// A press has moved too far for a click.
+void Viewport::begin_drag(const Model& model, Actions& actions)
+{
+    if (!pressed_node_ || !model.trace.nodes().contains(*pressed_node_)) {
+        gesture_ = turning(model);
+        return;
+    }
+    gesture_ = Gesture::node;
+    actions.emplace_back(SelectOp{.near = {}, .number = pressed_node_, .within_voxels = {}});
+    actions.emplace_back(PlaceProbe{model.trace.node(*pressed_node_).position / model.volume.spacing});
+    actions.emplace_back(DragNode{true});
+}
+
+/// The probe follows a pointer without a button. In slices it stays where it is in tools that point, or the other
+/// slices would follow every motion.
+void Viewport::hover(const Model& model, bool jumps, Actions& actions)
+{
+    const Tool tool = model.tool();
+    const Pane::Kind kind = kind_of_pane(model);
+    const glm::dvec2 pixel = in_pane(last_, model);
+    const bool points = tool == Tool::select || tool == Tool::measure;
+    if (kind == Pane::Kind::slice && points) return;
+    const bool lands = kind != Pane::Kind::map && tool != Tool::turn && tool != Tool::select;
+    if (lands)
+        actions.emplace_back(ProbeAlong{pane_, pixel, jumps});
+    else
+        actions.emplace_back(ProbeTo{pane_, pixel, jumps});
 }
 
 void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions)
 {
     if (gesture_ == Gesture::none) pane_ = pane_at(event.at, model);
-    const double height = pane_ < model.panes.size()
-                              ? double(model.panes[pane_].pane.box.end.y - model.panes[pane_].pane.box.begin.y)
-                              : 1.0;
-    const glm::dvec2 way = event.at - last_, heights = way / std::max(1.0, height);
+    const glm::dvec2 way = event.at - last_, heights = way / double(pane_pixels(model).y);
+    const bool is_here = gesture_ != Gesture::none || (!ui_has_mouse && contains(event.at));
+    const bool jumps = was_elsewhere_ || is_jump(way, pane_pixels(model));
     last_ = event.at;
+    was_elsewhere_ = !is_here;
+    pointer_ = is_here ? std::optional(Pointer{pane_, in_pane(event.at, model)}) : std::nullopt;
+    if (gesture_ == Gesture::press && glm::distance(event.at, pressed_) > CLICK_PIXELS) begin_drag(model, actions);
+    const glm::dvec2 pixel = in_pane(event.at, model);
     switch (gesture_) {
         // The object follows the mouse, so the eye moves the other way.
         case Gesture::turn:
@@ -84,9 +234,14 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
             break;
         case Gesture::move: actions.emplace_back(Move{{-heights.x, heights.y, 0.0}}); break;
         case Gesture::move_in_map: actions.emplace_back(DragInMap{pane_, way}); break;
-        case Gesture::paint: actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model)}); break;
+        case Gesture::paint: actions.emplace_back(ProbeTo{pane_, pixel, jumps}); break;
+        case Gesture::stroke: actions.emplace_back(ProbeAlong{pane_, pixel, jumps}); break;
+        case Gesture::node:
+        case Gesture::cross: actions.emplace_back(ProbeTo{pane_, pixel}); break;
+        case Gesture::contrast: drag_contrast(heights, model, actions); break;
+        case Gesture::press: break;
         case Gesture::none:
-            if (!ui_has_mouse && contains(event.at)) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model)});
+            if (is_here) hover(model, jumps, actions);
             break;
     }
 }
@@ -95,7 +250,7 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
 {
     constexpr double HEIGHTS_PER_STEP = 0.05;
     pane_ = pane_at(event.at, model);
-    const Pane::Kind kind = pane_ < model.panes.size() ? model.panes[pane_].pane.kind : Pane::Kind::main;
+    const Pane::Kind kind = kind_of_pane(model);
     if (kind == Pane::Kind::slice || (event.mods & GLFW_MOD_CONTROL))
         actions.emplace_back(PushProbe{pane_, event.steps});
     else if (kind == Pane::Kind::map)
@@ -108,7 +263,7 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
 {
     if (const auto* button = std::get_if<ButtonEvent>(&event.what)) {
         if (!button->pressed)
-            release(*button, actions);
+            release(*button, event.time_s, model, actions);
         else if (!ui_has_mouse && contains(button->at))
             press(*button, event.time_s, model, actions);
     } else if (const auto* move = std::get_if<MoveEvent>(&event.what)) {

@@ -1,13 +1,25 @@
 #pragma once
-// Turns the mouse in the graphics window into actions. Its only state is the layout of that window and the gesture
-// in progress. Main thread.
+// Turns the mouse in the graphics window into actions. Its state is the layout of that window and the gesture in
+// progress. Main thread.
 //
-//   no button          the probe follows in its plane          wheel          zoom
-//   left drag          turn                                    Ctrl + wheel   push the probe away, or pull it closer
-//   middle drag        move (also Shift + left drag)           double click   put the probe onto the surface there
-//   right held         paint, or add a node
+// What the left button does is the session's tool (engine/session/session.h):
 //
-// In a map, left and middle drag move the camera and the wheel takes it forward; in a slice the wheel moves the slice.
+//   turn      a drag turns, a click selects what is under the pointer, a double click puts the probe there
+//   paint     paints at what is seen under the pointer while held; erase likewise
+//   trace     a click on a node selects it, a drag moves it; a click elsewhere adds one; another drag turns
+//   select    a click selects, a double click the whole segment; a drag turns
+//   measure   clicks set the ends of a distance; a drag turns
+//
+//   no button          the probe follows: in its plane; in the tools paint, erase, trace and measure along what is seen
+//   right              turn tool: paint; otherwise turn           Shift + left     move
+//   middle             turn tool: move; otherwise turn, with Shift move           Alt + left       turn
+//   wheel              zoom; with Ctrl push the probe away, or pull it closer
+//
+// In a map, what turns or moves elsewhere moves the camera, and the wheel takes it forward. In a slice the wheel moves
+// the slice; what turns elsewhere drags the cross, which moves the other slices; Ctrl + left changes the contrast, and
+// so does the right button outside the turn tool.
+//
+// A motion that no hand makes (is_jump), and the first one after the pointer was elsewhere, lifts the brush.
 
 #include <optional>
 
@@ -24,24 +36,57 @@ public:
 
     /// All events but keys. `ui_has_mouse`: Dear ImGui uses it.
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions);
+    /// What time alone brings about: a click of the turn tool selects once it cannot become a double click any more.
+    void wait(double time_s, Actions& actions);
+    /// Whether there is anything to wait for.
+    bool is_waiting() const { return click_.has_value(); }
+    /// Where the mouse is over the picture; null: elsewhere.
+    const std::optional<Pointer>& pointer() const { return pointer_; }
+    bool contains(const glm::dvec2& at) const;
 
 private:
-    enum class Gesture { none, turn, move, move_in_map, paint };
+    enum class Gesture {
+        none,
+        press,  ///< may become a click, or a drag
+        turn,
+        move,
+        move_in_map,
+        paint,   ///< at the probe, in its plane
+        stroke,  ///< along what is seen
+        node,    ///< moves the node that was pressed
+        cross,   ///< moves the cross of the slices
+        contrast
+    };
     void press(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
-    void release(const ButtonEvent& event, Actions& actions);
+    void press_left(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
+    void release(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
+    void click(double time_s, const Model& model, Actions& actions);
+    void begin_drag(const Model& model, Actions& actions);
     void follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions);
+    void hover(const Model& model, bool jumps, Actions& actions);
     void scroll(const ScrollEvent& event, const Model& model, Actions& actions);
     size_t pane_at(const glm::dvec2& at, const Model& model) const;
+    Pane::Kind kind_of_pane(const Model& model) const;
+    glm::uvec2 pane_pixels(const Model& model) const;
+    Gesture turning(const Model& model) const;
     glm::dvec2 in_pane(const glm::dvec2& at, const Model& model) const;
-    bool contains(const glm::dvec2& at) const;
+    bool is_double(double time_s, const glm::dvec2& at) const;
 
     Layout layout_;
     Gesture gesture_ = Gesture::none;
     size_t pane_ = 0;  ///< under the mouse, or where the gesture began
     int button_ = 0;
-    glm::dvec2 last_{0.0};
+    glm::dvec2 last_{0.0}, pressed_{0.0};
+    std::optional<uint32_t> pressed_node_;
+    bool was_elsewhere_ = true;  ///< the pointer, before the next motion
+    std::optional<Pointer> pointer_;
     std::optional<double> last_click_s_;
     glm::dvec2 last_click_{0.0};
+    struct Click {
+        SelectAt what;
+        double at_s = 0.0;
+    };
+    std::optional<Click> click_;  ///< of the turn tool, not yet carried out
 };
 
 }  // namespace shvr::ui

@@ -65,6 +65,11 @@ public:
     /// that earlier ones have painted. The locks are those of `brush` to the stroke's end.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
+    /// The next position is not joined to the last one: nothing is painted in between.
+    void lift_stroke()
+    {
+        if (stroke_) stroke_->last.reset();
+    }
     void end_stroke();
     /// A stroke is open, or part of it has not been painted yet.
     bool stroke_is_running() const { return stroke_.has_value(); }

@@ -162,9 +162,8 @@ Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& sho
     input.surfaces = draw_surfaces(graph, scene, prepared, input, shot.camera, part);
     input.pick = true;
     input.shaded = false;
-    input.params.opacity_limit = std::min(input.params.opacity_limit, 0.5f);
     return raycast(graph, prepared.volume, input,
-                   graph.create("reached voxel", image_desc(Format::rgba32_float, glm::uvec3(1))));
+                   graph.create("seen voxel", image_desc(Format::rgba32_float, {1, 1, gpu::PICK_LAYERS})));
 }
 
 uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes)

@@ -101,18 +101,18 @@ Picture Renderer::render(const Session& session, const Camera& camera, const Ren
     return picture;
 }
 
-std::optional<glm::dvec3> Renderer::pick(const Look& look, const Camera& camera, const glm::uvec2& pixels,
-                                         const glm::uvec2& pixel, const std::optional<ProbeLook>& probe)
+std::optional<Renderer::Seen> Renderer::pick(const Look& look, const Camera& camera, const glm::uvec2& pixels,
+                                             const glm::uvec2& pixel, const std::optional<ProbeLook>& probe)
 {
     FrameGraph graph;
     const PicturePart part{
         .pixels = pixels, .begin = pixel, .end = pixel + 1u, .always_shown = voxels_of_shell(probe, scene().info())};
     const uint32_t index = graph.read_back(shvr::pick(graph, scene(), look, camera, part));
     const gpu::FrameResult result = executor().run(std::move(graph), {.timestamps = false});
-    glm::vec4 voxel_and_hit;
-    std::memcpy(&voxel_and_hit, result.read_backs[index].data(), sizeof voxel_and_hit);
-    if (voxel_and_hit.w == 0.0f) return std::nullopt;
-    return glm::dvec3(voxel_and_hit) * scene().info().spacing;
+    glm::vec4 voxel_and_opacity;
+    std::memcpy(&voxel_and_opacity, result.read_backs[index].data(), sizeof voxel_and_opacity);
+    if (voxel_and_opacity.w == 0.0f) return std::nullopt;
+    return Seen{glm::dvec3(voxel_and_opacity) * scene().info().spacing, voxel_and_opacity.w};
 }
 
 }  // namespace shvr

@@ -75,10 +75,17 @@ public:
     /// Draws `session` (its look and its panes) from `camera`. Waits for the device. Fails where the host's budget
     /// cannot hold the picture.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
-    /// What is visible at a pixel: where its ray becomes half opaque, in volume space. `probe`: drawn as in the
-    /// picture. Waits for the device.
-    std::optional<glm::dvec3> pick(const Look& look, const Camera& camera, const glm::uvec2& pixels,
-                                   const glm::uvec2& pixel, const std::optional<ProbeLook>& probe = {});
+    /// What is seen at a pixel. Samples along its ray make runs: one ends where their opacity has fallen to a quarter
+    /// of its largest in the run and then doubles. The point lies in the run that adds most to the ray's opacity, at
+    /// the sample that adds most (after Wiebel et al. 2012, "WYSIWYP: What You See Is What You Pick"); a surface that
+    /// ends the ray is a run of its own. Null where no run adds gpu::LEAST_SEEN. `probe`: drawn as in the picture.
+    /// Waits for the device.
+    struct Seen {
+        glm::dvec3 point{0.0};  ///< volume space
+        double opacity = 0.0;   ///< of the whole ray
+    };
+    std::optional<Seen> pick(const Look& look, const Camera& camera, const glm::uvec2& pixels, const glm::uvec2& pixel,
+                             const std::optional<ProbeLook>& probe = {});
 
 private:
     Scene::Options scene_options(const RenderSettings& settings, bool with_occlusion) const;

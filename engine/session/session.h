@@ -20,17 +20,44 @@
 
 namespace shvr {
 
+/// What turning the view goes about: the middle of what is looked at, the probe, or a point that was picked.
+enum class Pivot { target, probe, picked };
+inline constexpr Spelling<Pivot> PIVOTS[] = {
+    {Pivot::target, "target"}, {Pivot::probe, "probe"}, {Pivot::picked, "picked"}};
+constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
+{
+    return PIVOTS;
+}
+
 /// Settings of the interactive window.
 struct InteractionSettings {
     double resolution = 0.7;  ///< share of the screen's, along each axis, while something moves; less if that is slow
     double frames_per_second = 30.0;  ///< at most
     uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
+    Pivot pivot = Pivot::target;
+    // Lines and words that the window draws over its pictures
+    bool scale_bar = true;
+    bool axes = true;
+    bool probe_label = true;  ///< the probe's depth, and how much of it is relevant
     bool operator==(const InteractionSettings&) const = default;
 };
 
-/// What the right mouse button, F and the stylus do in the window, and which preview is shown.
-enum class Tool { paint, trace };
-inline constexpr Spelling<Tool> TOOLS[] = {{Tool::paint, "paint"}, {Tool::trace, "trace"}};
+/// What the left mouse button does in the window, where Alt is not held:
+///
+///   turn      turns the volume
+///   paint     paints with the active group while held
+///   erase     takes paint away while held, whatever the active group is
+///   trace     a click beside all nodes adds one, linked with the selected one; on a node it selects, a drag moves it
+///   select    selects the node or internode that is clicked
+///   measure   a click is one end of a distance, the next one the other
+///
+/// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
+/// trace tool. Alt + left turns everywhere, and so do the middle and the right button outside the turn tool; Shift +
+/// left and Shift + middle move, as the middle button does in the turn tool.
+enum class Tool { turn, paint, erase, trace, select, measure };
+inline constexpr Spelling<Tool> TOOLS[] = {{Tool::turn, "turn"},     {Tool::paint, "paint"},
+                                           {Tool::erase, "erase"},   {Tool::trace, "trace"},
+                                           {Tool::select, "select"}, {Tool::measure, "measure"}};
 constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
 {
     return TOOLS;
@@ -55,9 +82,13 @@ struct ProbeSettings {
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing
     bool preview = false;        ///< the brush's effect at the probe is drawn
-    Tool tool = Tool::paint;
+    Tool tool = Tool::turn;
     bool guided = false;
     Guidance guidance = Guidance::potential;
+    std::optional<double> node_radius_voxels;  ///< of new nodes, along x; default: for the volume
+    bool measured_radius = false;              ///< new nodes are as wide as what they lie in, where that can be told
+    /// What painting gives voxels to: the active group, or 0.
+    uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
 };
 
@@ -151,6 +182,13 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 /// Halfway between a transfer function's lowest point and its mean intensity, weighted by opacity, within the volume's
 /// range: the brush's default threshold.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
+
+/// The radius of new nodes where nobody chose one, in voxels along x: 1/500 of the volume's diagonal, at least a voxel.
+double automatic_node_radius(const VolumeInfo& info);
+
+/// Intensities that slices draw black and white where nobody chose them: all but the darkest 0.5 % and the brightest
+/// 0.1 % of the voxels lie between them, to a bin of the histogram. The whole range where there is no histogram.
+ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the one
 /// that the session names "front", or else that looks at the side_of_largest_face.

@@ -68,6 +68,25 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
     return std::clamp(0.5 * (middle + function.lower()), lower, upper);
 }
 
+double automatic_node_radius(const VolumeInfo& info)
+{
+    constexpr double DIAGONAL_SHARE = 1.0 / 500.0;
+    return std::max(DIAGONAL_SHARE * glm::length(glm::dvec3(info.size) * info.spacing) / info.spacing.x, 1.0);
+}
+
+ValueRange automatic_contrast(const VolumeStatistics& statistics)
+{
+    constexpr double DARK_SHARE = 0.005, BRIGHT_SHARE = 0.001;
+    const auto [lower, upper] = statistics.range();
+    const std::vector<int64_t>& histogram = statistics.histogram;
+    if (!(lower < upper) || histogram.size() < 4) return {lower, upper};
+    const double bin = (upper - lower) / double(histogram.size());
+    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // the first at least holds something
+    const size_t bright = quantile_split(histogram, 0, 1.0 - BRIGHT_SHARE);
+    const double black = lower + bin * double(dark > 0 ? dark - 1 : 0), white = lower + bin * double(bright);
+    return {black, std::max(white, black + 2.0 * bin)};
+}
+
 TissueRange tissue_range(const VolumeStatistics& statistics)
 {
     const double minimum = statistics.range().lower;

@@ -290,9 +290,15 @@ void fields(Fields& f, ProbeSettings& probe)
     f.number("shell_opacity", probe.shell_opacity, SHARE, {"of one crossing of it"});
     f.flag("preview", probe.preview,
            {"the voxels that painting would change now, in pictures and slices; striped where it would erase"});
-    f.choice("tool", probe.tool, {"what the right mouse button, F and the stylus do in the window"});
+    f.choice("tool", probe.tool, {"what the left mouse button does in the window"});
     f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"the law that pulls it"});
+    f.number("node_radius", probe.node_radius_voxels, above_zero(1e-3, 127.0),
+             {.meaning = "of new nodes of the trace, along x",
+              .allowed = "voxels, above 0 ... 127",
+              .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's"});
+    f.flag("measured_radius", probe.measured_radius,
+           {"the window makes new nodes as wide as what they lie in, above the paint threshold"});
     const About density{
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",

@@ -139,6 +139,11 @@ void fields(Fields& f, InteractionSettings& interaction)
     f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"at most"});
     f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
             {"of large screenshots: pixels for one of the window, along each axis"});
+    f.choice("pivot", interaction.pivot, {"what turning the view goes about"});
+    f.flag("scale_bar", interaction.scale_bar, {"the window draws a length over each pane"});
+    f.flag("axes", interaction.axes, {"the window draws the directions of x, y and z over each pane"});
+    f.flag("probe_label", interaction.probe_label,
+           {"the window writes beside the probe how deep it is, and how much of it is at or above the threshold"});
 }
 
 void fields(Fields& f, CutBox& cut)

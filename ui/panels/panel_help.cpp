@@ -31,6 +31,9 @@ constexpr Gesture GESTURES[] = {
     {"Double click", "Put the probe onto what you see there"},
     {"Right button held", "Paint; when tracing, add a node"},
     {"Drop a file", "Open it"},
+    {"Click, with the tool that turns", "Select the node, or take the group, under the pointer"},
+    {"Drag in a slice", "Move the cross, and with it the other slices"},
+    {"Ctrl + drag in a slice", "Contrast: sideways how much, up and down how bright"},
 };
 
 void heading(const char* text)

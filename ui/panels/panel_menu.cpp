@@ -16,6 +16,7 @@
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
+#include "ui/workbench/sight/words.h"
 
 namespace shvr::ui {
 
@@ -126,12 +127,15 @@ void view_menu(const Model& model, Actions& actions)
             if (ImGui::MenuItem(camera.c_str())) actions.push_back(LookFrom{camera});
         ImGui::EndMenu();
     }
+    kept_views_menu(model, actions);
     const Arrangement arrangement = model.session.view.arrangement;
     item("single_view", model, actions, arrangement == Arrangement::single);
     item("stereo", model, actions, arrangement == Arrangement::stereo);
     item("overview", model, actions, arrangement == Arrangement::overview);
     item("slices", model, actions, arrangement == Arrangement::slices);
     item("full_screen", model, actions, model.is_full_screen);
+    ImGui::Separator();
+    sight_items(model, actions);
     ImGui::Separator();
     held_items("Turn the view", model, actions);
     held_items("Move the view", model, actions);
@@ -187,6 +191,10 @@ void trace_menu(const Model& model, Actions& actions)
     ImGui::Separator();
     item("link_nearest", model, actions);
     item("delete_selected", model, actions);
+    item("mend_cut", model, actions);
+    item("next_node", model, actions);
+    item("previous_node", model, actions);
+    item("measured_radius", model, actions, model.session.probe.measured_radius);
     ImGui::Separator();
     item("larger_selected", model, actions);
     item("smaller_selected", model, actions);
@@ -207,6 +215,7 @@ void trace_menu(const Model& model, Actions& actions)
 void probe_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Probe", model.is_open)) return;
+    item("probe_onto", model, actions);
     item("guide", model, actions, model.session.probe.guided);
     item("next_guidance", model, actions);
     item("shell", model, actions, model.session.probe.shell);
@@ -227,11 +236,10 @@ void help_menu(const Model& model, Actions& actions)
 
 // ---- Status
 
-std::string place_of(const glm::dvec3& voxel)
+std::string reading_of(const Model& model)
 {
-    char text[96];
-    std::snprintf(text, sizeof text, "probe at voxel %.1f, %.1f, %.1f", voxel.x, voxel.y, voxel.z);
-    return text;
+    const uint8_t group = model.reading.group;
+    return in_words(model.reading, model.volume, group > 0 ? group_of(model.session.groups, group).name : "");
 }
 
 void align_right(const std::string& text)
@@ -310,7 +318,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
     const std::string right = !model.is_open ? std::string()
-                                             : place_of(model.probe_voxel) + "    |    " +
+                                             : reading_of(model) + "    |    " +
                                                    (model.is_saved ? "saved" : "not saved") + "    |    " +
                                                    (!model.view_is_complete ? "refining"
                                                     : model.view_is_limited ? "coarser than the screen: device budget"

@@ -189,6 +189,7 @@ void trace_panel(const Model& model, Actions& actions)
     summary(model);
     selection(model, actions);
     buttons(model, actions);
+    new_nodes(model, actions);
     tapering(model, actions);
 }
 

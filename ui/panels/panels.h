@@ -16,6 +16,9 @@ struct Layout {
 /// the font.
 void set_style(double content_scale);
 
+/// Whether a window of the interface was at that place in the last frame; units of the interface.
+bool covers(const glm::dvec2& at);
+
 /// Draws the menu bar, side panel, status bar and, if open, the help window; adds to `actions`. Returns the area left.
 /// While nothing is open, the start page is there instead of the side panel.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
@@ -34,6 +37,11 @@ void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
+/// Items of the menu View: views that were kept, what turning goes about, what is drawn over pictures, distances.
+void kept_views_menu(const Model& model, Actions& actions);
+void sight_items(const Model& model, Actions& actions);
+/// In the section of tracing: how wide new nodes are.
+void new_nodes(const Model& model, Actions& actions);
 /// The file chooser, while the model says that it is asked what to open.
 void open_dialog(const Model& model, Actions& actions);
 /// Whether keys are for a file chooser; and whether one wants another frame, since it is reading a folder.

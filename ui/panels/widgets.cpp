@@ -1,6 +1,9 @@
 #include "ui/panels/widgets.h"
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
+
+#include "ui/panels/panels.h"
 
 namespace shvr::ui {
 
@@ -26,6 +29,17 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 const char* spelled(const std::string& unit)
 {
     return unit == "um" ? "\u00b5m" : unit.c_str();
+}
+
+bool covers(const glm::dvec2& at)
+{
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+        const bool is_seen = window->WasActive && !window->Hidden && !(window->Flags & ImGuiWindowFlags_NoMouseInputs);
+        if (is_seen && !(window->Flags & ImGuiWindowFlags_Tooltip) &&
+            window->OuterRectClipped.Contains({float(at.x), float(at.y)}))
+            return true;
+    }
+    return false;
 }
 
 void hint(const char* text)

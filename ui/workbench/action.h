@@ -42,12 +42,20 @@ struct DragInMap {
 struct LookFrom {
     std::string camera;  ///< a camera of the session, or a side
 };
-/// Keeps the present view under a name; a camera of that name is replaced.
+/// Keeps the present view under a name; a camera of that name is replaced. Without a name it gets a new one.
 struct KeepCamera {
     std::string name;
 };
 struct ForgetCamera {
     std::string name;
+};
+struct RenameCamera {
+    std::string name, to;
+};
+/// Turning goes about what is seen there, from now on.
+struct PivotAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
 };
 /// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
 struct MoveCut {
@@ -76,10 +84,20 @@ struct EndStep {};
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
+    bool jumps = false;  ///< not by the hand's motion: a stroke that is open paints nothing in between
 };
-struct ProbeOnto {  ///< onto the visible surface there
+/// Onto what is seen there: the largest rise of opacity along the ray (Renderer::pick).
+struct ProbeOnto {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
+};
+/// Follows the mouse along what is seen. While a stroke is open, its depth changes by no more than its radius and its
+/// way across the picture, so that the stroke stays on the surface that it began on. Where nothing is seen, it keeps
+/// its depth.
+struct ProbeAlong {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    bool jumps = false;
 };
 struct PushProbe {  ///< away from the viewer of a pane, in voxels
     size_t pane = 0;
@@ -103,6 +121,34 @@ inline constexpr double NEARBY_RADII = 4.0;
 struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
     bool on = false;
 };
+/// A node at what is seen there, linked with the selected one.
+struct NodeAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+/// Selects the node or internode that is seen there; or else takes the group that is painted there.
+struct SelectAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    bool whole_segment = false;
+};
+/// Selects the next node by number, and looks at it.
+struct StepNode {
+    bool back = false;
+};
+/// Links the two nodes between which the last deletion cut the trace.
+struct MendCut {};
+
+// ---- Measuring. Measurements are kept while the scan is open, and are no part of the work.
+struct MeasureAt {  ///< one end at what is seen there; the second ends the measurement
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+struct ClearMeasurements {};
+struct CopyMeasurements {};  ///< all of them, as a table for the clipboard
+
+/// Black and white of slices so that almost all voxels lie between them.
+struct AutoContrast {};
 
 // ---- The work
 struct Screenshot {
@@ -175,13 +221,15 @@ struct Quit {};
 
 using Action = std::variant<
     // looking
-    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, MoveCut, MoveClip, ResetCuts,
-    UpdateOcclusion,
+    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, MoveCut, MoveClip,
+    ResetCuts, UpdateOcclusion,
     // settings, the probe
-    Set, EndStep, ProbeTo, ProbeOnto, PushProbe, PlaceProbe, ScaleProbe,
+    Set, EndStep, AutoContrast, ProbeTo, ProbeOnto, ProbeAlong, PushProbe, PlaceProbe, ScaleProbe,
     // painting and tracing
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
-    RadiusOp,
+    RadiusOp, NodeAt, SelectAt, StepNode, MendCut,
+    // measuring
+    MeasureAt, ClearMeasurements, CopyMeasurements,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,

@@ -53,6 +53,19 @@ std::string why(const Model& model, const ForgetCamera& action)
     return model.session.cameras.contains(action.name) ? "" : sentence("no view is kept as ", action.name);
 }
 
+std::string why(const Model& model, const RenameCamera& action)
+{
+    if (!model.session.cameras.contains(action.name)) return sentence("no view is kept as ", action.name);
+    return model.session.cameras.contains(action.to) ? sentence("a view is kept as ", action.to, " already") : "";
+}
+
+std::string why(const Model& model, const LookFrom& action)
+{
+    const std::vector<std::string> names = camera_names(model.session);
+    const bool is_known = std::ranges::find(names, action.camera) != names.end() || action.camera.starts_with('{');
+    return is_known || action.camera.empty() ? "" : sentence("no view is kept as ", action.camera);
+}
+
 std::string why(const Model& model, const UpdateOcclusion&)
 {
     return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
@@ -121,6 +134,38 @@ std::string why(const Model& model, const GroupOp& action)
 std::string why(const Model& model, const RadiusOp& action)
 {
     return action.of == RadiusOp::Of::selected ? why_without_selection(model) : why_not_traced(model);
+}
+
+std::string why(const Model& model, const NodeAt&)
+{
+    return why_without_group(model, model.brush().group);
+}
+
+std::string why(const Model& model, const SelectAt&)
+{
+    return model.is_painting ? IS_PAINTING : "";
+}
+
+std::string why(const Model& model, const StepNode&)
+{
+    if (model.is_painting) return IS_PAINTING;
+    return model.trace.nodes().empty() ? "there is no node" : "";
+}
+
+std::string why(const Model& model, const MendCut&)
+{
+    const std::string why = why_not_traced(model);
+    return why.empty() && !model.is_cut ? "the last deletion cut nothing in two" : why;
+}
+
+std::string why(const Model& model, const ClearMeasurements&)
+{
+    return model.measurements.empty() && !model.measuring_from ? "nothing is measured" : "";
+}
+
+std::string why(const Model& model, const CopyMeasurements&)
+{
+    return model.measurements.empty() ? "nothing is measured" : "";
 }
 
 std::string why(const Model& model, const UndoOp&)

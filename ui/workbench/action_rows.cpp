@@ -14,7 +14,7 @@ namespace {
 // ---- The table, in the order of the alternatives of Action ----------------------------------------------------------
 
 constexpr const char *LOOKING = "Looking", *SETTINGS = "Settings", *PROBE = "Probe", *PAINTING = "Painting",
-                     *TRACING = "Tracing", *WORK = "Work", *WINDOW = "Window";
+                     *TRACING = "Tracing", *MEASURING = "Measuring", *WORK = "Work", *WINDOW = "Window";
 
 constexpr ActionRow ROWS[] = {
     {"orbit", "Turn the view", LOOKING, "turns the camera about its target, to the right and up"},
@@ -25,14 +25,18 @@ constexpr ActionRow ROWS[] = {
     {"look_from", "Look from", LOOKING, "takes a camera of the session, or a side of the volume"},
     {"keep_camera", "Keep this view", LOOKING, "keeps the present view in the session, under a name"},
     {"forget_camera", "Forget a view", LOOKING, "removes a camera of the session"},
+    {"rename_camera", "Rename a view", LOOKING, "gives a camera of the session another name"},
+    {"pivot_at", "Turn about what is seen", LOOKING, "turning goes about what is seen at a pixel of a pane"},
     {"move_cut", "Move a cutting plane", LOOKING, "moves one of the six planes by a share of the volume's size"},
     {"move_clip", "Move a clip plane", LOOKING, "moves the near or far plane by a share of the distance to the target"},
     {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
     {"update_occlusion", "Update ambient occlusion", LOOKING, "computes it anew where it is not automatic"},
     {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
     {"end_step", "End the step", SETTINGS, "makes one step of what was set since the last; it comes by itself"},
+    {"auto_contrast", "Contrast of the slices", SETTINGS, "sets black and white so that almost all lies between them"},
     {"probe_to", "Move the probe", PROBE, "the probe goes to a pixel of a pane, in its plane"},
     {"probe_onto", "Put the probe onto what is seen", PROBE, "the probe goes to the surface seen at a pixel of a pane"},
+    {"probe_along", "Move the probe along what is seen", PROBE, "the probe follows what is seen, as a stroke does"},
     {"push_probe", "Push the probe", PROBE, "the probe goes away from the viewer of a pane"},
     {"place_probe", "Place the probe", PROBE, "the probe goes to a voxel"},
     {"scale_probe", "Resize the probe", PROBE, "the probe and its brush grow by a factor"},
@@ -48,6 +52,13 @@ constexpr ActionRow ROWS[] = {
     {"delete", "Delete", TRACING, "deletes what is selected"},
     {"group", "Change group", TRACING, "gives what is selected to a group"},
     {"radius", "Change radius", TRACING, "sets radii of what is selected, or of a group"},
+    {"node_at", "Add a node where it is seen", TRACING, "adds a node at what is seen at a pixel of a pane"},
+    {"select_at", "Select what is seen", TRACING, "selects the node, internode or group at a pixel of a pane"},
+    {"step_node", "Next node", TRACING, "selects the next node, or the one before, and looks at it"},
+    {"mend_cut", "Mend the cut", TRACING, "links the nodes that deleting one between them has separated"},
+    {"measure_at", "Measure", MEASURING, "sets one end of a distance at what is seen at a pixel of a pane"},
+    {"clear_measurements", "Remove measurements", MEASURING, "removes all measured distances from the picture"},
+    {"copy_measurements", "Copy measurements", MEASURING, "puts all measured distances onto the clipboard, as a table"},
     {"undo", "Undo", WORK, "takes the last steps of the history back"},
     {"redo", "Redo", WORK, "does the steps again that were undone last"},
     {"save", "Save", WORK, "writes mask, offsets, trace and session for other programs"},
@@ -124,7 +135,17 @@ void fields(Fields& f, LookFrom& a)
 }
 void fields(Fields& f, KeepCamera& a)
 {
+    f.text("name", a.name, {});
+}
+void fields(Fields& f, RenameCamera& a)
+{
     f.text("name", a.name, {.is_required = true});
+    f.text("to", a.to, {.is_required = true});
+}
+void fields(Fields& f, PivotAt& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
 }
 void fields(Fields& f, ForgetCamera& a)
 {
@@ -150,6 +171,33 @@ void fields(Fields& f, Set& a)
     f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
 }
 void fields(Fields& f, ProbeTo& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+    f.flag("jumps", a.jumps, {});
+}
+void fields(Fields& f, ProbeAlong& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+    f.flag("jumps", a.jumps, {});
+}
+void fields(Fields& f, NodeAt& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+}
+void fields(Fields& f, SelectAt& a)
+{
+    pane_field(f, a.pane);
+    pixel_field(f, "pixel", a.pixel);
+    f.flag("whole_segment", a.whole_segment, {});
+}
+void fields(Fields& f, StepNode& a)
+{
+    f.flag("back", a.back, {});
+}
+void fields(Fields& f, MeasureAt& a)
 {
     pane_field(f, a.pane);
     pixel_field(f, "pixel", a.pixel);

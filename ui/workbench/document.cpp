@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
+#include "engine/live/densities.h"
 #include "engine/live/trace_marks.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
@@ -31,6 +33,12 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return std::nullopt;
     return read_text(path, LARGEST_SESSION);
+}
+
+std::pair<double, double> contrast_of(const VolumeStatistics& statistics)
+{
+    const ValueRange contrast = automatic_contrast(statistics);
+    return {contrast.lower, contrast.upper};
 }
 
 void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source, const VolumeStatistics& statistics,
@@ -75,6 +83,9 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     ProbeSettings& probe = session.probe;
     probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
     if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    if (!probe.node_radius_voxels) probe.node_radius_voxels = automatic_node_radius(volume());
+    SliceSettings& slices = session.view.slices;
+    if (!slices.black && !slices.white) std::tie(slices.black, slices.white) = contrast_of(statistics);
     touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
@@ -92,6 +103,7 @@ void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
     for (Notice& notice : notices) messages.push_back(std::move(notice.text));
     set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
     take_kept_settings();
+    annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
@@ -105,6 +117,7 @@ void Document::take_kept_settings()
     ProbeSettings& probe = session.probe;
     if (!probe.brush.threshold) probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
     if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    if (!probe.node_radius_voxels) probe.node_radius_voxels = automatic_node_radius(volume());
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
@@ -122,7 +135,9 @@ void Document::show_again(Renderer& renderer)
 
 ProbeLook Document::probe_look() const
 {
-    ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush().group)};
+    ProbeLook look{.center = touch.probe(),
+                   .radius = probe_radius(),
+                   .color = probe_color(session, session.probe.painted_group())};
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
@@ -339,7 +354,9 @@ void Document::name_trace()
 
 PaintOp Document::stroke() const
 {
-    return in_session(stroke_of(brush(), *brush().threshold), session);
+    BrushSettings used = brush();
+    used.group = session.probe.painted_group();
+    return in_session(stroke_of(used, *used.threshold), session);
 }
 
 PaintOp Document::dab() const
@@ -352,7 +369,7 @@ PaintOp Document::dab() const
 TraceDefaults Document::trace_defaults() const
 {
     return {.spacing = volume().spacing,
-            .radius_voxels = brush().radius_voxels,
+            .radius_voxels = session.probe.node_radius_voxels.value_or(brush().radius_voxels),
             .group = brush().group,
             .size = volume().size};
 }
@@ -364,6 +381,29 @@ std::optional<uint32_t> Document::nearby_node() const
     if (!nearest || glm::distance(trace.node(*nearest).position, touch.probe()) > NEARBY_RADII * probe_radius())
         return std::nullopt;
     return nearest;
+}
+
+bool Document::is_cut() const
+{
+    const TraceGraph& trace = annotator.document().trace;
+    return cut_ends && trace.nodes().contains(cut_ends->first) && trace.nodes().contains(cut_ends->second) &&
+           !trace.internode_between(cut_ends->first, cut_ends->second);
+}
+
+std::optional<double> Document::measured_radius(const glm::dvec3& voxel) const
+{
+    constexpr double MOST_VOXELS =
+        24.0;  // along the finest axis; the box that is read is twice as far in each direction
+    const VolumeInfo& info = volume();
+    const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
+    const glm::dvec3 size(info.size), reach = 2.0 * MOST_VOXELS * finest / info.spacing + 2.0;
+    if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
+    const VoxelBox box{Size3(glm::clamp(glm::floor(voxel - reach), glm::dvec3(0.0), size - 1.0)),
+                       Size3(glm::clamp(glm::ceil(voxel + reach), glm::dvec3(1.0), size))};
+    const DensityBox densities = densities_in(*source, annotator.document().density, box);
+    const auto radius = local_radius([&](const glm::dvec3& at) { return densities.at(at); }, *brush().threshold, voxel,
+                                     info.spacing, MOST_VOXELS * finest);
+    return radius ? std::optional(*radius / info.spacing.x) : std::nullopt;
 }
 
 TraceMarks Document::trace_marks() const

@@ -11,10 +11,12 @@
 
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/live/previewer.h"
+#include "engine/live/probe_meter.h"
 #include "engine/live/screen.h"
 #include "engine/picture/picture_job.h"
 #include "engine/session/session.h"
 #include "ui/workbench/action.h"
+#include "ui/workbench/sight/sight.h"
 #include "ui/workbench/touch.h"
 
 namespace shvr::ui {
@@ -37,12 +39,19 @@ struct Document {
     Camera camera;
     Annotator annotator;
     Previewer previewer{annotator};
+    ProbeMeter meter{annotator};
     Screen screen;
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every turn
     std::vector<std::string> messages;  ///< notes from opening the work
     std::string holder;                 ///< the other process that writes the work, in words; empty: this one may
     bool drags_node = false;            ///< the selected node follows the probe
+
+    // What is kept while it is open, and is no part of the work
+    std::vector<Measurement> measurements;                  ///< voxels
+    std::optional<glm::dvec3> measuring_from;               ///< the first end of one that has no second yet
+    std::optional<glm::dvec3> picked_pivot;                 ///< volume space
+    std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes between which the last deletion cut the trace
 
     /// Loads everything onto the device again after it held another document. Fails as load and create do.
     void show_again(Renderer& renderer);
@@ -59,6 +68,10 @@ struct Document {
     std::optional<uint32_t> nearby_node() const;
     TraceMarks trace_marks() const;
     TraceDefaults trace_defaults() const;
+    /// The cut can still be mended: both of its ends exist, and nothing links them.
+    bool is_cut() const;
+    /// How wide what lies at a place is, in voxels along x (local_radius.h); null where that cannot be told.
+    std::optional<double> measured_radius(const glm::dvec3& voxel) const;
     /// The probe's ball, of at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
     /// The session as it would be saved: with the current camera and the probe's position.

@@ -16,6 +16,7 @@
 #include "engine/session/transfer_presets.h"
 #include "haptics/servo.h"
 #include "ui/workbench/messages.h"
+#include "ui/workbench/sight/sight.h"
 
 namespace shvr::ui {
 class Keymap;
@@ -41,10 +42,20 @@ struct Model {
     const ServoState* servo = nullptr;  ///< null while no servo runs
     std::string_view device_name{};     ///< device that moves the probe: "mouse", ...
 
+    std::optional<Pointer> pointer{};  ///< of the mouse, while it is over the picture
+    Reading reading{};
+    std::optional<glm::dvec3> picked_pivot{};  ///< volume space; what turning goes about, if the session says so
+
+    // Measuring, in voxels
+    std::span<const Measurement> measurements{};
+    std::optional<glm::dvec3> measuring_from{};  ///< the first end of one that has no second yet
+    std::optional<glm::dvec3> measuring_to{};    ///< where its second end would be now
+
     // Tracing
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     bool drags_node = false;
+    bool is_cut = false;  ///< the last deletion cut the trace in two, and nothing has mended it
     /// Number of voxels that painting would change now; nothing if no preview is shown or it is still pending.
     std::optional<int64_t> previewed_voxels;
 

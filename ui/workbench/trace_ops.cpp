@@ -34,7 +34,7 @@ double scaled_radius(const Model& model, const Mean& mean, double factor)
 
 NodeOp node_at_probe(const Model& model)
 {
-    return NodeOp{.at = model.probe_voxel, .radius_voxels = model.brush().radius_voxels, .group = model.brush().group};
+    return NodeOp{.at = model.probe_voxel, .radius_voxels = {}, .group = model.brush().group};
 }
 
 SelectOp nearest_selection(const Model& model)

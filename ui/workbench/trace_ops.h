@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// A node at the probe, with its size and group, linked to the selected node.
+/// A node at the probe, of the probe's group and as wide as new nodes are, linked to the selected node.
 NodeOp node_at_probe(const Model& model);
 /// Selects the nearest node or, if that is selected already, the nearest of its internodes.
 SelectOp nearest_selection(const Model& model);

@@ -208,6 +208,7 @@ void Workbench::open(OpenedSession opened, const std::filesystem::path& path, co
     preferences.note_opened(path);
     prefer(std::move(preferences));
     ++openings_;
+    read_voxel_.reset();
     settings_to_record_ = was_set_in_this_turn_ = false;
     to_keep_since_s_.reset();
     session_before_hand_.reset();
@@ -293,9 +294,10 @@ void Workbench::set_pixels(const glm::uvec2& pixels)
 bool Workbench::has_work() const
 {
     if (!jobs_.is_idle()) return true;
-    return document_ && (!document_->screen.complete() || document_->annotator.stroke_is_running() ||
-                         document_->touch.servo() || is_stirring() || screenshots_.is_writing() ||
-                         screenshots_.has_large() || !document_->previewer.is_current());
+    return document_ &&
+           (!document_->screen.complete() || document_->annotator.stroke_is_running() || document_->touch.servo() ||
+            is_stirring() || screenshots_.is_writing() || screenshots_.has_large() ||
+            !document_->previewer.is_current() || !document_->meter.is_current());
 }
 
 void Workbench::advance()
@@ -308,6 +310,7 @@ void Workbench::advance()
     attempt(painting_, [this] { follow_stroke(); });
     attempt(previewing_, [this] { follow_preview(); });
     attempt(looking_, [this] { follow_look(); });
+    attempt(reading_turn_, [this] { follow_reading(); });
     for (const std::string& message : renderer_.scene().take_messages()) say(message, Weight::warning);
     attempt(photographing_, [this] { follow_screenshots(); });
 }
@@ -415,9 +418,16 @@ Model Workbench::model() const
             .is_painting = document.annotator.stroke_is_running(),
             .servo = document.touch.servo(),
             .device_name = document.touch.device_name(),
+            .pointer = pointer_,
+            .reading = reading_,
+            .picked_pivot = document.picked_pivot,
+            .measurements = document.measurements,
+            .measuring_from = document.measuring_from,
+            .measuring_to = document.measuring_from ? std::optional(voxel_to_read()) : std::nullopt,
             .trace = document.annotator.document().trace,
             .nearby_node = document.nearby_node(),
             .drags_node = document.drags_node,
+            .is_cut = document.is_cut(),
             .previewed_voxels = has_preview ? std::optional(previewer.shown()->voxels) : std::nullopt,
             .voxels_by_group = document.annotator.document().mask.voxels_by_group(),
             .history = &document.annotator.history(),

@@ -19,6 +19,7 @@
 #include "ui/workbench/messages.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/screenshots.h"
+#include "ui/workbench/sight/hits.h"
 
 namespace shvr::ui {
 
@@ -59,6 +60,10 @@ public:
 
     /// Size of the picture; 0, 0: none is drawn.
     void set_pixels(const glm::uvec2& pixels);
+    /// Where the mouse is; null: not over the picture. What is there is read.
+    void set_pointer(const std::optional<Pointer>& pointer) { pointer_ = pointer; }
+    /// What was to be copied since the last call; empty: nothing.
+    std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     /// While a hand is setting something no step of the history is made of it: one drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
     /// Nothing else waits for the device: large screenshots may go on.
@@ -116,14 +121,18 @@ private:
     void act(const LookFrom& action);
     void act(const KeepCamera& action);
     void act(const ForgetCamera& action);
+    void act(const RenameCamera& action);
+    void act(const PivotAt& action);
     void act(const MoveCut& action);
     void act(const MoveClip& action);
     void act(const ResetCuts& action);
     void act(const UpdateOcclusion& action);
     void act(const Set& action);
     void act(const EndStep& action);
+    void act(const AutoContrast& action);
     void act(const ProbeTo& action);
     void act(const ProbeOnto& action);
+    void act(const ProbeAlong& action);
     void act(const PushProbe& action);
     void act(const PlaceProbe& action);
     void act(const ScaleProbe& action);
@@ -139,6 +148,13 @@ private:
     void act(const DeleteOp& op) { trace(op); }
     void act(const GroupOp& op) { trace(op); }
     void act(const RadiusOp& op) { trace(op); }
+    void act(const NodeAt& action);
+    void act(const SelectAt& action);
+    void act(const StepNode& action);
+    void act(const MendCut& action);
+    void act(const MeasureAt& action);
+    void act(const ClearMeasurements& action);
+    void act(const CopyMeasurements& action);
     void act(const UndoOp& action);
     void act(const RedoOp& action);
     void act(const SaveOp& action);
@@ -183,6 +199,16 @@ private:
     const Pane& pane(size_t index) const;
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
+    glm::dvec3 pivot() const;
+    /// What is seen at a pixel of a pane, volume space; of a slice, the point of its plane. Null: nothing is.
+    std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
+    /// What of it lies within `reach` of a depth along the view.
+    std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;
+    void follow_reading();
+    void read_at(const glm::dvec3& voxel);
+    bool probe_is_measured() const;
+    bool is_hidden(const Pane& pane, const glm::dvec2& pixel, const TraceHit& hit) const;
+    glm::dvec3 voxel_to_read() const;
 
     // Settings
     void take_session(Session session);
@@ -194,7 +220,11 @@ private:
 
     // Annotation
     void trace(const TraceOp& op);
+    TraceOp with_radius(TraceOp op) const;
+    void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);
+    std::string keys_of(const char* shortcut) const;
     void move_probe(const glm::dvec3& point, bool jumps);
+    void lift();
     void extend_stroke();
     void stroke_ended();
     void show_changes(const Command& command);
@@ -223,7 +253,14 @@ private:
     std::function<void(const std::string&)> log_;
     RecentActions recent_;
     Jobs jobs_;
-    Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, photographing_;
+    Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, reading_turn_, photographing_;
+    std::optional<Pointer> pointer_;
+    std::string clipboard_;
+    Reading reading_;
+    std::optional<glm::dvec3> read_voxel_;  ///< whole numbers: of which `reading_` has the intensity
+    uint64_t read_revision_ = 0;            ///< of the paint
+    double read_again_s_ = 0.0;             ///< reading may take long: not before
+
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     bool is_hand_down_ = false, is_still_ = true;

@@ -11,6 +11,7 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
     if (document_) {
         document_->annotator.drop_stroke();
         document_->previewer.drop();
+        document_->meter.drop();
         document_->touch.drop_queries();
         document_->screen.drop();
     }

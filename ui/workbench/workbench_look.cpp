@@ -9,10 +9,11 @@ namespace shvr::ui {
 
 namespace {
 
-/// The point that the view turns about: the middle of what is shown.
-glm::dvec3 pivot_of(const Document& document)
+/// The first of "view 1", "view 2", ... that is free.
+std::string free_camera_name(const Session& session)
 {
-    return document.camera.target;
+    for (int number = 1;; ++number)
+        if (std::string name = sentence("view ", number); !session.cameras.contains(name)) return name;
 }
 
 /// The height of the view at the target's depth.
@@ -30,9 +31,31 @@ void Workbench::look_from(const Camera& camera)
     note_to_keep();
 }
 
+/// The point that the view turns about.
+glm::dvec3 Workbench::pivot() const
+{
+    switch (document_->session.interaction.pivot) {
+        case Pivot::target: break;
+        case Pivot::probe: return document_->touch.probe();
+        case Pivot::picked: return document_->picked_pivot.value_or(document_->camera.target);
+    }
+    return document_->camera.target;
+}
+
+void Workbench::act(const PivotAt& action)
+{
+    const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
+    if (!point) fail("nothing is seen there; expected something to turn about");
+    document_->picked_pivot = point;
+    Session after = document_->session;
+    after.interaction.pivot = Pivot::picked;
+    take_session(std::move(after));
+    say("The view turns about the place with the small cross");
+}
+
 void Workbench::act(const Orbit& action)
 {
-    look_from(orbited(document_->camera, pivot_of(*document_), action.right_degrees, action.up_degrees));
+    look_from(orbited(document_->camera, pivot(), action.right_degrees, action.up_degrees));
 }
 
 void Workbench::act(const Roll& action)
@@ -77,9 +100,10 @@ void Workbench::act(const LookFrom& action)
 
 void Workbench::act(const KeepCamera& action)
 {
-    document_->session.cameras[action.name] = document_->camera;
+    const std::string name = action.name.empty() ? free_camera_name(document_->session) : action.name;
+    document_->session.cameras[name] = document_->camera;
     note_edit();
-    say("This view is kept as " + action.name);
+    say("This view is kept as " + name);
 }
 
 void Workbench::act(const ForgetCamera& action)
@@ -89,6 +113,21 @@ void Workbench::act(const ForgetCamera& action)
     if (document_->session.camera_name == action.name) document_->session.camera_name.clear();
     note_edit();
     say("The view " + action.name + " is no longer kept");
+}
+
+void Workbench::act(const RenameCamera& action)
+{
+    std::map<std::string, CameraSpec>& cameras = document_->session.cameras;
+    if (!cameras.contains(action.name))
+        fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
+    if (action.to.empty() || cameras.contains(action.to))
+        fail("'", action.to, "' is no free name for a view; expected one that no view has");
+    auto renamed = cameras.extract(action.name);
+    renamed.key() = action.to;
+    cameras.insert(std::move(renamed));
+    if (document_->session.camera_name == action.name) document_->session.camera_name = action.to;
+    note_edit();
+    say("The view " + action.name + " is now called " + action.to);
 }
 
 void Workbench::act(const MoveCut& action)

@@ -3,35 +3,90 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/workbench/sight/words.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
 
+namespace {
+
+double depth_of(const Camera& camera, const glm::dvec3& point)
+{
+    return glm::dot(point - camera.eye, axes_of(camera).forward);
+}
+
+/// At the depth of the probe, or just before the eye.
+glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dvec2& pixel)
+{
+    const Camera& camera = seen.shot.camera;
+    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
+    return unproject(camera, seen.pixels(), pixel, std::max(depth_of(camera, probe), shallowest));
+}
+
+}  // namespace
+
+/// A stroke that is open paints nothing on the way to where the hand is next.
+void Workbench::lift()
+{
+    if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();
+}
+
 void Workbench::act(const ProbeTo& action)
 {
-    const Pane& seen = pane(action.pane);
+    if (action.jumps) lift();
+    move_probe(in_plane_of(document_->touch.probe(), pane(action.pane), action.pixel), false);
+}
+
+std::optional<glm::dvec3> Workbench::seen_at(const Pane& seen, const glm::dvec2& pixel) const
+{
+    const glm::uvec2 pixels = seen.pixels();
     const Camera& camera = seen.shot.camera;
-    const double depth = glm::dot(document_->touch.probe() - camera.eye, axes_of(camera).forward);
-    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
-    move_probe(unproject(camera, seen.pixels(), action.pixel, std::max(depth, shallowest)), false);
+    if (seen.shot.is_slice) return unproject(camera, pixels, pixel, 0.5 * (camera.near_distance + camera.far_distance));
+    const glm::uvec2 at = glm::uvec2(glm::clamp(pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+    const auto found = renderer_.pick(document_->session.look(), camera, pixels, at, document_->probe_look());
+    return found ? std::optional(found->point) : std::nullopt;
+}
+
+std::optional<glm::dvec3> Workbench::seen_near(const Pane& seen, const glm::dvec2& pixel, double depth,
+                                               double reach) const
+{
+    if (seen.shot.is_slice) return seen_at(seen, pixel);
+    Pane between = seen;
+    Camera& camera = between.shot.camera;
+    camera.near_distance = std::max(camera.near_distance, depth - reach);
+    camera.far_distance = camera.far_distance > 0.0 ? std::min(camera.far_distance, depth + reach) : depth + reach;
+    if (camera.far_distance <= camera.near_distance) return std::nullopt;
+    return seen_at(between, pixel);
 }
 
 void Workbench::act(const ProbeOnto& action)
 {
     const Pane& seen = pane(action.pane);
-    const glm::uvec2 pixels = seen.pixels();
-    std::optional<glm::dvec3> point;
-    if (seen.shot.is_slice) {
-        const Camera& camera = seen.shot.camera;
-        point = unproject(camera, pixels, action.pixel, 0.5 * (camera.near_distance + camera.far_distance));
-    } else {
-        const glm::uvec2 pixel = glm::uvec2(glm::clamp(action.pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
-        point = renderer_.pick(document_->session.look(), seen.shot.camera, pixels, pixel, document_->probe_look());
-    }
-    if (!point) return say("Nothing opaque enough there: the probe stays where it is");
+    const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
+    if (!point) return say("Nothing is seen there: the probe stays where it is");
     move_probe(*point, true);
-    const glm::dvec3 voxel = document_->probe_voxel();
-    say(sentence("Probe at voxel ", std::floor(voxel.x), ", ", std::floor(voxel.y), ", ", std::floor(voxel.z)));
+    const Document& document = *document_;
+    std::string said = "Probe at " + place_in_words(document.probe_voxel(), document.volume());
+    if (!seen.shot.is_slice)
+        said += sentence(", ",
+                         length_in_words(depth_below_surface(seen.shot.camera, document.session.cut, document.volume(),
+                                                             document.touch.probe()),
+                                         document.volume().unit),
+                         " deep");
+    say(std::move(said));
+}
+
+void Workbench::act(const ProbeAlong& action)
+{
+    if (action.jumps) lift();
+    const Pane& seen = pane(action.pane);
+    const glm::dvec3 probe = document_->touch.probe(), level = in_plane_of(probe, seen, action.pixel);
+    const bool is_stroke = document_->annotator.stroke_is_open() && !action.jumps;
+    const std::optional<glm::dvec3> point = is_stroke
+                                                ? seen_near(seen, action.pixel, depth_of(seen.shot.camera, level),
+                                                            document_->probe_radius() + glm::distance(level, probe))
+                                                : seen_at(seen, action.pixel);
+    move_probe(point.value_or(level), false);
 }
 
 void Workbench::act(const PushProbe& action)
@@ -117,7 +172,7 @@ void Workbench::stroke_ended()
 void Workbench::follow_preview()
 {
     Document& document = *document_;
-    const bool is_wanted = document.session.probe.preview && document.session.probe.tool == Tool::paint &&
+    const bool is_wanted = document.session.probe.preview && document.session.probe.tool != Tool::trace &&
                            !document.annotator.stroke_is_running();
     document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
     try {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/session/session_patch.h"
+#include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -44,9 +45,7 @@ std::string special_sentence(const Session& was, const Session& is)
     if (was.view.arrangement != is.view.arrangement) return sentence_about(is.view);
     if (before.brush.group != after.brush.group) return sentence_about_group(is);
     if (before.brush.brush != after.brush.brush) return sentence("Brush: ", row_of(after.brush.brush).name);
-    if (before.tool != after.tool)
-        return after.tool == Tool::paint ? "Painting: hold the right mouse button or F"
-                                         : "Tracing: the right mouse button or N adds a node at the probe";
+    if (before.tool != after.tool) return sentence_of(after.tool);
     if (before.guided != after.guided)
         return after.guided ? "Guidance on: the probe is pulled to what is at or above the haptic threshold"
                             : "Guidance off";

@@ -1,5 +1,10 @@
 // Actions on the trace: the operations that scripts use, as commands of the one history.
 
+#include <algorithm>
+
+#include "engine/annotation/trace/trace_segments.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/sight/hits.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -27,10 +32,29 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
     return "Trace: " + done->label;
 }
 
+/// The neighbours of the selected node, if it has two: then deleting it cuts the trace.
+std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
+{
+    const std::optional<uint32_t> node = trace.selection().node();
+    if (!node || trace.internodes_of(*node).size() != 2) return std::nullopt;
+    const auto internodes = trace.internodes_of(*node);
+    return std::pair(trace.internode(internodes[0]).other(*node), trace.internode(internodes[1]).other(*node));
+}
+
 }  // namespace
 
-void Workbench::trace(const TraceOp& op)
+/// New nodes are as wide as what they lie in, if that is wanted and can be told.
+TraceOp Workbench::with_radius(TraceOp op) const
 {
+    NodeOp* const node = std::get_if<NodeOp>(&op);
+    if (node && !node->radius_voxels && document_->session.probe.measured_radius)
+        node->radius_voxels = document_->measured_radius(node->at);
+    return op;
+}
+
+void Workbench::trace(const TraceOp& asked)
+{
+    const TraceOp op = with_radius(asked);
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) fail("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
@@ -39,12 +63,115 @@ void Workbench::trace(const TraceOp& op)
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
         fail("Group 0 is the eraser, and what is traced belongs to a group from 1 up");
     record_settings();
+    const auto cut = std::holds_alternative<DeleteOp>(op) ? ends_of_cut(trace) : std::nullopt;
     TraceEffect effect = effect_of(op, trace, document_->trace_defaults());
     if (effect.selection) annotator.work().select_trace(*effect.selection);
     const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
     document_->drags_node = false;
     if (done) show_changes(*done);
+    if (cut && done) return note_cut(cut);
     say(said_of(op, effect.selection.has_value(), done, trace));
+}
+
+/// Tracing goes on from one of the ends.
+void Workbench::note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends)
+{
+    document_->cut_ends = ends;
+    document_->annotator.work().select_trace({{ends->first}, {}});
+    const std::string keys = keys_of("mend_cut");
+    say(sentence("Deleted; the trace is cut between node ", ends->first, ", which is selected, and node ", ends->second,
+                 keys.empty() ? "; Trace > Mend the cut links them" : "; " + keys + " links them"));
+}
+
+std::string Workbench::keys_of(const char* shortcut) const
+{
+    const Shortcut* const found = shortcut_named(shortcut);
+    SHVR_CHECK(found, shortcut);
+    return keymap_.text_of(*found);
+}
+
+void Workbench::act(const MendCut&)
+{
+    if (!document_->is_cut()) fail("the last deletion cut nothing in two; expected two nodes to link again");
+    const auto [from, to] = *document_->cut_ends;
+    document_->annotator.work().select_trace({{from}, {}});
+    trace(LinkOp{.near = {}, .node = to});
+    document_->cut_ends.reset();
+}
+
+void Workbench::act(const NodeAt& action)
+{
+    const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
+    if (!point) fail("nothing is seen there; expected a place for the node on what is seen");
+    const glm::dvec3 voxel = *point / document_->volume().spacing;
+    trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
+    move_probe(*point, false);
+}
+
+void Workbench::act(const SelectAt& action)
+{
+    Document& document = *document_;
+    if (document.annotator.stroke_is_running()) fail("Nothing can be selected while a stroke is being painted");
+    const Pane& seen = pane(action.pane);
+    const TraceGraph& trace = document.annotator.document().trace;
+    const TraceHit hit = trace_hit(trace, seen, action.pixel, document.volume());
+    if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {
+        this->trace(SelectOp{
+            .near = {}, .number = hit.node ? hit.node : hit.internode, .is_internode = !hit.node, .within_voxels = {}});
+        if (action.whole_segment) this->trace(SelectSegmentOp{});
+        return;
+    }
+    const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
+    const glm::dvec3 voxel = point ? *point / document.volume().spacing : glm::dvec3(-1.0);
+    const bool is_inside = glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) &&
+                           glm::all(glm::lessThan(voxel, glm::dvec3(document.volume().size)));
+    const uint8_t group = is_inside ? document.annotator.document().mask.at(Size3(glm::floor(voxel))) : uint8_t(0);
+    if (group == 0) return;
+    if (group == document.brush().group) return say(sentence("Group ", int(group), " is the active group already"));
+    act(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
+}
+
+/// By what is drawn of the volume before it: rods of the trace itself hide nothing.
+bool Workbench::is_hidden(const Pane& seen, const glm::dvec2& pixel, const TraceHit& hit) const
+{
+    constexpr double OPAQUE_ENOUGH = 0.9, APART_VOXELS = 2.0;
+    if (seen.shot.is_slice) return false;
+    const glm::dvec3& spacing = document_->volume().spacing;
+    const double apart = hit.radius + APART_VOXELS * std::max({spacing.x, spacing.y, spacing.z});
+    Camera camera = seen.shot.camera;
+    camera.far_distance = hit.depth - apart;
+    if (camera.far_distance <= camera.near_distance) return false;
+    const glm::uvec2 at = glm::uvec2(glm::clamp(pixel, glm::dvec2(0.0), glm::dvec2(seen.pixels() - 1u)));
+    const auto before = renderer_.pick(document_->session.look(), camera, seen.pixels(), at, document_->probe_look());
+    if (!before || before->opacity < OPAQUE_ENOUGH) return false;
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const auto is_of_trace = [&](uint32_t number) {
+        const TraceInternode& internode = trace.internode(number);
+        return distance_to(trace, internode, before->point) < trace.radius_of(internode, 0.5) + apart;
+    };
+    return hit.node ? std::ranges::none_of(trace.internodes_of(*hit.node), is_of_trace) : !is_of_trace(*hit.internode);
+}
+
+void Workbench::act(const StepNode& action)
+{
+    Document& document = *document_;
+    const TraceGraph& trace = document.annotator.document().trace;
+    if (trace.nodes().empty()) fail("there is no node; expected one to look at");
+    const std::optional<uint32_t> selected = trace.selection().node();
+    auto at = selected ? trace.nodes().find(*selected) : trace.nodes().end();
+    if (action.back) {
+        at = std::prev(at == trace.nodes().begin() ? trace.nodes().end() : at);
+    } else {
+        if (at != trace.nodes().end()) ++at;
+        if (at == trace.nodes().end()) at = trace.nodes().begin();
+    }
+    const glm::dvec3 position = at->second.position;
+    this->trace(SelectOp{.near = {}, .number = at->first, .within_voxels = {}});
+    Camera camera = document.camera;
+    camera.eye += position - camera.target;
+    camera.target = position;
+    look_from(camera);
+    move_probe(position, true);
 }
 
 void Workbench::act(const DragNode& action)

@@ -69,9 +69,9 @@ TEST_CASE_FIXTURE(LongRays, "what lies far along a ray is seen, picked and hidde
             session.render.step_voxels = 0.01;
             session.render.skip_empty_space = skipping;
             CHECK(worst_difference(pixels_of(draw(session, camera)), Pixels(4, glm::dvec4(RED, 1.0))) < 1e-6);
-            const std::optional<glm::dvec3> picked = renderer().pick(session.look(), camera, {2, 2}, {0, 0});
-            REQUIRE(picked.has_value());
-            CHECK(std::abs(picked->x - 900.0) < 0.02);
+            const auto seen = renderer().pick(session.look(), camera, {2, 2}, {0, 0});
+            REQUIRE(seen.has_value());
+            CHECK(std::abs(seen->point.x - 900.0) < 0.02);
         }
 }
 

@@ -64,15 +64,93 @@ TEST_CASE_FIXTURE(OnDevice, "the probe hides what is behind it, and nothing else
     }
 }
 
-TEST_CASE_FIXTURE(OnDevice, "a pixel is picked where its ray becomes half opaque")
+TEST_CASE_FIXTURE(OnDevice, "what is seen at a pixel is where its ray's opacity rises most")
 {
     const TestVolume ramp =
         volume_of({40, 40, 40}, [](const glm::dvec3& voxel) { return voxel.y < 20.0 ? 1000.0 : 50000.0; });
     load(ramp);
     const Session session = plain_session({{20000.0, RED, 1.0}, {65535.0, RED, 1.0}}, {65, 65});
     const Camera camera = camera_looking("front", volume().info());
-    const std::optional<glm::dvec3> hit = renderer().pick(session.look(), camera, {65, 65}, {32, 32});
-    REQUIRE(hit.has_value());
-    CHECK(glm::distance(*hit, glm::dvec3(20.0, 19.9, 20.0)) < 0.6);  // the step is half a voxel
+    const auto seen = renderer().pick(session.look(), camera, {65, 65}, {32, 32});
+    REQUIRE(seen.has_value());
+    CHECK(glm::distance(seen->point, glm::dvec3(20.0, 19.9, 20.0)) < 0.6);  // the step is half a voxel
     CHECK(!renderer().pick(session.look(), camera, {65, 65}, {0, 0}).has_value());
+}
+
+namespace {
+
+/// Along y: haze, a thin bright sheet at 6, and a translucent block from 14 to 34, dimmer than the sheet.
+TestVolume sheet_before_block()
+{
+    return volume_of({40, 40, 40}, [](const glm::dvec3& voxel) {
+        const double y = std::floor(voxel.y);
+        return y == 6.0 ? 30000.0 : y >= 14.0 && y < 34.0 ? 20000.0 : 5000.0;
+    });
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "the probe lands on what adds most to a ray, in translucent volumes too")
+{
+    load(sheet_before_block());
+    const Camera camera = camera_along(volume(), {0, 1, 0}, 8.0);
+    // Haze adds nothing that is seen; the sheet at most 0.12; the block of 20 voxels 0.87, and half of that never.
+    const auto ends = [&](double haze, double sheet, double block) {
+        return plain_session({{4000.0, RED, haze},
+                              {6000.0, RED, haze},
+                              {19000.0, RED, block},
+                              {21000.0, RED, block},
+                              {29000.0, RED, sheet},
+                              {65535.0, RED, sheet}},
+                             {1, 1});
+    };
+    const auto seen = [&](const Session& session, const Camera& from) {
+        return renderer().pick(session.look(), from, {1, 1}, {0, 0});
+    };
+    Session session = ends(0.0, 0.12, 0.1);
+    REQUIRE(seen(session, camera).has_value());
+    CHECK(std::abs(seen(session, camera)->point.y - 14.0) < 1.0);  // the block, though the sheet is steeper
+    CHECK(seen(session, camera)->opacity > 0.85);
+    session = ends(0.0, 0.7, 0.02);  // the sheet, though the block is longer
+    CHECK(std::abs(seen(session, camera)->point.y - 6.5) < 1.0);
+    session = ends(0.0, 0.0, 0.0);
+    CHECK(!seen(session, camera).has_value());
+    session = ends(0.0002, 0.0, 0.0);  // 0.8 % in all
+    CHECK(!seen(session, camera).has_value());
+
+    // It agrees with what is drawn: cuts, clip planes, offsets of depth from the camera.
+    session = ends(0.0, 0.12, 0.1);
+    session.cut.lower.y = 20.0;
+    CHECK(std::abs(seen(session, camera)->point.y - 20.0) < 0.6);
+    session.cut = {};
+    session.cut.upper.y = 13.0;
+    CHECK(std::abs(seen(session, camera)->point.y - 6.5) < 1.0);
+    session.cut = {};
+    Camera clipped = camera;
+    clipped.near_distance = 25.0 - camera.eye.y;  // along y, from the eye
+    CHECK(std::abs(seen(session, clipped)->point.y - 25.0) < 0.6);
+    clipped = camera;
+    clipped.far_distance = 10.0 - camera.eye.y;
+    CHECK(std::abs(seen(session, clipped)->point.y - 6.5) < 1.0);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "the probe lands on painted groups where they are shown, and on none that is hidden")
+{
+    load(sheet_before_block());
+    const Camera camera = camera_along(volume(), {0, 1, 0}, 8.0);
+    Session session = plain_session({{40000.0, RED, 0.0}, {65535.0, RED, 0.0}}, {1, 1});
+    Annotator annotator(renderer());
+    static_cast<void>(annotator.paint({.brush = Brush::fill,
+                                       .region = RegionShape::box,
+                                       .group = 2,
+                                       .threshold = 0.0,
+                                       .radius_voxels = 3.0,
+                                       .path = {{20.0, 24.0, 20.0}}}));
+    renderer().scene().advance();
+    session.groups[2] = {.name = "two", .color = GREEN, .opacity = 0.3};
+    const auto seen = renderer().pick(session.look(), camera, {1, 1}, {0, 0});
+    REQUIRE(seen.has_value());
+    CHECK(std::abs(seen->point.y - 21.0) < 0.8);
+    session.groups[2].visible = false;
+    CHECK(!renderer().pick(session.look(), camera, {1, 1}, {0, 0}).has_value());
 }

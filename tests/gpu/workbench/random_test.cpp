@@ -23,7 +23,7 @@ public:
     /// Paints, traces, sets, looks, undoes and saves, about as often as a person who explores the program would.
     Action next()
     {
-        switch (whole(0, 24)) {
+        switch (whole(0, 29)) {
             case 0: return Orbit{real(-40, 40), real(-20, 20)};
             case 1: return Zoom{0, {real(0, 48), real(0, 40)}, real(0.8, 1.3)};
             case 2: return LookFrom{std::vector<std::string>{"front", "top", "left", "nowhere"}[size_t(whole(0, 3))]};
@@ -34,7 +34,7 @@ public:
             case 7: return set("blend.size", digits(real(0, 1)));
             case 8:
                 return set("probe.brush", std::vector<std::string>{"fill", "flood", "speckle"}[size_t(whole(0, 2))]);
-            case 9: return set("probe.tool", whole(0, 1) == 0 ? "paint" : "trace");
+            case 9: return set("probe.tool", std::string(TOOLS[size_t(whole(0, int(std::size(TOOLS)) - 1))].name));
             case 10: return set("probe.group", sentence(whole(0, 6)));
             case 11: return set("probe.preview", whole(0, 1) == 0 ? "true" : "false");
             case 12: return ScaleProbe{real(0.7, 1.4)};
@@ -49,6 +49,11 @@ public:
             case 21: return UndoOp{int(whole(1, 4))};
             case 22: return RedoOp{int(whole(1, 3))};
             case 23: return whole(0, 9) == 0 ? Action(SaveOp{}) : Action(DeselectOp{});
+            case 24: return ProbeAlong{0, {real(0, 48), real(0, 40)}, whole(0, 4) == 0};
+            case 25: return NodeAt{0, {real(0, 48), real(0, 40)}};
+            case 26: return SelectAt{0, {real(0, 48), real(0, 40)}, whole(0, 1) == 0};
+            case 27: return whole(0, 1) == 0 ? Action(MendCut{}) : Action(StepNode{whole(0, 1) == 0});
+            case 28: return whole(0, 3) == 0 ? Action(ClearMeasurements{}) : Action(MeasureAt{0, {real(0, 48), 20.0}});
             default: return KeepCamera{sentence("view ", whole(1, 3))};
         }
     }

@@ -165,7 +165,7 @@ TEST_CASE("the thesis's set has the keys of its appendix C, and today's set thos
     means("Ctrl+Shift+Z", "redo");
     means("F1", "help");
     means("F11", "full_screen");
-    CHECK(modern.shortcuts_for(*chord_of("Ctrl+C")).empty());
+    means("Ctrl+C", "copy_measurements");
     CHECK(modern.shortcuts_for(*chord_of("Ctrl+V")).empty());
 }
 
@@ -338,7 +338,7 @@ TEST_CASE("keys of tracing become the operations that scripts have")
     trace_three(world);
     const NodeOp node = only<NodeOp>(actions_of(world, 'N', 0));
     CHECK(node.at == glm::dvec3(29, 10, 10));
-    CHECK(node.radius_voxels == 4.0);
+    CHECK(!node.radius_voxels.has_value());  // nodes have a radius of their own, not the brush's
     CHECK(node.group == uint8_t(2));
     const LinkOp link = only<LinkOp>(actions_of(world, ',', 0));
     CHECK(link.near == glm::dvec3(29, 10, 10));
@@ -384,12 +384,28 @@ TEST_CASE("equals and minus change what is selected, or the internodes of the gr
     CHECK(nodes.group == 2);
 }
 
-TEST_CASE("X changes between painting and tracing")
+TEST_CASE("X changes between tracing and turning, Alt and a digit take each tool")
 {
     World world;
     CHECK((after(world, 'X').probe.tool == Tool::trace));
     world.session.probe.tool = Tool::trace;
-    CHECK((after(world, 'X').probe.tool == Tool::paint));
+    CHECK((after(world, 'X').probe.tool == Tool::turn));
+    world.session.probe.tool = Tool::measure;
+    int number = 0;
+    for (const Tool tool : {Tool::turn, Tool::paint, Tool::erase, Tool::trace, Tool::select})
+        CHECK((after(world, '1' + number++, ALT).probe.tool == tool));
+    world.session.probe.tool = Tool::turn;
+    CHECK((after(world, '6', ALT).probe.tool == Tool::measure));
+}
+
+TEST_CASE("The tool that erases paints with group 0 and leaves the active group as it is")
+{
+    ProbeSettings probe;
+    probe.brush.group = 7;
+    CHECK(probe.painted_group() == 7);
+    probe.tool = Tool::erase;
+    CHECK(probe.painted_group() == 0);
+    CHECK(probe.brush.group == 7);
 }
 
 TEST_CASE("cutting planes move inwards, and outwards with Alt")

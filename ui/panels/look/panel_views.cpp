@@ -1,6 +1,7 @@
 // The window's panes and their settings.
 
 #include <algorithm>
+#include <cmath>
 
 #include <imgui/imgui.h>
 
@@ -33,9 +34,24 @@ bool stereo_controls(StereoSettings& stereo)
     return is_other;
 }
 
-bool slice_controls(SliceSettings& slices, const VolumeStatistics& statistics)
+/// Which slices are shown: the probe's place, one number for each axis, counted from 1.
+void slice_sliders(const Model& model, Actions& actions)
 {
-    const auto [lower, upper] = statistics.range();
+    for (int axis = 2; axis >= 0; --axis) {
+        const double last = double(model.volume.size[axis]);
+        double slice = std::clamp(std::floor(model.probe_voxel[axis]) + 1.0, 1.0, last);
+        const char* const names[] = {"Slice x", "Slice y", "Slice z"};
+        if (!slider(names[axis], slice, 1.0, last, "%.0f")) continue;
+        glm::dvec3 voxel = model.probe_voxel;
+        voxel[axis] = std::floor(slice + 0.5) - 0.5;
+        actions.push_back(PlaceProbe{voxel});
+    }
+}
+
+bool slice_controls(SliceSettings& slices, const Model& model, Actions& actions)
+{
+    slice_sliders(model, actions);
+    const auto [lower, upper] = model.statistics.range();
     double black = slices.black.value_or(lower), white = slices.white.value_or(upper);
     const double step = 1e-6 * (upper - lower);
     bool is_other = false;
@@ -49,6 +65,8 @@ bool slice_controls(SliceSettings& slices, const VolumeStatistics& statistics)
         is_other = true;
     }
     hint("Intensities from here on are white.");
+    if (ImGui::Button("Automatic contrast")) actions.push_back(AutoContrast{});
+    hint("Black and white so that almost all voxels lie between them. In a slice: Ctrl + drag.");
     is_other |= slider("Paint", slices.paint_share, 0.0, 1.0, "%.2f");
     hint("How strongly painted voxels take their group's colour.");
     is_other |= slider("Enlarged", slices.zoom, 1.0, 50.0, "%.1f times", ImGuiSliderFlags_Logarithmic);
@@ -89,7 +107,7 @@ void views_panel(const Model& model, Actions& actions)
             is_other |= slider("Map scale", view.overview_zoom, 0.1, 10.0, "%.2f", ImGuiSliderFlags_Logarithmic);
             hint("Below 1 the maps show more of the surroundings.");
             break;
-        case Arrangement::slices: is_other |= slice_controls(view.slices, model.statistics); break;
+        case Arrangement::slices: is_other |= slice_controls(view.slices, model, actions); break;
     }
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
     ImGui::Separator();

@@ -34,6 +34,44 @@ Action choose(const Model& model, double)
     return edited(model.session, [](Session& s) { s.probe.brush.group = GROUP; });
 }
 
+/// What has no place of its own takes that of the pointer; without one, the middle of the first pane.
+template <class Kind>
+Action at_pointer(const Model& model, double)
+{
+    Kind action;
+    if (model.pointer) {
+        action.pane = model.pointer->pane;
+        action.pixel = model.pointer->pixel;
+    } else if (!model.panes.empty()) {
+        action.pixel = 0.5 * glm::dvec2(model.panes[0].pane.pixels());
+    }
+    return action;
+}
+
+/// The views that a person has kept, in the order of their names: not the one that the window keeps for itself.
+template <size_t NUMBER>
+Action look_from_kept(const Model& model, double)
+{
+    size_t number = 0;
+    for (const auto& [name, camera] : model.session.cameras)
+        if (name != "window" && ++number == NUMBER) return LookFrom{name};
+    return LookFrom{sentence("number ", NUMBER)};
+}
+
+Action next_pivot(const Model& model, double)
+{
+    return edited(model.session, [&](Session& s) {
+        Pivot& pivot = s.interaction.pivot;
+        pivot = pivot == Pivot::target ? Pivot::probe : Pivot::target;
+    });
+}
+
+template <bool InteractionSettings::*FLAG>
+Action toggle_drawn(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.interaction.*FLAG = !(s.interaction.*FLAG); });
+}
+
 Action next_brush(const Model& model, double)
 {
     return edited(model.session, [](Session& s) {
@@ -67,10 +105,16 @@ Action next_guidance(const Model& model, double)
     });
 }
 
-Action next_tool(const Model& model, double)
+template <Tool TOOL>
+Action take(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.tool = TOOL; });
+}
+
+Action trace_or_turn(const Model& model, double)
 {
     return edited(model.session,
-                  [](Session& s) { s.probe.tool = s.probe.tool == Tool::paint ? Tool::trace : Tool::paint; });
+                  [](Session& s) { s.probe.tool = s.probe.tool == Tool::trace ? Tool::turn : Tool::trace; });
 }
 
 template <int RIGHT, int UP, int FORWARD>
@@ -142,9 +186,10 @@ Action begin_and_end(const Model&, double amount)
 // ---- The table ------------------------------------------------------------------------------------------------------
 
 using Mode = Shortcut::Mode;
-constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *PAINTING_KEYS = "Painting", *TRACING_KEYS = "Tracing",
-                     *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view", *MOVE_KEYS = "Move the view",
-                     *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes", *BLEND_KEYS = "Distance blending";
+constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *TOOL_KEYS = "Tools", *PAINTING_KEYS = "Painting",
+                     *TRACING_KEYS = "Tracing", *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view",
+                     *MOVE_KEYS = "Move the view", *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes",
+                     *BLEND_KEYS = "Distance blending";
 
 /// By one key in both sets.
 constexpr Shortcut both(const char* id, const char* group, const char* name, Mode mode,
@@ -194,6 +239,35 @@ constexpr Shortcut SHORTCUTS[] = {
      [](const Model& model, double) -> Action { return ShowFullScreen{!model.is_full_screen}; },
      {"F11", "Alt+Enter"}},
 
+    both(
+        "keep_view", VIEWS_KEYS, "Keep this view", Mode::tap,
+        [](const Model&, double) -> Action { return KeepCamera{}; }, "Ctrl+B"),
+    {"kept_view_1", VIEWS_KEYS, "Kept view 1", Mode::tap, look_from_kept<1>, {"Shift+1", ""}},
+    {"kept_view_2", VIEWS_KEYS, "Kept view 2", Mode::tap, look_from_kept<2>, {"Shift+2", ""}},
+    {"kept_view_3", VIEWS_KEYS, "Kept view 3", Mode::tap, look_from_kept<3>, {"Shift+3", ""}},
+    {"kept_view_4", VIEWS_KEYS, "Kept view 4", Mode::tap, look_from_kept<4>, {"Shift+4", ""}},
+    {"kept_view_5", VIEWS_KEYS, "Kept view 5", Mode::tap, look_from_kept<5>, {"Shift+5", ""}},
+    {"kept_view_6", VIEWS_KEYS, "Kept view 6", Mode::tap, look_from_kept<6>, {"Shift+6", ""}},
+    {"kept_view_7", VIEWS_KEYS, "Kept view 7", Mode::tap, look_from_kept<7>, {"Shift+7", ""}},
+    {"kept_view_8", VIEWS_KEYS, "Kept view 8", Mode::tap, look_from_kept<8>, {"Shift+8", ""}},
+    {"kept_view_9", VIEWS_KEYS, "Kept view 9", Mode::tap, look_from_kept<9>, {"Shift+9", ""}},
+    both("pivot_at_pointer", VIEWS_KEYS, "Turn about what is under the pointer", Mode::tap, at_pointer<PivotAt>, "O"),
+    both("pivot_at_probe", VIEWS_KEYS, "Turn about the probe, or the middle", Mode::tap, next_pivot, "Shift+O"),
+    both("scale_bar", VIEWS_KEYS, "Scale bar", Mode::tap, toggle_drawn<&InteractionSettings::scale_bar>, ""),
+    both("axes", VIEWS_KEYS, "Axes", Mode::tap, toggle_drawn<&InteractionSettings::axes>, ""),
+    both("probe_label", VIEWS_KEYS, "Depth and filling at the probe", Mode::tap,
+         toggle_drawn<&InteractionSettings::probe_label>, ""),
+    both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
+    {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
+    both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, "Escape"),
+
+    both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
+    both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),
+    both("tool_erase", TOOL_KEYS, "Erase with the mouse", Mode::tap, take<Tool::erase>, "Alt+3"),
+    both("tool_trace", TOOL_KEYS, "Trace with the mouse", Mode::tap, take<Tool::trace>, "Alt+4"),
+    both("tool_select", TOOL_KEYS, "Select with the mouse", Mode::tap, take<Tool::select>, "Alt+5"),
+    both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
+
     both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
     both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
     both("eraser", PAINTING_KEYS, "Eraser", Mode::tap, choose<0>, "0"),
@@ -210,7 +284,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
     both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
 
-    both("next_tool", TRACING_KEYS, "Paint or trace", Mode::tap, next_tool, "X"),
+    both("next_tool", TRACING_KEYS, "Trace, or back to turning", Mode::tap, trace_or_turn, "X"),
     both(
         "add_node", TRACING_KEYS, "Add a node, linked with the selected one", Mode::tap,
         [](const Model& model, double) -> Action { return node_at_probe(model); }, "N"),
@@ -224,6 +298,15 @@ constexpr Shortcut SHORTCUTS[] = {
         [](const Model& model, double) -> Action { return nearest_selection(model); }, "."),
     both("select_segment", TRACING_KEYS, "Select the whole segment", Mode::tap, plain<SelectSegmentOp>, "Shift+."),
     both("deselect", TRACING_KEYS, "Deselect", Mode::tap, plain<DeselectOp>, "/"),
+    both(
+        "next_node", TRACING_KEYS, "Look at the next node", Mode::tap,
+        [](const Model&, double) -> Action { return StepNode{false}; }, "G"),
+    both(
+        "previous_node", TRACING_KEYS, "Look at the node before", Mode::tap,
+        [](const Model&, double) -> Action { return StepNode{true}; }, "Shift+G"),
+    both("mend_cut", TRACING_KEYS, "Mend the cut", Mode::tap, plain<MendCut>, "Shift+Delete"),
+    both("measured_radius", TRACING_KEYS, "New nodes as wide as what they lie in", Mode::tap,
+         toggle<&ProbeSettings::measured_radius>, ""),
     both("delete_selected", TRACING_KEYS, "Delete what is selected", Mode::tap, plain<DeleteOp>, "Delete"),
     both("larger_selected", TRACING_KEYS, "Larger selected nodes, or internodes of the group", Mode::step,
          scale_selected<1>, "="),
@@ -243,6 +326,8 @@ constexpr Shortcut SHORTCUTS[] = {
     both("regroup_9", TRACING_KEYS, "Selected to group 9", Mode::tap, regroup<9>, "Ctrl+9"),
 
     both("guide", PROBE_KEYS, "Guide the probe", Mode::tap, toggle<&ProbeSettings::guided>, "Space"),
+    both("probe_onto", PROBE_KEYS, "Put the probe onto what is under the pointer", Mode::tap, at_pointer<ProbeOnto>,
+         "L"),
     both("shell", PROBE_KEYS, "Iso-surface around the probe", Mode::tap, toggle<&ProbeSettings::shell>, "F4"),
     both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Home"),
     both("larger_probe", PROBE_KEYS, "Larger probe", Mode::hold, scale_probe<1>, "PageUp"),

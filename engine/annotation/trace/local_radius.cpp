@@ -1,0 +1,123 @@
+#include "engine/annotation/trace/local_radius.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace shvr {
+
+namespace {
+
+constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
+
+/// Evenly spread over the sphere: a Fibonacci lattice.
+const std::array<glm::dvec3, DIRECTIONS>& directions()
+{
+    static const std::array<glm::dvec3, DIRECTIONS> ALL = [] {
+        std::array<glm::dvec3, DIRECTIONS> all;
+        const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+        for (size_t i = 0; i < DIRECTIONS; ++i) {
+            const double z = 1.0 - (2.0 * double(i) + 1.0) / double(DIRECTIONS), ring = std::sqrt(1.0 - z * z);
+            all[i] = {ring * std::cos(golden * double(i)), ring * std::sin(golden * double(i)), z};
+        }
+        return all;
+    }();
+    return ALL;
+}
+
+class Structure {
+public:
+    Structure(const DensityAt& density_at, double threshold, const glm::dvec3& spacing, double most)
+        : density_at_(density_at),
+          threshold_(threshold),
+          spacing_(spacing),
+          most_(most),
+          step_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
+    {}
+
+    /// How far it is from a point to the nearest place outside; at most `most`, and 0 outside.
+    double depth_of(const glm::dvec3& point) const
+    {
+        if (density(point) < threshold_) return 0.0;
+        double nearest = most_;
+        for (const glm::dvec3& direction : directions())
+            nearest = std::min(nearest, way_out(point, direction, nearest));
+        return nearest;
+    }
+    double finest() const { return 2.0 * step_; }
+
+private:
+    double density(const glm::dvec3& point) const { return density_at_(point / spacing_); }
+    double way_out(const glm::dvec3& point, const glm::dvec3& direction, double most) const
+    {
+        double before = density(point);
+        for (double way = step_; way < most + step_; way += step_) {
+            const double here = density(point + way * direction);
+            if (here < threshold_) return way - step_ * (threshold_ - here) / std::max(before - here, 1e-300);
+            before = here;
+        }
+        return most;
+    }
+
+    const DensityAt& density_at_;
+    double threshold_;
+    glm::dvec3 spacing_;
+    double most_, step_;
+};
+
+}  // namespace
+
+std::optional<double> local_radius(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
+                                   const glm::dvec3& spacing, double most)
+{
+    const Structure structure(density_at, threshold, spacing, most);
+    const glm::dvec3 point = voxel * spacing;
+    glm::dvec3 center = point;
+    double radius = structure.depth_of(center);
+    if (radius <= 0.0) return std::nullopt;
+    // Climbs to where the ball is largest, as long as it contains the point, in steps that become smaller.
+    const double finest = structure.finest();
+    for (double step = std::max(0.5 * radius, finest); step > 0.05 * finest && radius < most;) {
+        glm::dvec3 better = center;
+        double larger = radius;
+        for (int i = 0; i < 27; ++i) {
+            const glm::dvec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            if (i == 13) continue;
+            const glm::dvec3 tried = center + step * glm::normalize(way);
+            if (glm::distance(tried, point) > larger + step) continue;
+            const double depth = structure.depth_of(tried);
+            if (depth > larger && glm::distance(tried, point) < depth) {
+                better = tried;
+                larger = depth;
+            }
+        }
+        // Less than a thousandth more is the noise of directions, not a larger place.
+        if (larger > 1.001 * radius) {
+            center = better;
+            radius = larger;
+        } else {
+            step *= 0.5;
+        }
+    }
+    return radius < most ? std::optional(radius) : std::nullopt;
+}
+
+double DensityBox::at(const glm::dvec3& voxel) const
+{
+    const glm::dvec3 lattice = glm::clamp(voxel - 0.5 - glm::dvec3(lower), glm::dvec3(0.0), glm::dvec3(size - 1));
+    const glm::ivec3 corner = glm::min(glm::ivec3(glm::floor(lattice)), glm::max(size - 2, glm::ivec3(0)));
+    const glm::dvec3 share = lattice - glm::dvec3(corner);
+    double sum = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2 & 1);
+        const glm::dvec3 weights = glm::mix(1.0 - share, share, glm::dvec3(offset));
+        const double weight = weights.x * weights.y * weights.z;
+        if (weight == 0.0) continue;
+        const glm::ivec3 at = glm::min(corner + offset, size - 1);
+        sum += weight * values[size_t(at.x) + size_t(size.x) * (size_t(at.y) + size_t(size.y) * size_t(at.z))];
+    }
+    return sum;
+}
+
+}  // namespace shvr

@@ -1,0 +1,14 @@
+#pragma once
+// Intensities of single voxels on the host, with the offsets of density painting: what a probe reads. Any thread, while
+// nothing changes the offsets.
+
+#include "engine/annotation/density.h"
+#include "engine/annotation/trace/local_radius.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// The voxels of a box inside the volume. Fails where they cannot be read.
+DensityBox densities_in(const VolumeSource& source, const DensityField& offsets, const VoxelBox& box);
+
+}  // namespace shvr

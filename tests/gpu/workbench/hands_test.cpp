@@ -1,0 +1,266 @@
+// What hands do: strokes that stay on what they follow, nodes with a radius of their own, cuts that are mended, clicks
+// that select, distances.
+
+#include <doctest/doctest.h>
+
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+/// A scan of 48^3 voxels: a plate at y = 8 ... 12 for x below 24, and behind it, seen from the front, a wall from 36
+/// on.
+struct Plates {
+    TemporaryFolder folder;
+    Workbench bench;
+
+    explicit Plates(Renderer& renderer, const std::string& more = "") : bench(renderer, {.has_servo = false})
+    {
+        std::string text = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 48 48 48\nspacings: 2 2 2\nencoding: raw\n\n";
+        for (int z = 0; z < 48; ++z)
+            for (int y = 0; y < 48; ++y)
+                for (int x = 0; x < 48; ++x) text += char((y >= 8 && y < 12 && x < 24) || y >= 36 ? 200 : 10);
+        folder.write("plates.nrrd", text);
+        folder.write("scan.json", R"({"shvr_session": 1, "volume": {"path": "plates.nrrd"},
+            "camera": "front", "cameras": {"front": {"projection": "orthographic", "eye": [48, -200, 48],
+            "target": [48, 48, 48], "up": [0, 0, 1], "height": 96}}, "render": {"size": [96, 96]},
+            "transfer_function": {"points": [{"intensity": 100, "opacity": 0}, {"intensity": 101, "opacity": 0.9},
+            {"intensity": 255, "opacity": 0.9}]},
+            "probe": {"brush": "fill", "radius_voxels": 2, "paint_threshold": 0)" +
+                                      more + "}}");
+        bench.set_pixels({96, 96});
+        bench.open(folder.path / "scan.json", {});
+        settle(bench);
+    }
+    /// A pixel is half a voxel: x to the right is x of the volume.
+    static ProbeAlong along(double x, bool jumps = false) { return {0, {2.0 * x, 48.0}, jumps}; }
+    double depth() const { return bench.model().probe_voxel.y; }
+    const TraceGraph& trace() const { return bench.model().trace; }
+    bool is_painted(int x, int y) const { return bench.document().annotator.document().mask.at({x, y, 24}) == 1; }
+    void perform(const Action& action)
+    {
+        bench.perform(action);
+        settle(bench);
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "a stroke stays on the surface that it began on, and without a stroke the probe lands on each")
+{
+    Plates on(renderer());
+    on.perform(Plates::along(16.0));
+    CHECK(std::abs(on.depth() - 8.0) < 1.0);
+    on.perform(Plates::along(30.0));
+    CHECK(std::abs(on.depth() - 36.0) < 1.0);
+
+    on.perform(Plates::along(16.0));
+    on.perform(Paint{true});
+    for (const double x : {18.0, 20.0, 22.0, 25.0, 28.0, 30.0}) {
+        CAPTURE(x);
+        on.perform(Plates::along(x));
+        CHECK(on.depth() < 16.0);
+    }
+    on.perform(Paint{false});
+    CHECK(on.is_painted(20, 8));
+    for (int x = 0; x < 48; ++x) CHECK(!on.is_painted(x, 36));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a pointer that jumps paints nothing in between, in one step of the history")
+{
+    for (const bool jumps : {false, true}) {
+        CAPTURE(jumps);
+        Plates on(renderer());
+        on.perform(PlaceProbe{{8.0, 36.0, 24.0}});
+        on.perform(Paint{true});
+        on.perform(ProbeTo{0, {80.0, 48.0}, jumps});
+        on.perform(Paint{false});
+        CHECK(on.is_painted(8, 36));
+        CHECK(on.is_painted(40, 36));
+        CHECK(on.is_painted(24, 36) == !jumps);
+        CHECK(on.bench.model().undoable == 1);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "the tool that erases takes paint away, whatever the active group is")
+{
+    Plates on(renderer(), R"(, "group": 1)");
+    on.perform(PlaceProbe{{8.0, 36.0, 24.0}});
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    REQUIRE(on.is_painted(8, 36));
+    on.perform(Set{R"({"probe":{"tool":"erase"}})"});
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    CHECK(!on.is_painted(8, 36));
+    CHECK(on.bench.model().brush().group == 1);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "nodes have a radius of their own, or that of what they lie in")
+{
+    Plates on(renderer());
+    CHECK(on.bench.model().session.probe.node_radius_voxels == 1.0);  // not the brush's
+    on.perform(NodeOp{.at = {16.0, 10.0, 24.0}, .radius_voxels = {}, .group = {}});
+    CHECK(on.trace().node(0).radius == 2.0);  // voxels of 2
+    on.perform(Set{R"({"probe":{"measured_radius":true,"paint_threshold":105}})"});
+    on.perform(NodeOp{.at = {16.0, 9.0, 24.0}, .radius_voxels = {}, .group = {}});
+    CHECK(std::abs(on.trace().node(1).radius - 4.0) < 0.15);  // the plate is 4 voxels thick
+    on.perform(NodeOp{.at = {16.0, 24.0, 24.0}, .radius_voxels = {}, .group = {}});
+    CHECK(on.trace().node(2).radius == 2.0);  // nothing there to measure
+    on.perform(NodeOp{.at = {16.0, 9.0, 20.0}, .radius_voxels = 3.0, .group = {}});
+    CHECK(on.trace().node(3).radius == 6.0);  // as was said
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "deleting a node between two says that the trace is cut, goes on from one end, and is mended")
+{
+    Plates on(renderer());
+    for (const double x : {10.0, 16.0, 22.0})
+        on.perform(NodeOp{.at = {x, 8.0, 24.0}, .radius_voxels = {}, .group = {}});
+    on.perform(SelectOp{.near = {}, .number = 1, .within_voxels = {}});
+    CHECK(on.bench.why_not(MendCut{}) != "");
+    on.perform(DeleteOp{});
+    CHECK(on.trace().selection().node() == 0u);
+    CHECK(on.bench.messages().last().find("cut between node 0, which is selected, and node 2") != std::string::npos);
+    CHECK(on.bench.messages().last().find("Shift + Delete links them") != std::string::npos);
+    CHECK(on.bench.why_not(MendCut{}) == "");
+    on.perform(MendCut{});
+    CHECK(on.trace().internode_between(0, 2).has_value());
+    CHECK(on.bench.why_not(MendCut{}) != "");
+    // The end of a line is not cut.
+    on.perform(SelectOp{.near = {}, .number = 2, .within_voxels = {}});
+    on.perform(DeleteOp{});
+    CHECK(on.trace().selection().empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "nothing of the trace is selected in a scan that was opened again")
+{
+    Plates on(renderer());
+    on.perform(NodeOp{.at = {10.0, 8.0, 24.0}, .radius_voxels = {}, .group = {}});
+    on.perform(SaveOp{});
+    on.bench.open(on.folder.path / "scan.json", {});
+    settle(on.bench);
+    REQUIRE(on.trace().nodes().size() == 1);
+    CHECK(on.trace().selection().empty());
+    on.perform(NodeOp{.at = {40.0, 36.0, 24.0}, .radius_voxels = {}, .group = {}});
+    CHECK(on.trace().internodes().empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a click takes the node that is seen, the group where none is, and no node behind a wall")
+{
+    Plates on(renderer());
+    on.perform(NodeOp{.at = {16.0, 7.0, 24.0}, .radius_voxels = {}, .group = {}});  // before the plate
+    on.perform(DeselectOp{});
+    on.perform(NodeOp{.at = {30.0, 44.0, 24.0}, .radius_voxels = {}, .group = {}});  // deep in the wall
+    on.perform(DeselectOp{});
+    on.perform(SelectAt{0, {32.0, 48.0}});
+    CHECK(on.trace().selection().node() == 0u);
+    on.perform(DeselectOp{});
+    on.perform(SelectAt{0, {60.0, 48.0}});
+    CHECK(on.trace().selection().empty());
+
+    on.perform(PlaceProbe{{40.0, 36.0, 24.0}});
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    on.perform(Set{R"({"probe":{"group":5}})"});
+    on.perform(SelectAt{0, {80.0, 48.0}});
+    CHECK(on.bench.model().brush().group == 1);
+    on.perform(SelectAt{0, {8.0, 90.0}});  // nothing is painted there
+    CHECK(on.bench.model().brush().group == 1);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "distances are measured on what is seen, in physical units, and copied as a table")
+{
+    Plates on(renderer());
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    CHECK(on.bench.model().measuring_from.has_value());
+    on.perform(MeasureAt{0, {80.0, 48.0}});
+    REQUIRE(on.bench.model().measurements.size() == 1);
+    const Measurement measured = on.bench.model().measurements[0];
+    CHECK(std::abs(measured.to.x - measured.from.x - 10.0) < 0.01);
+    CHECK(on.bench.messages().last().find("Distance 1: 20") == 0);  // voxels of 2
+    on.perform(CopyMeasurements{});
+    CHECK(on.bench.take_clipboard().starts_with("number\tlength"));
+    CHECK(on.bench.take_clipboard().empty());
+    CHECK(!on.bench.model().is_painting);
+    on.perform(ClearMeasurements{});
+    CHECK(on.bench.model().measurements.empty());
+    CHECK(on.bench.model().undoable == 0);  // no part of the work
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what is under the probe is read: value, offset, group, depth, and how full the probe is")
+{
+    Plates on(renderer(), R"(, "density": {"offset": 30})");
+    on.perform(PlaceProbe{{16.5, 9.5, 24.5}});
+    Reading reading = on.bench.model().reading;
+    CHECK(reading.intensity == 200.0);
+    CHECK(reading.group == 0);
+    CHECK(reading.depth == doctest::Approx(19.0));
+    REQUIRE(reading.relevant_share.has_value());
+    CHECK(*reading.relevant_share == 1.0);  // the threshold is 0
+    on.perform(Set{R"({"probe":{"paint_threshold":100}})"});
+    // Of a ball of radius 2 about the middle of a voxel: 33 voxels, of which 1 lies at y = 7 outside the plate.
+    CHECK(*on.bench.model().reading.relevant_share == doctest::Approx(32.0 / 33.0));
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    reading = on.bench.model().reading;
+    CHECK(reading.intensity == 200.0);
+    CHECK(reading.offset == 30.0);
+    CHECK(reading.group == 1);
+    on.perform(PlaceProbe{{-5.0, 9.5, 24.5}});
+    CHECK(!on.bench.model().reading.is_inside);
+
+    // Over a slice it is the pointer's place; in the others the probe's.
+    on.perform(PlaceProbe{{16.5, 9.5, 24.5}});
+    on.perform(Set{R"({"view":{"arrangement":"slices"}})"});
+    const Pane across_z = on.bench.model().panes[1].pane;
+    REQUIRE(across_z.axis == 2);
+    const glm::dvec3 wanted(30.5, 40.5, 24.5);
+    const auto at = project(across_z.shot.camera, across_z.pixels(), wanted * 2.0);
+    on.bench.set_pointer(Pointer{1, at->pixel});
+    settle(on.bench);
+    CHECK(glm::distance(on.bench.model().reading.voxel, wanted) < 0.01);
+    CHECK(on.bench.model().reading.intensity == 200.0);
+    on.bench.set_pointer(Pointer{0, at->pixel});
+    settle(on.bench);
+    CHECK(on.bench.model().reading.voxel == on.bench.model().probe_voxel);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "the view turns about what was chosen, which stays where it is in the picture")
+{
+    Plates on(renderer());
+    const auto place = [&](const glm::dvec3& point) {
+        return project(on.bench.model().camera, {96, 96}, point)->pixel;
+    };
+    on.perform(PlaceProbe{{40.0, 36.0, 30.0}});
+    const glm::dvec3 probe = on.bench.model().probe_voxel * 2.0;
+    glm::dvec2 before = place(probe);
+    on.perform(Orbit{30.0, 10.0});
+    CHECK(glm::distance(place(probe), before) > 1.0);
+    on.perform(Set{R"({"interaction":{"pivot":"probe"}})"});
+    before = place(probe);
+    on.perform(Orbit{-20.0, 15.0});
+    CHECK(glm::distance(place(probe), before) < 1e-6);
+    on.perform(PivotAt{0, {60.0, 48.0}});
+    REQUIRE(on.bench.model().picked_pivot.has_value());
+    before = place(*on.bench.model().picked_pivot);
+    on.perform(Orbit{-20.0, 15.0});
+    CHECK(glm::distance(place(*on.bench.model().picked_pivot), before) < 1e-6);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "slices of a scan begin with a contrast in which they are seen")
+{
+    Plates on(renderer());
+    const SliceSettings& slices = on.bench.model().session.view.slices;
+    REQUIRE(slices.black.has_value());
+    REQUIRE(slices.white.has_value());
+    CHECK(*slices.black < 20.0);
+    CHECK(*slices.white > 190.0);
+    CHECK(on.bench.model().is_saved);  // which is no change that somebody made
+}

@@ -1,0 +1,38 @@
+#pragma once
+// Everything that a model of the workbench refers to, for tests of what panels, keys and the mouse make of it.
+
+#include <filesystem>
+
+#include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/model.h"
+#include "ui/workbench/preferences.h"
+
+namespace shvr::test {
+
+struct World {
+    Session session;
+    VolumeInfo volume;
+    VolumeStatistics statistics;
+    Camera camera;
+    std::vector<Screen::Part> panes;
+    std::vector<TransferPreset> presets;
+    TraceGraph trace;
+    std::filesystem::path path;
+    ui::MessageLog messages;
+    ui::Keymap keymap;
+    ui::Preferences preferences;
+    ui::Model model{.is_open = true,
+                    .session = session,
+                    .volume = volume,
+                    .statistics = statistics,
+                    .camera = camera,
+                    .panes = panes,
+                    .presets = presets,
+                    .trace = trace,
+                    .session_path = path,
+                    .messages = messages,
+                    .keymap = keymap,
+                    .preferences = preferences};
+};
+
+}  // namespace shvr::test

@@ -1,0 +1,76 @@
+#include "engine/annotation/trace/local_radius.h"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+using namespace shvr;
+
+namespace {
+
+/// Voxels of a straight tube through the middle of a box; its edge falls from 200 to 0 within a voxel, so that 100 is
+/// where it ends.
+DensityBox tube(const glm::dvec3& along, double radius, const glm::dvec3& spacing)
+{
+    DensityBox box{.lower = {7, -3, 11}, .size = {48, 48, 48}};
+    const glm::dvec3 axis = glm::normalize(along);
+    for (int z = 0; z < box.size.z; ++z)
+        for (int y = 0; y < box.size.y; ++y)
+            for (int x = 0; x < box.size.x; ++x) {
+                const glm::dvec3 from_middle = (glm::dvec3(x, y, z) + 0.5 - 24.0) * spacing;
+                const double away = glm::length(from_middle - glm::dot(from_middle, axis) * axis);
+                box.values.push_back(200.0 * std::clamp(0.5 + radius - away, 0.0, 1.0));
+            }
+    return box;
+}
+
+}  // namespace
+
+TEST_CASE("A tube's radius is measured from its density, beside its axis, too")
+{
+    double worst = 0.0;
+    for (const double radius : {2.0, 3.0, 5.0, 8.0})
+        for (const glm::dvec3& along : {glm::dvec3(0, 0, 1), glm::dvec3(1, 1, 0), glm::dvec3(1, 2, 3)})
+            for (const double beside : {0.0, 0.3, 0.6}) {
+                const DensityBox box = tube(along, radius, glm::dvec3(1.0));
+                const glm::dvec3 across = glm::normalize(glm::cross(along, glm::dvec3(0.3, 1.0, -0.2)));
+                const glm::dvec3 voxel = glm::dvec3(box.lower) + 24.0 + beside * radius * across;
+                const auto found =
+                    local_radius([&](const glm::dvec3& at) { return box.at(at); }, 100.0, voxel, glm::dvec3(1.0), 20.0);
+                CAPTURE(radius);
+                CAPTURE(beside);
+                REQUIRE(found.has_value());
+                CHECK(std::abs(*found - radius) < 0.15);
+                worst = std::max(worst, std::abs(*found - radius));
+            }
+    MESSAGE("largest error: ", worst, " voxels");
+}
+
+TEST_CASE("A tube's radius is physical where voxels are not cubes")
+{
+    const glm::dvec3 spacing(1.0, 1.0, 0.5);
+    const DensityBox box = tube({1.0, 0.0, 0.0}, 4.0, spacing);
+    const auto found = local_radius([&](const glm::dvec3& at) { return box.at(at); }, 100.0,
+                                    glm::dvec3(box.lower) + 24.0, spacing, 10.0);
+    REQUIRE(found.has_value());
+    CHECK(std::abs(*found - 4.0) < 0.15);
+}
+
+TEST_CASE("No radius is measured outside a structure, nor in one that goes on")
+{
+    const DensityBox box = tube({0.0, 0.0, 1.0}, 3.0, glm::dvec3(1.0));
+    const auto density_at = [&](const glm::dvec3& at) { return box.at(at); };
+    CHECK(
+        !local_radius(density_at, 100.0, glm::dvec3(box.lower) + glm::dvec3(30.0, 24.0, 24.0), glm::dvec3(1.0), 20.0));
+    CHECK(!local_radius(density_at, 100.0, glm::dvec3(box.lower) + 24.0, glm::dvec3(1.0), 2.5));
+    CHECK(!local_radius([](const glm::dvec3&) { return 1.0; }, 0.5, {3.0, 4.0, 5.0}, glm::dvec3(1.0), 8.0));
+}
+
+TEST_CASE("A density box interpolates linearly between the middles of voxels, and holds its border")
+{
+    const DensityBox box{.lower = {2, 0, 0}, .size = {2, 1, 1}, .values = {10.0, 30.0}};
+    CHECK(box.at({2.5, 0.5, 0.5}) == 10.0);
+    CHECK(box.at({3.0, 0.2, 0.9}) == 20.0);
+    CHECK(box.at({9.0, 0.5, 0.5}) == 30.0);
+    CHECK(box.at({-9.0, 0.5, 0.5}) == 10.0);
+}

@@ -1,0 +1,225 @@
+// What the mouse means in each tool, without a display.
+
+#include "ui/viewport.h"
+
+#include <doctest/doctest.h>
+
+#include "engine/session/session_patch.h"
+#include "tests/support/model_world.h"
+#include "ui/workbench/action_rows.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+constexpr int LEFT = 0, RIGHT = 1, MIDDLE = 2, SHIFT = 1, CONTROL = 2, ALT = 4;
+
+/// A mouse over a picture of 400 x 300 pixels, whose first pane has a node in its middle.
+struct Mouse {
+    World world;
+    Viewport viewport;
+    double now_s = 100.0;
+    std::string said;  ///< ids of the actions so far
+
+    explicit Mouse(Tool tool, bool has_slice = false)
+    {
+        world.session.probe.tool = tool;
+        world.volume.size = {100, 100, 100};
+        world.statistics.maximum = 1000.0;
+        Camera camera;
+        camera.projection = Camera::Projection::orthographic;
+        camera.eye = {50.0, 50.0, 200.0};
+        camera.target = {50.0, 50.0, 50.0};
+        camera.up = {0.0, 1.0, 0.0};
+        camera.height = 300.0;
+        const glm::uvec2 end(has_slice ? 200 : 400, 300);
+        add({.kind = Pane::Kind::main, .shot = camera, .box = {{0, 0}, end}, .name = "camera"});
+        if (has_slice) {
+            Pane slice{.kind = Pane::Kind::slice, .shot = camera, .box = {{200, 0}, {400, 300}}, .name = "z"};
+            slice.shot.is_slice = true;
+            slice.axis = 2;
+            add(slice);
+        }
+        world.trace.apply(TraceNodeChange{0, {}, TraceNode{{50.0, 50.0, 50.0}, 2.0, 1}}, Direction::forwards);
+        viewport.set_layout({.begin = {0, 0}, .end = {400, 300}});
+    }
+    void add(const Pane& pane) { world.panes.push_back({.pane = pane, .view = nullptr}); }
+
+    Actions last;
+    void handle(const InputEvent& event, bool ui_has_mouse = false)
+    {
+        last.clear();
+        viewport.handle(event, world.model, ui_has_mouse, last);
+        note();
+    }
+    void note()
+    {
+        for (const Action& action : last) said += (said.empty() ? "" : " ") + std::string(row_of(action).id);
+    }
+    void move(double x, double y, bool ui_has_mouse = false) { handle({MoveEvent{{x, y}}, now_s}, ui_has_mouse); }
+    void press(int button, double x, double y, int mods = 0)
+    {
+        handle({ButtonEvent{button, mods, true, {x, y}}, now_s});
+    }
+    void release(int button, double x, double y) { handle({ButtonEvent{button, 0, false, {x, y}}, now_s}); }
+    void click(double x, double y)
+    {
+        press(LEFT, x, y);
+        release(LEFT, x, y);
+    }
+    /// A press, some motion, and a release; returns what was asked for.
+    std::string drag(int button, double x, double y, int mods = 0)
+    {
+        said.clear();
+        press(button, x, y, mods);
+        move(x + 3.0, y);
+        move(x + 12.0, y);
+        release(button, x + 12.0, y);
+        return said;
+    }
+    std::string wait(double seconds)
+    {
+        said.clear();
+        last.clear();
+        viewport.wait(now_s += seconds, last);
+        note();
+        return said;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("Each button means in each tool what the tool says")
+{
+    const auto drag = [](Tool tool, int button, int mods = 0) { return Mouse(tool).drag(button, 40.0, 40.0, mods); };
+    for (const Tool tool : {Tool::turn, Tool::trace, Tool::select, Tool::measure}) {
+        CAPTURE(TOOLS[size_t(tool)].name);
+        CHECK(drag(tool, LEFT) == "orbit");
+    }
+    for (const Tool tool : {Tool::paint, Tool::erase})
+        CHECK(drag(tool, LEFT) == "probe_along paint_here probe_along probe_along paint_here");
+    CHECK(drag(Tool::turn, RIGHT) == "probe_to paint_here probe_to probe_to paint_here");
+    for (const Tool tool : {Tool::paint, Tool::erase, Tool::trace, Tool::select, Tool::measure}) {
+        CAPTURE(TOOLS[size_t(tool)].name);
+        CHECK(drag(tool, RIGHT) == "orbit orbit");
+        CHECK(drag(tool, MIDDLE) == "orbit orbit");
+        CHECK(drag(tool, MIDDLE, SHIFT) == "move_view move_view");
+    }
+    CHECK(drag(Tool::turn, MIDDLE) == "move_view move_view");
+    for (const Spelling<Tool>& tool : TOOLS) {
+        CAPTURE(tool.name);
+        CHECK(drag(tool.value, LEFT, SHIFT) == "move_view move_view");
+        CHECK(drag(tool.value, LEFT, ALT) == "orbit orbit");
+    }
+}
+
+TEST_CASE("A click of the turn tool selects once it is no double click, which puts the probe there")
+{
+    Mouse mouse(Tool::turn);
+    mouse.click(40.0, 40.0);
+    CHECK(mouse.said == "");
+    CHECK(mouse.viewport.is_waiting());
+    CHECK(mouse.wait(0.2) == "");
+    CHECK(mouse.wait(0.2) == "select_at");
+    CHECK(!mouse.viewport.is_waiting());
+    mouse.said.clear();
+    mouse.click(40.0, 40.0);
+    mouse.now_s += 0.1;
+    mouse.click(41.0, 40.0);
+    CHECK(mouse.said == "probe_onto");
+    CHECK(mouse.wait(1.0) == "");
+    // Two clicks at two places are two clicks.
+    mouse.said.clear();
+    mouse.click(40.0, 40.0);
+    mouse.now_s += 0.1;
+    mouse.click(140.0, 40.0);
+    CHECK(mouse.said == "");
+}
+
+TEST_CASE("Clicks trace, select and measure; a press that moves is none")
+{
+    Mouse trace(Tool::trace);
+    trace.click(40.0, 40.0);
+    CHECK(trace.said == "node_at");
+    trace.said.clear();
+    trace.click(200.0, 152.0);  // on the node
+    CHECK(trace.said == "select");
+    CHECK(std::get<SelectOp>(trace.last[0]).number == 0u);
+    CHECK(trace.drag(LEFT, 200.0, 152.0) == "select place_probe drag_node probe_to drag_node");
+
+    Mouse select(Tool::select);
+    select.click(40.0, 40.0);
+    CHECK(select.said == "select_at");
+    CHECK(!std::get<SelectAt>(select.last[0]).whole_segment);
+    select.now_s += 0.1;
+    select.click(40.0, 40.0);
+    CHECK(std::get<SelectAt>(select.last[0]).whole_segment);
+
+    Mouse measure(Tool::measure);
+    measure.click(40.0, 40.0);
+    measure.click(80.0, 40.0);
+    CHECK(measure.said == "measure_at measure_at");
+}
+
+TEST_CASE("The probe follows what is seen in tools that work there, and its plane in the others")
+{
+    for (const Spelling<Tool>& tool : TOOLS) {
+        CAPTURE(tool.name);
+        Mouse mouse(tool.value);
+        mouse.move(40.0, 40.0);
+        const bool lands = tool.value != Tool::turn && tool.value != Tool::select;
+        CHECK(mouse.said == std::string(lands ? "probe_along" : "probe_to"));
+        CHECK((mouse.viewport.pointer() == Pointer{0, {40.0, 40.0}}));
+    }
+}
+
+TEST_CASE("A motion that no hand makes lifts the brush, and so does the first after the pointer was elsewhere")
+{
+    Mouse mouse(Tool::turn);
+    const auto jumps = [&] { return std::get<ProbeTo>(mouse.last.at(0)).jumps; };
+    mouse.move(40.0, 40.0);
+    CHECK(jumps());  // nobody knows where it was
+    mouse.move(60.0, 40.0);
+    CHECK(!jumps());
+    mouse.move(200.0, 40.0);
+    CHECK(jumps());  // more than a quarter of 300 pixels
+    mouse.move(210.0, 40.0, true);
+    CHECK(mouse.last.empty());
+    CHECK(!mouse.viewport.pointer().has_value());
+    mouse.move(215.0, 40.0);
+    CHECK(jumps());
+    mouse.move(220.0, 40.0);
+    CHECK(!jumps());
+    // A stroke goes on from where its button went down.
+    mouse.press(RIGHT, 390.0, 200.0);
+    CHECK(jumps());
+    mouse.move(380.0, 200.0);
+    CHECK(!jumps());
+    mouse.move(20.0, 20.0);
+    CHECK(jumps());
+}
+
+TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the right button")
+{
+    for (const Tool tool : {Tool::turn, Tool::select, Tool::measure})
+        CHECK(Mouse(tool, true).drag(LEFT, 300.0, 40.0) == "probe_to");
+    for (const Tool tool : {Tool::paint, Tool::trace, Tool::select, Tool::measure})
+        CHECK(Mouse(tool, true).drag(RIGHT, 300.0, 40.0) == "set set");
+    CHECK(Mouse(Tool::turn, true).drag(RIGHT, 300.0, 40.0) == "probe_to paint_here probe_to probe_to paint_here");
+    CHECK(Mouse(Tool::paint, true).drag(LEFT, 300.0, 40.0) ==
+          "probe_along paint_here probe_along probe_along paint_here");
+    Mouse mouse(Tool::paint, true);
+    CHECK(mouse.drag(LEFT, 300.0, 40.0, CONTROL) == "set set");
+    mouse.press(LEFT, 300.0, 40.0, CONTROL);
+    mouse.move(300.0, 190.0);  // half a height down: darker by half the window
+    const Session after = patched(mouse.world.session, std::get<Set>(mouse.last.at(0)).patch);
+    CHECK(*after.view.slices.black == doctest::Approx(500.0));
+    CHECK(*after.view.slices.white == doctest::Approx(1500.0));
+    // Tools that point leave the other slices where they are.
+    Mouse pointing(Tool::measure, true);
+    pointing.move(300.0, 40.0);
+    CHECK(pointing.said == "");
+    CHECK((pointing.viewport.pointer() == Pointer{1, {100.0, 40.0}}));
+}

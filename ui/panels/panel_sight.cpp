@@ -1,0 +1,96 @@
+// Menus of what is seen: kept views, what turning goes about, what is drawn over pictures; and the size of new nodes.
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include "engine/base/error.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/edit.h"
+
+namespace shvr::ui {
+
+namespace {
+
+void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false)
+{
+    const Shortcut* const shortcut = shortcut_named(id);
+    SHVR_CHECK(shortcut, id);
+    const std::string why = why_not(model, *shortcut);
+    if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
+        actions.push_back(shortcut->action(model, 1.0));
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
+}
+
+/// Its menu: to go there, to call it something else, to remove it.
+void kept_view(const std::string& name, const Model& model, Actions& actions)
+{
+    static std::string edited;
+    if (ImGui::IsWindowAppearing()) edited = name;
+    if (ImGui::MenuItem("Go there")) actions.push_back(LookFrom{name});
+    ImGui::SetNextItemWidth(10.0f * ImGui::GetFontSize());
+    const bool is_entered = ImGui::InputText("##name", &edited, ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    const RenameCamera renaming{name, edited};
+    const bool is_possible = !edited.empty() && why_not(model, renaming).empty();
+    ImGui::BeginDisabled(!is_possible);
+    if (ImGui::Button("Rename") || (is_entered && is_possible)) {
+        actions.push_back(renaming);
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndDisabled();
+    if (ImGui::MenuItem("Remove")) actions.push_back(ForgetCamera{name});
+}
+
+}  // namespace
+
+void kept_views_menu(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginMenu("Kept views", model.is_open)) return;
+    shortcut_item("keep_view", model, actions);
+    ImGui::Separator();
+    for (const auto& [name, camera] : model.session.cameras) {
+        if (name == "window" || !ImGui::BeginMenu(name.c_str())) continue;
+        kept_view(name, model, actions);
+        ImGui::EndMenu();
+    }
+    ImGui::EndMenu();
+}
+
+void sight_items(const Model& model, Actions& actions)
+{
+    const InteractionSettings& interaction = model.session.interaction;
+    shortcut_item("pivot_at_pointer", model, actions, interaction.pivot == Pivot::picked);
+    shortcut_item("pivot_at_probe", model, actions, interaction.pivot == Pivot::probe);
+    ImGui::Separator();
+    shortcut_item("scale_bar", model, actions, interaction.scale_bar);
+    shortcut_item("axes", model, actions, interaction.axes);
+    shortcut_item("probe_label", model, actions, interaction.probe_label);
+    shortcut_item("auto_contrast", model, actions);
+    ImGui::Separator();
+    shortcut_item("copy_measurements", model, actions);
+    shortcut_item("clear_measurements", model, actions);
+}
+
+void new_nodes(const Model& model, Actions& actions)
+{
+    label("New nodes");
+    double radius = model.session.probe.node_radius_voxels.value_or(model.brush().radius_voxels);
+    constexpr double LEAST = 0.1, MOST = 127.0;
+    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    if (ImGui::DragScalar("##new nodes", ImGuiDataType_Double, &radius, 0.05f, &LEAST, &MOST, "%.2f voxels",
+                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        set(actions, model, [&](Session& s) { s.probe.node_radius_voxels = radius; });
+    hint("Radius of nodes that you add. It has nothing to do with the brush.");
+    ImGui::SameLine();
+    bool is_measured = model.session.probe.measured_radius;
+    if (ImGui::Checkbox("measured", &is_measured))
+        set(actions, model, [&](Session& s) { s.probe.measured_radius = is_measured; });
+    hint(
+        "As wide as what the node lies in: the largest ball that contains it, above the paint threshold. Where that "
+        "cannot be told, the radius beside it is taken.");
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,57 @@
+#include "ui/workbench/bindings/tools.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr ToolRow ROWS[] = {
+    {Tool::turn, "Turn", "tool_turn",
+     "Drag to turn the volume. The right button paints with the active group, and a double click puts the probe onto "
+     "what is seen.",
+     "turn", "paint"},
+    {Tool::paint, "Paint", "tool_paint",
+     "Hold the left button to paint with the active group. The right button turns the volume.", "paint", "turn"},
+    {Tool::erase, "Erase", "tool_erase",
+     "Hold the left button to take paint away, of whatever group. The right button turns the volume.", "erase", "turn"},
+    {Tool::trace, "Trace", "tool_trace",
+     "Click beside all nodes to add one, linked with the selected node. Click a node to select it, drag it to move it. "
+     "The right button turns the volume.",
+     "add, select or drag a node", "turn"},
+    {Tool::select, "Select", "tool_select",
+     "Click a node or an internode to select it. The right button turns the volume.", "select", "turn"},
+    {Tool::measure, "Measure", "tool_measure",
+     "Click two points to measure the distance between them. The right button turns the volume.", "set a point",
+     "turn"},
+};
+
+}  // namespace
+
+std::span<const ToolRow> tool_rows()
+{
+    return ROWS;
+}
+
+const ToolRow& row_of(Tool tool)
+{
+    const auto found = std::ranges::find(ROWS, tool, &ToolRow::tool);
+    SHVR_CHECK(found != std::end(ROWS), "tool");
+    return *found;
+}
+
+std::string sentence_of(Tool tool)
+{
+    return sentence(row_of(tool).name, ": ", row_of(tool).hint);
+}
+
+std::string mouse_in_words(Tool tool)
+{
+    const ToolRow& row = row_of(tool);
+    const char* const middle = tool == Tool::turn ? "move" : "turn";
+    return sentence("Left: ", row.left, "    Right: ", row.right, "    Middle: ", middle, "    Wheel: zoom");
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,28 @@
+#pragma once
+// The tools of the mouse in words: name, key, and what buttons and wheel do now. Pure; any thread.
+
+#include <span>
+#include <string>
+
+#include "ui/workbench/model.h"
+
+namespace shvr::ui {
+
+struct ToolRow {
+    Tool tool = Tool::turn;
+    const char* name = "";      ///< "Paint"
+    const char* shortcut = "";  ///< id of the one that takes it
+    const char* hint = "";      ///< what a click does, in sentences
+    const char* left = "";      ///< what the left button does, in a few words
+    const char* right = "";
+};
+/// In the order of the tool bar.
+std::span<const ToolRow> tool_rows();
+const ToolRow& row_of(Tool tool);
+
+/// What is said when it is taken.
+std::string sentence_of(Tool tool);
+/// What the mouse does now, in one line: "Left: turn    Right: paint    Wheel: zoom".
+std::string mouse_in_words(Tool tool);
+
+}  // namespace shvr::ui
