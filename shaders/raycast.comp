@@ -50,14 +50,10 @@ layout(constant_id = 7) const uint SLICE = 0u;
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
 #ifdef SHELLED
-layout(constant_id = 8) const uint SHELL = SHELL_BALL;  // the region's shape
+layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 #endif
 
-layout(binding = 0, scalar) readonly buffer Params
-{
-    RaycastParams data;
-}
-params_block;
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 #ifndef PAGED
 layout(binding = 1, r32ui) uniform readonly uimage3D leap;
 #endif
@@ -80,23 +76,19 @@ layout(binding = 7, rgba32f) uniform readonly image3D groups;
 
 #ifdef OCCLUDED
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
-layout(binding = 11, scalar) readonly buffer Look
-{
-    OcclusionLook data;
-}
-occlusion_look;
+layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
 #endif
 #ifdef SURFACED
-layout(binding = 12, rgba32f) uniform readonly image3D surfaces;  // linear RGB, length along the ray
+layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
 #endif
 
 #if defined(PAGED) || defined(SHELLED)
 #define KEEPS
-layout(binding = 13, rgba32f) uniform image3D rays;  // raycast.h, KEPT; without it, one texel
+layout(binding = 13, rgba32f) uniform image3D rays;   // raycast.h, KEPT; without it, one texel
 #endif
 
-#include "library/counters.glsl"
 #include "library/rays.glsl"
+#include "library/counters.glsl"
 #ifdef MASKED
 #ifdef PAGED
 #define MASK_TABLE_HASHED
@@ -118,7 +110,7 @@ layout(binding = 13, rgba32f) uniform image3D rays;  // raycast.h, KEPT; without
 #else
 // What a position is in: a region with nothing visible (distance > 0), or a brick.
 struct Place {
-    uint distance;  // in cells
+    uint distance;   // in cells
     uint slot;
     bool is_painted;  // perhaps
     bool is_missing;  // never
@@ -133,17 +125,17 @@ Place place_at(const RaycastParams params, vec3 position)
 
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
-const float NO_SHELL = 1e30;  // a length along a ray
+const float NO_SHELL = 1e30;   // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
 const float LEAST_ALPHA = 1e-30;
 
 struct Ray {
-    vec3 origin;     // voxel space, at length 0
-    vec3 direction;  // voxels per reference length
-    vec3 inverse;    // 1 / direction; a large number where the direction is 0
-    vec3 ahead;      // 1 where the direction is positive, else 0
-    vec3 half_way;   // unit, between the directions to the eye and to the light; 0 where they are opposite
+    vec3 origin;      // voxel space, at length 0
+    vec3 direction;   // voxels per reference length
+    vec3 inverse;     // 1 / direction; a large number where the direction is 0
+    vec3 ahead;       // 1 where the direction is positive, else 0
+    vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
 };
 
 struct Work {
@@ -183,7 +175,7 @@ vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
 // The density at a point at most half a voxel outside the brick whose first texel is at `slot`.
 float value_near(vec3 in_brick, ivec3 slot)
 {
-    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));  // its aprons included
+    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons included
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
@@ -195,7 +187,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
     // volume gives the same bits as one in a single texture.
 #ifdef PAGED
-    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;  // times 2^-level, exactly
+    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
     const uvec3 brick = uvec3(position) >> place.level + 5u;
 #else
     const vec3 lattice = position - 0.5;
@@ -214,8 +206,8 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
         const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
-        look =
-            classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot), part);
+        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
+                             part);
     } else {
         look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
     }
@@ -377,13 +369,13 @@ void main()
 
     const ivec3 texel = ivec3(params.target + in_part, 0);
     vec4 sum = vec4(0.0);
-    bool begins_inside = false;  // of the iso-surface
+    bool begins_inside = false;   // of the iso-surface
     Rises rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     if (params.first_step > 0u && KEPT != KEPT_ALL) {
         sum = imageLoad(color, texel);
         begins_inside = sum.a < 0.0;
         sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
-        if (PICK != 0u && sum.a >= params.opacity_limit) return;  // what was found stays
+        if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
         if (PICK != 0u) {
             const vec4 runs = imageLoad(color, texel + ivec3(0, 0, 1)), run = imageLoad(color, texel + ivec3(0, 0, 2));
             rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
@@ -454,7 +446,7 @@ void main()
             ++i;
         }
     }
-    if (KEPT == KEPT_ALL) i = min(i, steps);  // leaps go beyond the end
+    if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
     const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
     count(COUNTER_CUT_SHORT, uint(is_cut_short));
