@@ -28,7 +28,8 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     device.validation = options.validation;
     renderer_ = std::make_unique<Renderer>(
         Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
-    set_style(window_.content_scale());
+    appearance_.scale = window_.content_scale();
+    set_style(appearance_);
     window_.attach(renderer_->device(), renderer_->memory());
     attached_.reset(&window_);
     WorkbenchOptions wanted{.allow_force = options.allow_force,
@@ -164,6 +165,16 @@ double App::time_to_wait() const
     return std::clamp(until_frame, 0.0, bench_->has_work() ? WORK_S : IDLE_S);
 }
 
+/// Text goes to the field it is typed into. While panels are used by keyboard, or a popup is open, the keys that move
+/// in them are theirs, and all others mean what they always mean.
+bool App::ui_has_key(const KeyEvent& event) const
+{
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || choosers_have_keys()) return true;
+    const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    return (io.NavVisible || has_popup) && moves_in_panels(event);
+}
+
 void App::handle_events(double timeout_s)
 {
     for (const InputEvent& event : window_.wait_events(timeout_s)) {
@@ -172,7 +183,7 @@ void App::handle_events(double timeout_s)
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
         const ImGuiIO& io = ImGui::GetIO();
         if (key)
-            keyboard_.handle(*key, model(), io.WantTextInput || choosers_have_keys(), actions_);
+            keyboard_.handle(*key, model(), ui_has_key(*key), actions_);
         else
             viewport_.handle(event, model(), io.WantCaptureMouse, actions_);
         apply_all();  // the next event may depend on it: the probe's position, the selection

@@ -53,6 +53,11 @@ std::string why(const Model& model, const ForgetCamera& action)
     return model.session.cameras.contains(action.name) ? "" : sentence("no view is kept as ", action.name);
 }
 
+std::string why(const Model& model, const LookAtSelection&)
+{
+    return model.trace.selection().empty() ? "nothing is selected" : "";
+}
+
 std::string why(const Model& model, const UpdateOcclusion&)
 {
     return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
@@ -175,7 +180,7 @@ constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
 constexpr bool NEEDS_DOCUMENT =
     !IS_ONE_OF<Kind, Open, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, Resize,
-               AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
+               AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 
 }  // namespace
 
