@@ -29,7 +29,8 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     device.validation = options.validation;
     renderer_ = std::make_unique<Renderer>(
         Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
-    set_style(window_.content_scale());
+    appearance_.scale = window_.content_scale();
+    set_style(appearance_);
     attach();
     WorkbenchOptions wanted{.allow_force = options.allow_force,
                             .preferences = options.preferences,
@@ -208,6 +209,16 @@ bool App::ui_has_mouse(const InputEvent& event) const
     return covers(at / glm::dvec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y));
 }
 
+/// Text goes to the field it is typed into. While panels are used by keyboard, or a popup is open, the keys that move
+/// in them are theirs, and all others mean what they always mean.
+bool App::ui_has_key(const KeyEvent& event) const
+{
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || choosers_have_keys()) return true;
+    const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    return (io.NavVisible || has_popup) && moves_in_panels(event);
+}
+
 void App::handle_events(double timeout_s)
 {
     const std::vector<InputEvent> events = window_.wait_events(timeout_s);
@@ -217,7 +228,7 @@ void App::handle_events(double timeout_s)
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
         const ImGuiIO& io = ImGui::GetIO();
         if (key)
-            keyboard_.handle(*key, model(), io.WantTextInput || choosers_have_keys(), actions_);
+            keyboard_.handle(*key, model(), ui_has_key(*key), actions_);
         else if (bench_->model().is_painting || !is_overtaken(events, event))
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         bench_->set_pointer(viewport_.pointer());

@@ -13,6 +13,7 @@
 
 #include "ui/keys.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/style.h"
 #include "ui/run_report.h"
 #include "ui/viewport.h"
 #include "ui/workbench/workbench.h"
@@ -50,6 +51,8 @@ private:
     void handle_events(double timeout_s);
     void apply_all();
     void follow_workbench();
+    void follow_appearance();
+    void follow_focus();
     void draw();
     void draw_ui();
     void draw_strokes() const;
@@ -58,6 +61,7 @@ private:
     bool ui_has_mouse(const InputEvent& event) const;
     double next_reason_to_draw_s() const;
     double time_to_wait() const;
+    bool ui_has_key(const KeyEvent& event) const;
     bool closes();
     bool refuses_to_close(const std::string& why);
 
@@ -77,6 +81,9 @@ private:
     bool was_stopped_ = false;         ///< from outside (AppOptions::stop)
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< every frame has failed since then
+
+    Appearance appearance_;
+    uint64_t read_messages_ = 0;  ///< whose characters the fonts have
 
     // Pace
     double next_frame_s_ = 0.0;

@@ -47,7 +47,9 @@ void App::draw_ui()
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
+    follow_appearance();
     window_.begin_ui();
+    follow_focus();
     layout = draw_panels(model(), window_.pixels(), actions_);
     if (is_open) {
         const Document& document = bench_->document();

@@ -140,6 +140,13 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
     }
 }
 
+bool moves_in_panels(const KeyEvent& event)
+{
+    constexpr int KEYS[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,  GLFW_KEY_LEFT,     GLFW_KEY_RIGHT, GLFW_KEY_TAB,
+                            GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_ESCAPE};
+    return std::ranges::find(KEYS, event.key) != std::end(KEYS) && !(event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT));
+}
+
 int mods_held(const Window& window)
 {
     const auto either = [&](int left, int right, int mod) {

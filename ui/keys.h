@@ -27,6 +27,9 @@ private:
     std::vector<Held> held_;
 };
 
+/// Arrows, Tab, Space, Enter and Escape, without Ctrl and Alt: what Dear ImGui is used with by keyboard.
+bool moves_in_panels(const KeyEvent& event);
+
 /// GLFW_MOD_* of the modifiers that are down.
 int mods_held(const Window& window);
 

@@ -162,6 +162,14 @@ void Swapchain::create_imgui()
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
+void Swapchain::renew_fonts()
+{
+    device_.wait_idle();
+    if (std::exchange(imgui_is_ready_, false)) ImGui_ImplVulkan_Shutdown();
+    vkDestroyDescriptorPool(device_.handle(), std::exchange(descriptors_, VK_NULL_HANDLE), nullptr);
+    create_imgui();
+}
+
 void Swapchain::create_swapchain()
 {
     device_.wait_idle();

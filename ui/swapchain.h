@@ -26,6 +26,8 @@ public:
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const { return format_.format == VK_FORMAT_B8G8R8A8_UNORM; }
+    /// Uploads Dear ImGui's fonts anew. Between frames; waits for the device.
+    void renew_fonts();
     /// Before ImGui::NewFrame.
     static void begin_ui();
     /// As Window::present, after ImGui::Render. A frame that fails leaves nothing behind that later ones trip over; a

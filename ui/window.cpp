@@ -101,6 +101,7 @@ struct Window::Input {
             add(w, DropEvent{{paths, paths + count}});
         });
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { add(w, DamageEvent{}); });
+        glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { add(w, DamageEvent{}); });
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { add(w, DamageEvent{}); });
         glfwSetCharCallback(window, [](GLFWwindow*, unsigned) {});
     }
@@ -120,6 +121,7 @@ Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::m
     input_->listen();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // no settings file in the working directory
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui_ImplGlfw_InitForVulkan(input_->window, true);
 }
 
@@ -220,11 +222,18 @@ bool Window::is_down(int key) const
     return glfwGetKey(input_->window, key) == GLFW_PRESS;
 }
 
+void Window::renew_fonts()
+{
+    if (std::exchange(input_->frame_is_open, false)) ImGui::EndFrame();
+    if (swapchain_) swapchain_->renew_fonts();
+}
+
 void Window::begin_ui()
 {
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
+    ImGui::GetIO().KeyAlt = false;  // otherwise letting go of Alt, as after Alt + drag, would move on to the menu
     ImGui::NewFrame();
 }
 

@@ -74,7 +74,7 @@ public:
     void stay_open();
     void set_title(const std::string& title);
     glm::uvec2 pixels() const;
-    double content_scale() const;  ///< 2 on a HiDPI screen
+    double content_scale() const;  ///< 2 on a HiDPI screen; another once the window is on another
     double now_s() const;
     /// Takes the whole of the screen that the window is on, or gives it back.
     void set_full_screen(bool is_full);
@@ -88,6 +88,8 @@ public:
     bool swaps_red_and_blue() const;
 
     void begin_ui();
+    /// Uploads Dear ImGui's fonts anew, before the next frame. Waits for the device; rare.
+    void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
     /// if there is nothing to draw on (minimised).
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);

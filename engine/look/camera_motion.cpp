@@ -89,6 +89,53 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
     return result;
 }
 
+namespace {
+
+/// Of another eye that looks the same way.
+void keep_clip_planes(const Camera& was, Camera& is, const glm::dvec3& forward)
+{
+    const double way = glm::dot(was.eye - is.eye, forward);
+    if (was.near_distance > 0.0) is.near_distance = std::max(0.0, was.near_distance + way);
+    if (was.far_distance > 0.0)
+        is.far_distance = std::max(1e-6 * glm::distance(is.eye, is.target), was.far_distance + way);
+}
+
+}  // namespace
+
+Camera looking_at(const Camera& camera, const glm::dvec3& target)
+{
+    Camera result = camera;
+    result.eye = target + (camera.eye - camera.target);
+    result.target = target;
+    keep_clip_planes(camera, result, axes_of(camera).forward);
+    return result;
+}
+
+Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper)
+{
+    constexpr double MARGIN = 1.05;
+    const CameraAxes axes = axes_of(camera);
+    const glm::dvec3 center = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+    const double aspect = double(std::max(pixels.x, 1u)) / double(std::max(pixels.y, 1u));
+    const double slope = std::tan(0.5 * radians(camera.fov_y_degrees));
+    double distance = 0.0, height = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 at = half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const double reach =
+            MARGIN * std::max(std::abs(glm::dot(at, axes.up)), std::abs(glm::dot(at, axes.right)) / aspect);
+        height = std::max(height, 2.0 * reach);
+        distance = std::max(distance, reach / slope - glm::dot(at, axes.forward));
+    }
+    // The eye of parallel rays stands before the box, too, since nothing behind it is seen.
+    if (!is_perspective(camera)) distance = MARGIN * glm::length(half);
+    Camera result = camera;
+    result.target = center;
+    result.eye = center - axes.forward * std::max(distance, 1e-6 * glm::distance(camera.eye, camera.target));
+    result.height = height > 0.0 ? height : camera.height;
+    keep_clip_planes(camera, result, axes.forward);
+    return result;
+}
+
 std::optional<Projected> project(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& point)
 {
     const CameraAxes axes = axes_of(camera);

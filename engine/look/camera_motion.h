@@ -24,6 +24,12 @@ Camera moved(const Camera& camera, const glm::dvec3& right_up_forward);
 /// Scales the view by `factor` (above 1: closer) about the point at `pixel`, at the depth of the target.
 Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double factor);
 
+/// The same direction, towards the middle of a box (volume space), all of which is seen, with a margin of 5 %. Clip
+/// planes stay where they are.
+Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper);
+/// The same direction and distance, towards another point. Clip planes stay where they are.
+Camera looking_at(const Camera& camera, const glm::dvec3& target);
+
 /// Where a point is seen: pixel coordinates, and its distance from the eye along the view. Null for points beside or
 /// behind the eye of a perspective camera.
 struct Projected {

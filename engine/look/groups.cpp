@@ -8,8 +8,9 @@ namespace shvr {
 
 namespace {
 
-constexpr const char* GROUP_COLORS[] = {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
-                                        "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"};
+/// Found by the search in tests/unit/look/group_palette_test.cpp; the first ones differ most.
+constexpr const char* GROUP_COLORS[] = {"#fe3099", "#1817ff", "#cbf200", "#09979d", "#ce97ff",
+                                        "#1b5b3d", "#95088c", "#686505", "#02cac2", "#9d61f7"};
 
 /// Decoded once: every picture asks for the looks of all groups.
 const std::array<glm::dvec3, std::size(GROUP_COLORS)>& group_colors()

@@ -34,6 +34,9 @@ struct ColorGroup {
     bool operator==(const ColorGroup&) const = default;
 };
 
+/// The least difference by CIEDE2000 between any two of the ten colours, and between one of them and the default
+/// transfer function or white, under normal sight and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
+inline constexpr double LEAST_GROUP_DIFFERENCE = 13.0;
 /// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);

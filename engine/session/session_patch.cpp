@@ -56,6 +56,16 @@ std::string patch_of(const std::string& setting)
     return document.value().dump();
 }
 
+std::string merged(std::string_view object, std::string_view patch, const std::string& origin)
+{
+    const JsonLimits limits{.depth = 16, .expected = "an object"};
+    JsonDocument document(object, origin, limits);
+    const JsonDocument change(patch, origin, limits);
+    if (!change.value().is_object()) change.root().refuse("an object");
+    document.value().merge_patch(change.value());
+    return document.value().dump();
+}
+
 Session patched(const Session& session, std::string_view patch)
 {
     const JsonDocument change = session_document(patch, "settings");

@@ -14,6 +14,8 @@ namespace shvr {
 std::string patch_between(const Session& before, const Session& after);
 /// The patch of a setting as --set takes it, "light.ambient=0.4".
 std::string patch_of(const std::string& setting);
+/// A merge patch applied to any JSON object. Fails where one of them is none; `origin` names the patch in messages.
+std::string merged(std::string_view object, std::string_view patch, const std::string& origin);
 /// The session with the patch applied. Fails at unknown keys and at values out of range, naming key, value and what was
 /// expected. A transfer preset is left for `transfer_function_of`.
 Session patched(const Session& session, std::string_view patch);

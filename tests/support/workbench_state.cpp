@@ -59,6 +59,7 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     state["help"] = sentence(model.shows_help);
     state["messages"] = sentence(model.shows_messages);
     state["palette"] = sentence(model.shows_palette);
+    state["preferences"] = sentence(model.shows_preferences);
     state["awaits_key"] = sentence(model.awaits_key);
     state["asks"] = sentence(model.asks_what_to_open);
     state["full_screen"] = sentence(model.is_full_screen);

@@ -18,18 +18,24 @@ namespace shvr::ui {
 
 namespace {
 
+constexpr float KEY_COLUMN = 12.5f;  ///< in font sizes: two chords fit
+
 struct Gesture {
     const char* what;
     const char* meaning;
 };
 constexpr Gesture GESTURES[] = {
-    {"Left drag", "Turn the volume"},
-    {"Middle drag, Shift + left drag", "Move the volume"},
+    {"Left button", "Use the tool of the tool bar: turn, paint, erase, trace, select or measure"},
+    {"Alt + left drag", "Turn the volume with any tool"},
+    {"Shift + left or middle drag", "Move the volume"},
+    {"Middle drag", "Turn the volume; with the tool that turns, move it"},
     {"Wheel", "Zoom"},
     {"Ctrl + wheel", "Push the probe away or pull it closer"},
     {"Mouse without buttons", "The probe follows, in its plane"},
     {"Double click", "Put the probe onto what you see there"},
-    {"Right button held", "Paint; when tracing, add a node"},
+    {"Right drag", "Turn the volume; with the tool that turns, paint"},
+    {"Double click on a setting", "Give it its usual value"},
+    {"Double click on the panels' edge", "Give them their usual width"},
     {"Drop a file", "Open it"},
     {"Click, with the tool that turns", "Select the node, or take the group, under the pointer"},
     {"Drag in a slice", "Move the cross, and with it the other slices"},
@@ -49,15 +55,15 @@ void row(const char* left, const char* right)
 {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(left);
+    ImGui::TextWrapped("%s", left);
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(right);
+    ImGui::TextWrapped("%s", right);
 }
 
 bool begin_list(const char* id)
 {
     if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit)) return false;
-    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, 10.5f * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, KEY_COLUMN * ImGui::GetFontSize());
     ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
@@ -77,7 +83,7 @@ void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
     const std::string label = waits ? "press a key ..." : keys.empty() ? "(no key)" : keys;
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0.0f, 0.5f});
     if (waits) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    if (ImGui::Button(label.c_str(), {10.5f * ImGui::GetFontSize(), 0.0f}))
+    if (ImGui::Button(label.c_str(), {KEY_COLUMN * ImGui::GetFontSize(), 0.0f}))
         actions.push_back(AwaitKey{waits ? "" : shortcut.id});
     if (waits) ImGui::PopStyleColor();
     ImGui::PopStyleVar();
@@ -89,7 +95,7 @@ void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(shortcut.name);
+    ImGui::TextWrapped("%s", shortcut.name);
     if (model.preferences.keys.contains(shortcut.id)) {
         ImGui::SameLine();
         const char* const shipped = shortcut.keys[size_t(model.preferences.key_set)];
@@ -168,7 +174,7 @@ void head(const Model& model, std::string& text, Actions& actions)
     ImGui::SameLine(0.0f, 2.0f * ImGui::GetFontSize());
     ImGui::TextUnformatted("Keys");
     for (const auto& [set, name] :
-         {std::pair{KeySet::modern, "of today"}, std::pair{KeySet::thesis, "of the thesis"}}) {
+         {std::pair{KeySet::modern, "usual"}, std::pair{KeySet::thesis, "of the SHVR thesis"}}) {
         ImGui::SameLine();
         if (ImGui::RadioButton(name, model.preferences.key_set == set))
             actions.push_back(ChooseKeys{std::string(KEY_SETS[size_t(set)].name)});

@@ -13,8 +13,10 @@
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
+#include "ui/workbench/lists/group_list.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/sight/words.h"
 
@@ -89,6 +91,8 @@ void edit_menu(const Model& model, Actions& actions)
     if (!ImGui::BeginMenu("Edit")) return;
     item("undo", model, actions);
     item("redo", model, actions);
+    ImGui::Separator();
+    item("preferences", model, actions, model.shows_preferences);
     ImGui::EndMenu();
 }
 
@@ -119,6 +123,32 @@ void cut_menu(const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
+/// Shows a panel at its place, or takes it away.
+void panel_item(const PanelRow& row, const Model& model, Actions& actions)
+{
+    const bool is_shown = model.preferences.layout.place_of(row) != PanelPlace::hidden;
+    if (ImGui::MenuItem(row.title, nullptr, is_shown, model.is_open)) {
+        const PanelPlace next = is_shown ? PanelPlace::hidden : row.is_tool ? PanelPlace::floating : PanelPlace::side;
+        actions.push_back(Prefer{patch_of_panel(row.id, {.place = next})});
+        if (next == PanelPlace::side && !model.preferences.layout.shows_side)
+            actions.push_back(Prefer{R"({"layout":{"shows_side":true}})"});
+    }
+    hint(row.hint);
+}
+
+void panels_menu(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginMenu("Panels")) return;
+    for (const PanelRow& row : panel_rows())
+        if (!row.is_tool) panel_item(row, model, actions);
+    ImGui::Separator();
+    item("side_panels", model, actions, model.preferences.layout.shows_side);
+    item("tool_bar", model, actions, model.preferences.layout.shows_tool_bar);
+    item("reset_layout", model, actions);
+    item("focus_panels", model, actions);
+    ImGui::EndMenu();
+}
+
 void view_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("View")) return;
@@ -134,7 +164,11 @@ void view_menu(const Model& model, Actions& actions)
     item("overview", model, actions, arrangement == Arrangement::overview);
     item("slices", model, actions, arrangement == Arrangement::slices);
     item("full_screen", model, actions, model.is_full_screen);
+    panels_menu(model, actions);
     ImGui::Separator();
+    item("fit_view", model, actions);
+    item("reset_view", model, actions);
+    item("look_at_selection", model, actions);
     sight_items(model, actions);
     ImGui::Separator();
     held_items("Turn the view", model, actions);
@@ -152,6 +186,13 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
+/// The keys of a shortcut that there is once for each of the first groups.
+std::string keys_of(const char* prefix, uint8_t group, const Model& model)
+{
+    const Shortcut* const shortcut = shortcut_named(sentence(prefix, int(group)));
+    return shortcut ? model.keymap.text_of(*shortcut) : std::string();
+}
+
 void brush_item(const BrushRow& row, const Model& model, Actions& actions)
 {
     if (!ImGui::MenuItem(row.title, nullptr, model.brush().brush == row.brush)) return;
@@ -166,13 +207,19 @@ void paint_menu(const Model& model, Actions& actions)
     for (const BrushRow& row : BRUSHES) brush_item(row, model, actions);
     item("next_brush", model, actions);
     ImGui::Separator();
-    for (int group = 1; group <= 9; ++group) {
-        const std::string name = group_of(model.session.groups, uint8_t(group)).name;
-        const std::string label = name + "##" + std::to_string(group);
-        if (ImGui::MenuItem(label.c_str(), std::to_string(group).c_str(), int{model.brush().group} == group))
-            set(actions, model, [&](Session& s) { s.probe.brush.group = uint8_t(group); });
+    item("tool_paint", model, actions, model.tool() == Tool::paint);
+    item("tool_erase", model, actions, model.tool() == Tool::erase);
+    ImGui::Separator();
+    for (const uint8_t group : known_groups(model)) {
+        const std::string label =
+            sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));
+        if (ImGui::MenuItem(label.c_str(), keys_of("group_", group, model).c_str(), model.brush().group == group))
+            set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     }
     item("eraser", model, actions, model.brush().group == 0);
+    item("next_group", model, actions);
+    item("previous_group", model, actions);
+    item("new_group", model, actions);
     ImGui::Separator();
     item("preview", model, actions, model.session.probe.preview);
     ImGui::EndMenu();
@@ -182,7 +229,9 @@ void trace_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Trace", model.is_open)) return;
     const TraceSelection& selected = model.trace.selection();
-    item("next_tool", model, actions, model.tool() == Tool::trace);
+    item("tool_trace", model, actions, model.tool() == Tool::trace);
+    item("tool_select", model, actions, model.tool() == Tool::select);
+    item("next_tool", model, actions);
     ImGui::Separator();
     item("add_node", model, actions);
     item("select_nearest", model, actions);
@@ -201,11 +250,11 @@ void trace_menu(const Model& model, Actions& actions)
     item("larger_nodes", model, actions);
     item("smaller_nodes", model, actions);
     if (ImGui::BeginMenu("Group of what is selected", !selected.empty())) {
-        for (int group = 1; group <= 9; ++group) {
+        for (const uint8_t group : known_groups(model)) {
             const std::string label =
-                group_of(model.session.groups, uint8_t(group)).name + "##" + std::to_string(group);
-            if (ImGui::MenuItem(label.c_str(), ("Ctrl + " + std::to_string(group)).c_str()))
-                actions.push_back(GroupOp{uint8_t(group)});
+                sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));
+            if (ImGui::MenuItem(label.c_str(), keys_of("regroup_", group, model).c_str()))
+                actions.push_back(GroupOp{group});
         }
         ImGui::EndMenu();
     }
@@ -225,11 +274,23 @@ void probe_menu(const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
+void tools_menu(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginMenu("Tools")) return;
+    item("tool_turn", model, actions, model.tool() == Tool::turn);
+    item("tool_measure", model, actions, model.tool() == Tool::measure);
+    item("palette", model, actions);
+    ImGui::Separator();
+    for (const PanelRow& row : panel_rows())
+        if (row.is_tool) panel_item(row, model, actions);
+    ImGui::EndMenu();
+}
+
 void help_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Help")) return;
     item("help", model, actions, model.shows_help);
-    item("palette", model, actions);
+    item("focus_menu", model, actions);
     item("messages", model, actions, model.shows_messages);
     ImGui::EndMenu();
 }
@@ -262,8 +323,8 @@ void said(const Model& model, const std::string& right, Actions& actions)
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max((unread.empty() ? end : unread_at - gap) - begin, 1.0f);
     ImGui::PushClipRect(at, {at.x + width, at.y + ImGui::GetFrameHeight()}, true);
-    ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? WARNING : ImGui::GetColorU32(ImGuiCol_Text));
-    ImGui::TextUnformatted(model.status().c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? ImU32(ERROR_TEXT) : ImGui::GetColorU32(ImGuiCol_Text));
+    ImGui::TextUnformatted(sentence(is_bad ? "Error: " : "", model.status()).c_str());
     ImGui::PopStyleColor();
     bool is_clicked = ImGui::IsItemClicked();
     hint("A click shows all messages.");
@@ -292,6 +353,7 @@ void menu_bar(const Model& model, Actions& actions)
         paint_menu(model, actions);
         trace_menu(model, actions);
         probe_menu(model, actions);
+        tools_menu(model, actions);
         help_menu(model, actions);
         ImGui::EndMainMenuBar();
     }
@@ -310,6 +372,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
     ImGui::SetNextWindowPos({0.0f, bottom - height});
     ImGui::SetNextWindowSize({width, height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
@@ -327,7 +390,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
     align_right(right);
     ImGui::End();
     ImGui::PopStyleColor();
-    ImGui::PopStyleVar(3);
+    ImGui::PopStyleVar(4);
 }
 
 }  // namespace shvr::ui

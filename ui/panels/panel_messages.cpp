@@ -22,8 +22,8 @@ bool is_shown(const Message& message, Shown shown)
 
 ImU32 color_of(Weight weight)
 {
-    return weight == Weight::error     ? IM_COL32(255, 135, 120, 255)
-           : weight == Weight::warning ? WARNING
+    return weight == Weight::error     ? ImU32(ERROR_TEXT)
+           : weight == Weight::warning ? ImU32(WARNING)
                                        : ImGui::GetColorU32(ImGuiCol_Text);
 }
 

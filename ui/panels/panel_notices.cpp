@@ -5,6 +5,7 @@
 #include <imgui/imgui.h>
 
 #include "ui/panels/panels.h"
+#include "ui/panels/style.h"
 
 namespace shvr::ui {
 
@@ -17,7 +18,7 @@ void read_only_banner(const Model& model, const glm::vec2& begin, float width, A
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
     ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.42f, 0.30f, 0.08f, 0.96f));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
     ImGui::Begin("Read only", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |

@@ -8,6 +8,7 @@
 #include <imgui/imgui.h>
 
 #include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/edit.h"
 
 namespace shvr::ui {
@@ -56,26 +57,31 @@ bool region_shape(BrushSettings& brush)
     return brush.region != was;
 }
 
-bool radius(const Model& model, BrushSettings& brush)
+bool radius(const Model& model, BrushSettings& brush, Actions& actions)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
     const bool changed = ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f,
                                            &SMALLEST_RADIUS_VOXELS, &LARGEST_RADIUS_VOXELS, "%.1f voxels",
                                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    hint("Of the probe and the brush. Drag sideways, or Ctrl + click to type. Keys: ] and [, Page Up and Page Down.");
+    hint(sentence("Of the probe and the brush. Drag sideways, or Ctrl + click to type. ",
+                  name_with_key("larger_brush", model.keymap), ", ", name_with_key("smaller_brush", model.keymap), ".")
+             .c_str());
+    if (resets("probe.radius_voxels", actions)) return false;
     if (model.volume.unit == "voxel") return changed;
     ImGui::SameLine();
     ImGui::TextDisabled("= %.4g %s", brush.radius_voxels * model.volume.spacing.x, spelled(model.volume.unit));
     return changed;
 }
 
-bool threshold(const Model& model, BrushSettings& brush)
+bool threshold(const Model& model, BrushSettings& brush, Actions& actions)
 {
-    label("Paint from");
+    label("Paint threshold");
     const bool changed = intensity_slider("##threshold", model, *brush.threshold);
-    hint("Paint threshold, in the file's intensities: only voxels at or above it are painted.");
-    return changed;
+    hint(
+        "In the file's intensities: only voxels at or above it are painted. The line \"paint\" in the transfer "
+        "function.");
+    return !resets("probe.paint_threshold", actions) && changed;
 }
 
 bool connectivity(BrushSettings& brush)
@@ -85,7 +91,7 @@ bool connectivity(BrushSettings& brush)
     if (ImGui::RadioButton("6 (faces)", was == 6)) brush.connectivity = 6;
     hint("Voxels are connected where they share a face.");
     ImGui::SameLine();
-    if (ImGui::RadioButton("26 (corners too)", was == 26)) brush.connectivity = 26;
+    if (ImGui::RadioButton("26 (all around)", was == 26)) brush.connectivity = 26;
     hint("Voxels are connected where they share a face, an edge or a corner: follows thin slanting roots.");
     return brush.connectivity != was;
 }
@@ -94,18 +100,18 @@ bool connectivity(BrushSettings& brush)
 bool density(const Model& model, BrushSettings& brush)
 {
     bool is_on = brush.density.has_value();
-    label("Density");
-    bool changed = ImGui::Checkbox("raise", &is_on);
+    label("Density painting");
+    bool changed = ImGui::Checkbox("raises intensities", &is_on);
     hint(
-        "Density painting: raises the intensities of what is painted, so that faint structures look like bright "
+        "Raises the intensities of what is painted, so that faint structures look like bright "
         "ones. The volume's file stays as it is; the eraser takes offsets away.");
     if (changed) {
         brush.density = is_on ? std::optional(DensityBrush{}) : std::nullopt;
         brush.paints_group = true;
     }
     if (!brush.density) return changed;
-    ImGui::SameLine();
-    changed |= ImGui::Checkbox("and paint the group", &brush.paints_group);
+    label("");
+    changed |= ImGui::Checkbox("and paints the group", &brush.paints_group);
     hint("Off: raises intensities and leaves groups as they are.");
 
     label("Raise by");
@@ -140,7 +146,7 @@ bool density(const Model& model, BrushSettings& brush)
         changed = true;
     }
     ImGui::SameLine();
-    if (ImGui::RadioButton("to the brush's edge", brush.density->falloff == Falloff::distance)) {
+    if (ImGui::RadioButton("to the edge", brush.density->falloff == Falloff::distance)) {
         brush.density->falloff = Falloff::distance;
         changed = true;
     }
@@ -151,12 +157,14 @@ void preview(const Model& model, Actions& actions)
 {
     bool is_on = model.session.probe.preview;
     label("Preview");
-    if (ImGui::Checkbox("(F5)", &is_on)) set(actions, model, [&](Session& s) { s.probe.preview = is_on; });
+    if (ImGui::Checkbox(sentence("of the brush", key_in_brackets("preview", model.keymap), "##preview").c_str(),
+                        &is_on))
+        set(actions, model, [&](Session& s) { s.probe.preview = is_on; });
     hint("Shows the voxels that painting would change here; striped where it would erase.");
     if (!is_on) return;
-    ImGui::SameLine();
+    label("");
     if (model.tool() == Tool::trace)
-        ImGui::TextDisabled("when painting");
+        ImGui::TextDisabled("not while tracing");
     else if (model.previewed_voxels)
         ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
 }
@@ -177,8 +185,8 @@ void painting(const Model& model, Actions& actions)
     BrushSettings brush = model.brush();
     bool changed = brush_kind(brush);
     changed |= region_shape(brush);
-    changed |= radius(model, brush);
-    changed |= threshold(model, brush);
+    changed |= radius(model, brush, actions);
+    changed |= threshold(model, brush, actions);
     ImGui::BeginDisabled(!row_of(brush.brush).is_connected);
     changed |= connectivity(brush);
     ImGui::EndDisabled();
@@ -193,17 +201,19 @@ void painting(const Model& model, Actions& actions)
 void guidance(const Model& model, Actions& actions)
 {
     bool assists = model.session.probe.guided;
-    if (ImGui::Checkbox("Guide the probe (Space)", &assists))
+    if (ImGui::Checkbox(sentence("Guidance", key_in_brackets("guide", model.keymap), "##guide").c_str(), &assists))
         set(actions, model, [&](Session& s) { s.probe.guided = assists; });
     hint("Pulls the probe towards the middle of what it touches, so that it stays on a root while you move along.");
 
-    label("Feel from");
+    label("Haptic threshold");
     double intensity = model.haptic_threshold();
-    if (intensity_slider("##felt", model, intensity))
+    const bool is_other = intensity_slider("##felt", model, intensity);
+    if (!resets("probe.haptic_threshold", actions) && is_other)
         set(actions, model, [&](Session& s) { s.probe.haptic_threshold = intensity; });
-    hint("Voxels at or above this intensity are felt.");
+    hint(
+        "Voxels at or above this intensity are felt, and guide the probe. The line \"feel\" in the transfer function.");
 
-    label("Pull");
+    label("Kind");
     const Guidance guidance = model.session.probe.guidance;
     if (ImGui::RadioButton("smooth", guidance == Guidance::potential))
         set(actions, model, [](Session& s) { s.probe.guidance = Guidance::potential; });
@@ -211,7 +221,8 @@ void guidance(const Model& model, Actions& actions)
     ImGui::SameLine();
     if (ImGui::RadioButton("to the mean", guidance == Guidance::mean))
         set(actions, model, [](Session& s) { s.probe.guidance = Guidance::mean; });
-    hint("Pulls to the mean of what lies in the probe. Key: Home switches between the kinds of guidance.");
+    hint(sentence("Pulls to the mean of what lies in the probe. ", name_with_key("next_guidance", model.keymap), ".")
+             .c_str());
 
     text_label("Moved by");
     ImGui::TextUnformatted(model.device_name.data(), model.device_name.data() + model.device_name.size());

@@ -1,4 +1,4 @@
-// Tracing: the tool of the right button, the size of the trace, and the selection.
+// Tracing: the size of the trace, and the selection. The tool is in the tool bar.
 
 #include <algorithm>
 #include <cmath>
@@ -7,25 +7,13 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
 
 namespace {
-
-void tool(const Model& model, Actions& actions)
-{
-    label("Tool");
-    if (ImGui::RadioButton("Paint", model.tool() == Tool::paint))
-        set(actions, model, [](Session& s) { s.probe.tool = Tool::paint; });
-    ImGui::SameLine();
-    if (ImGui::RadioButton("Trace (X)", model.tool() == Tool::trace))
-        set(actions, model, [](Session& s) { s.probe.tool = Tool::trace; });
-    hint(
-        "The right mouse button, F and the stylus add a node at the probe, with its radius and in the chosen group, "
-        "linked with the selected node.");
-}
 
 /// "3 nodes", "1 node"
 void count(size_t number, const char* what, bool goes_on)
@@ -45,10 +33,10 @@ void summary(const Model& model)
     hint("A segment is a chain of internodes between two branches or ends.");
     text_label("Length");
     const auto group = trace.group_length.find(model.brush().group);
-    ImGui::Text("%.5g %s", trace.length, spelled(model.volume.unit));
+    ImGui::Text("%.4g %s", trace.length, spelled(model.volume.unit));
     if (trace.group_length.size() < 2 && group != trace.group_length.end()) return;
     ImGui::SameLine();
-    ImGui::TextDisabled("(group %d: %.5g)", int(model.brush().group),
+    ImGui::TextDisabled("(group %d: %.4g)", int(model.brush().group),
                         group == trace.group_length.end() ? 0.0 : group->second);
 }
 
@@ -73,7 +61,9 @@ void radius(const Model& model, double radius_units, Actions& actions)
                       ImGuiSliderFlags_AlwaysClamp);
     is_edited = ImGui::IsItemActive();
     if (ImGui::IsItemDeactivatedAfterEdit()) actions.push_back(RadiusOp{.radius_voxels = edited});
-    hint("Drag sideways, or Ctrl + click to type. Keys: = and -, slowly with Shift.");
+    hint(sentence("Drag sideways, or Ctrl + click to type. ", name_with_key("larger_selected", model.keymap), ". ",
+                  name_with_key("smaller_selected", model.keymap), ".")
+             .c_str());
     if (model.volume.unit == "voxel") return;
     ImGui::SameLine();
     ImGui::TextDisabled("= %.4g %s", edited * voxel, spelled(model.volume.unit));
@@ -90,7 +80,7 @@ void selected_node(const Model& model, uint32_t number, Actions& actions)
     ImGui::Text("%.1f, %.1f, %.1f", voxel.x, voxel.y, voxel.z);
     if (model.volume.unit != "voxel") {
         text_label("");
-        ImGui::TextDisabled("= %.5g, %.5g, %.5g %s", node.position.x, node.position.y, node.position.z,
+        ImGui::TextDisabled("= %.4g, %.4g, %.4g %s", node.position.x, node.position.y, node.position.z,
                             spelled(model.volume.unit));
     }
     group_of_selected(model, node.group);
@@ -103,7 +93,7 @@ void selected_internode(const Model& model, uint32_t number)
     text_label("Selected");
     ImGui::Text("internode %u, node %u to %u", number, internode.a, internode.b);
     text_label("Length");
-    ImGui::Text("%.5g %s", model.trace.length_of(internode), spelled(model.volume.unit));
+    ImGui::Text("%.4g %s", model.trace.length_of(internode), spelled(model.volume.unit));
     group_of_selected(model, internode.group);
 }
 
@@ -116,7 +106,7 @@ void selected_segment(const Model& model, const TraceSelection& selected)
     for (const uint32_t internode : selected.internodes)
         length += model.trace.length_of(model.trace.internode(internode));
     text_label("Length");
-    ImGui::Text("%.5g %s", length, spelled(model.volume.unit));
+    ImGui::Text("%.4g %s", length, spelled(model.volume.unit));
 }
 
 void selection(const Model& model, Actions& actions)
@@ -126,7 +116,9 @@ void selection(const Model& model, Actions& actions)
     if (const auto internode = selected.internode()) return selected_internode(model, *internode);
     if (!selected.empty()) return selected_segment(model, selected);
     text_label("Selected");
-    ImGui::TextDisabled(model.trace.nodes().empty() ? "nothing: N adds a node" : "nothing: . selects a node");
+    const char* const next = model.trace.nodes().empty() ? "add_node" : "select_nearest";
+    ImGui::TextDisabled("nothing");
+    hint((name_with_key(next, model.keymap) + ".").c_str());
 }
 
 void button(const char* name, bool is_enabled, const char* text, const Action& action, Actions& actions)
@@ -140,21 +132,31 @@ void button(const char* name, bool is_enabled, const char* text, const Action& a
 void buttons(const Model& model, Actions& actions)
 {
     const TraceSelection& selected = model.trace.selection();
-    button("Segment", !selected.empty(), "Selects the whole chain between two branches or ends. Key: Shift + .",
-           SelectSegmentOp{}, actions);
+    button(
+        "Segment", !selected.empty(),
+        ("Selects the whole chain between two branches or ends" + key_in_brackets("select_segment", model.keymap) + ".")
+            .c_str(),
+        SelectSegmentOp{}, actions);
     ImGui::SameLine();
-    button("Move here", selected.node().has_value(), "Moves the selected node to the probe. Key: M, held.",
+    button("Move here", selected.node().has_value(),
+           ("Moves the selected node to the probe. " + name_with_key("drag_node", model.keymap) + ".").c_str(),
            MoveOp{model.probe_voxel}, actions);
     ImGui::SameLine();
-    button("Delete", !selected.empty(), "Deletes the selection; a node's internodes go with it. Key: Delete",
+    button("Delete", !selected.empty(),
+           ("Deletes the selection" + key_in_brackets("delete_selected", model.keymap) +
+            "; a node's internodes go with it.")
+               .c_str(),
            DeleteOp{}, actions);
     ImGui::SameLine();
-    button("Deselect", !selected.empty(), "Deselects, so that the next node starts a new trace. Key: /", DeselectOp{},
-           actions);
+    button("Deselect", !selected.empty(),
+           ("Deselects" + key_in_brackets("deselect", model.keymap) + ", so that the next node starts a new trace.")
+               .c_str(),
+           DeselectOp{}, actions);
     const std::string group = std::to_string(model.brush().group);
     ImGui::BeginDisabled(model.brush().group == 0);
     button(("To group " + group).c_str(), !selected.empty(),
-           "Moves the selection to the chosen group. Keys: Ctrl + 1 ... 9", GroupOp{model.brush().group}, actions);
+           "Moves the selection to the active group. The menu Trace has the keys.", GroupOp{model.brush().group},
+           actions);
     ImGui::EndDisabled();
 }
 
@@ -174,8 +176,9 @@ void tapering(const Model& model, Actions& actions)
         actions.push_back(op);
     }
     hint(
-        "Tapers from node to node; otherwise all of the group have one size, which = and - change while nothing is "
-        "selected.");
+        "Tapers from node to node; otherwise all of the group have one size, which the keys that change selected nodes "
+        "change "
+        "while nothing is selected.");
     if (found == model.trace.internode_radii().end()) return;
     ImGui::SameLine();
     ImGui::TextDisabled("%.4g %s", found->second, spelled(model.volume.unit));
@@ -185,7 +188,6 @@ void tapering(const Model& model, Actions& actions)
 
 void trace_panel(const Model& model, Actions& actions)
 {
-    tool(model, actions);
     summary(model);
     selection(model, actions);
     buttons(model, actions);

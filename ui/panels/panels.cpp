@@ -2,109 +2,111 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <cstring>
+#include <optional>
 
 #include <imgui/imgui.h>
+
+#include "ui/panels/style.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
 namespace {
 
-/// The first that exists; otherwise Dear ImGui's own font.
-constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
-                                 "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
-                                 "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
-                                 "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
-                                 "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-constexpr double FONT_PIXELS = 14.0;           ///< at a content scale of 1
-constexpr float PANEL_WIDTH = 330.0f / 14.0f;  ///< in font sizes, so that it follows the content scale
+struct PanelBody {
+    const char* id = "";
+    void (*draw)(const Model& model, Actions& actions) = nullptr;
+};
+/// What each panel shows; their order and titles are in ui/workbench/appearance/layout.cpp.
+constexpr PanelBody BODIES[] = {
+    {"transfer_function", transfer_function_panel},
+    {"groups", groups_panel},
+    {"probe", probe_panel},
+    {"trace", trace_panel},
+    {"light", light_panel},
+    {"occlusion", occlusion_panel},
+    {"views", views_panel},
+    {"history", history_panel},
+    {"passes", passes_panel},
+};
 
-ImVec4 grey(float level, float alpha = 1.0f)
-{
-    return {level, level, level, alpha};
-}
+constexpr float SPLITTER = 6.0f / 14.0f;  ///< its width, in font sizes
 
-ImVec4 accent(float level, float alpha = 1.0f)
+void draw_body(const PanelRow& row, const Model& model, Actions& actions)
 {
-    return {0.36f * level, 0.58f * level, 0.86f * level, alpha};
-}
-
-void set_shapes(ImGuiStyle& style)
-{
-    style.WindowRounding = style.ChildRounding = style.PopupRounding = 4.0f;
-    style.FrameRounding = style.GrabRounding = style.TabRounding = style.ScrollbarRounding = 3.0f;
-    style.WindowPadding = {10.0f, 8.0f};
-    style.FramePadding = {6.0f, 3.0f};
-    style.ItemSpacing = {8.0f, 5.0f};
-    style.ItemInnerSpacing = {6.0f, 4.0f};
-    style.CellPadding = {4.0f, 3.0f};
-    style.ScrollbarSize = 12.0f;
-    style.GrabMinSize = 10.0f;
-    style.WindowBorderSize = style.FrameBorderSize = 0.0f;
-    style.PopupBorderSize = 1.0f;
-    style.DisplaySafeAreaPadding = {6.0f, 0.0f};
-    style.WindowTitleAlign = {0.5f, 0.5f};
-}
-
-void set_colors(ImVec4* colors)
-{
-    colors[ImGuiCol_Text] = grey(0.88f);
-    colors[ImGuiCol_TextDisabled] = grey(0.60f);
-    colors[ImGuiCol_WindowBg] = grey(0.145f);
-    colors[ImGuiCol_PopupBg] = grey(0.17f, 0.98f);
-    colors[ImGuiCol_MenuBarBg] = grey(0.18f);
-    colors[ImGuiCol_Border] = grey(0.30f);
-    colors[ImGuiCol_Separator] = grey(0.27f);
-    colors[ImGuiCol_FrameBg] = grey(0.235f);
-    colors[ImGuiCol_FrameBgHovered] = grey(0.27f);
-    colors[ImGuiCol_FrameBgActive] = grey(0.30f);
-    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = colors[ImGuiCol_TitleBgCollapsed] = grey(0.18f);
-    colors[ImGuiCol_Button] = grey(0.26f);
-    colors[ImGuiCol_ButtonHovered] = grey(0.32f);
-    colors[ImGuiCol_ButtonActive] = accent(0.75f);
-    colors[ImGuiCol_Header] = grey(0.21f);
-    colors[ImGuiCol_HeaderHovered] = grey(0.26f);
-    colors[ImGuiCol_HeaderActive] = grey(0.29f);
-    colors[ImGuiCol_CheckMark] = accent(1.0f);
-    colors[ImGuiCol_SliderGrab] = accent(0.8f);
-    colors[ImGuiCol_SliderGrabActive] = accent(1.0f);
-    colors[ImGuiCol_PlotHistogram] = accent(0.85f);
-    colors[ImGuiCol_TextSelectedBg] = accent(0.9f, 0.5f);
-    colors[ImGuiCol_ScrollbarBg] = grey(0.145f, 0.0f);
-    colors[ImGuiCol_ScrollbarGrab] = grey(0.30f);
-    colors[ImGuiCol_ScrollbarGrabHovered] = grey(0.36f);
-    colors[ImGuiCol_ScrollbarGrabActive] = grey(0.42f);
-    colors[ImGuiCol_TableHeaderBg] = grey(0.20f);
-    colors[ImGuiCol_TableRowBgAlt] = grey(1.0f, 0.025f);
-    colors[ImGuiCol_ModalWindowDimBg] = grey(0.0f, 0.45f);
-    colors[ImGuiCol_ResizeGrip] = grey(0.30f, 0.5f);
-    colors[ImGuiCol_ResizeGripHovered] = colors[ImGuiCol_ResizeGripActive] = accent(0.9f);
-}
-
-/// Once the atlas is on the device, a font added to it would have no effect.
-void load_font(double content_scale)
-{
-    ImGuiIO& io = ImGui::GetIO();
-    if (io.Fonts->IsBuilt()) {
-        io.FontGlobalScale = float(content_scale);
-        return;
-    }
-    const float pixels = float(std::max(1.0, std::round(FONT_PIXELS * content_scale)));
-    std::error_code error;
-    for (const char* font : FONTS)
-        if (std::filesystem::is_regular_file(font, error) && io.Fonts->AddFontFromFileTTF(font, pixels)) return;
-    ImFontConfig config;
-    config.SizePixels = pixels;
-    io.Fonts->AddFontDefault(&config);
-}
-
-void section(const char* title, bool is_open, void (*panel)(const Model&, Actions&), const Model& model,
-             Actions& actions)
-{
-    if (!ImGui::CollapsingHeader(title, is_open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None)) return;
-    ImGui::PushID(title);
-    panel(model, actions);
+    const auto body =
+        std::ranges::find_if(BODIES, [&](const PanelBody& each) { return std::strcmp(each.id, row.id) == 0; });
+    if (body == std::end(BODIES)) return;
+    ImGui::PushID(row.id);
+    body->draw(model, actions);
     ImGui::PopID();
+}
+
+void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
+{
+    actions.push_back(Prefer{patch_of_panel(row.id, changed)});
+}
+
+/// Where nobody has chosen, tracing opens once there is a trace, or one is being made.
+bool is_folded(const PanelRow& row, const Model& model)
+{
+    const WindowLayout& layout = model.preferences.layout;
+    const auto found = layout.panels.find(row.id);
+    const bool is_chosen = found != layout.panels.end() && found->second.folded;
+    if (!is_chosen && std::strcmp(row.id, "trace") == 0)
+        return model.trace.nodes().empty() && model.tool() != Tool::trace;
+    return layout.is_folded(row);
+}
+
+// ---- At the side
+
+enum class HeaderSign { float_out, close };
+
+/// A small button of the panel's heading.
+bool header_button(HeaderSign sign, float right, const char* text)
+{
+    const float size = ImGui::GetFrameHeight();
+    ImGui::SameLine(right - size);
+    ImGui::PushID(int(sign));
+    const bool is_clicked = ImGui::InvisibleButton("sign", {size, size});
+    const ImU32 color =
+        shade_of(ImGui::IsItemHovered() || ImGui::IsItemFocused() ? ColorRole::text : ColorRole::faint_text);
+    const ImVec2 begin = ImGui::GetItemRectMin();
+    const float a = 0.32f * size, b = 0.68f * size, stroke = std::max(1.0f, 0.07f * size);
+    const auto at = [&](float x, float y) { return ImVec2(begin.x + x, begin.y + y); };
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (sign == HeaderSign::close) {
+        list.AddLine(at(a, a), at(b, b), color, stroke);
+        list.AddLine(at(a, b), at(b, a), color, stroke);
+    } else {
+        list.AddRect(at(a, 0.42f * size), at(0.58f * size, b), color, 0.0f, 0, stroke);
+        list.AddLine(at(0.5f * size, a), at(b, a), color, stroke);
+        list.AddLine(at(b, a), at(b, 0.5f * size), color, stroke);
+        list.AddLine(at(0.5f * size, 0.5f * size), at(b, a), color, stroke);
+    }
+    hint(text);
+    ImGui::PopID();
+    return is_clicked;
+}
+
+void section(const PanelRow& row, const Model& model, Actions& actions)
+{
+    const bool was_open = !is_folded(row, model);
+    ImGui::PushID(row.id);
+    ImGui::SetNextItemOpen(was_open, ImGuiCond_Always);
+    const float right = ImGui::GetContentRegionMax().x;
+    const bool is_open = ImGui::CollapsingHeader(row.title, ImGuiTreeNodeFlags_AllowItemOverlap);
+    if (is_open != was_open) change(row, {.folded = !is_open}, actions);
+    const float size = ImGui::GetFrameHeight();
+    if (header_button(HeaderSign::float_out, right - size, "A window of its own"))
+        change(row, {.place = PanelPlace::floating}, actions);
+    if (header_button(HeaderSign::close, right, "Close; the menu View, Panels, brings it back"))
+        change(row, {.place = PanelPlace::hidden}, actions);
+    ImGui::PopID();
+    if (!is_open) return;
+    draw_body(row, model, actions);
     ImGui::Spacing();
 }
 
@@ -113,59 +115,143 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     ImGui::SetNextWindowPos(at);
     ImGui::SetNextWindowSize(size);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                    ImGuiWindowFlags_AlwaysVerticalScrollbar;
-    ImGui::Begin("Side panel", nullptr, flags);
-    section("Probe and painting", true, probe_panel, model, actions);
-    // While painting, the transfer function needs the space; while tracing, this section opens even if it was folded.
-    if (model.tool() == Tool::trace) ImGui::SetNextItemOpen(true);
-    section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
-    section("Transfer function", true, transfer_function_panel, model, actions);
-    section("Light and depth", false, light_panel, model, actions);
-    section("Ambient occlusion", false, occlusion_panel, model, actions);
-    section("Views", false, views_panel, model, actions);
-    section("Colour groups", true, groups_panel, model, actions);
-    section("History", false, history_panel, model, actions);
-    section("GPU passes", false, passes_panel, model, actions);
+    ImGui::Begin(SIDE_PANEL, nullptr, flags);
+    for (const PanelRow& row : panel_rows())
+        if (model.preferences.layout.place_of(row) == PanelPlace::side) section(row, model, actions);
     ImGui::End();
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
+}
+
+/// The edge between picture and panels: a drag widens them, a double click gives them their usual width. Returns the
+/// width while it is dragged.
+std::optional<double> splitter(const ImVec2& at, float height, float window_width, Actions& actions)
+{
+    static std::optional<double> dragged;  // in font sizes
+    const float font = ImGui::GetFontSize(), width = SPLITTER * font;
+    ImGui::SetNextWindowPos({at.x - 0.5f * width, at.y});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+    ImGui::Begin("##splitter", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::InvisibleButton("edge", {width, std::max(height, 1.0f)});
+    const bool is_held = ImGui::IsItemActive();
+    if (ImGui::IsItemHovered() || is_held) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+        ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                                  shade_of(ColorRole::accent, 0.7f));
+    }
+    const bool is_reset = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    ImGui::End();
+    ImGui::PopStyleVar(3);
+    if (is_held && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f))
+        dragged = std::clamp(double((window_width - ImGui::GetIO().MousePos.x) / font), MIN_SIDE_WIDTH, 1000.0);
+    if (is_reset) actions.push_back(Prefer{R"({"layout":{"side_width":null}})"});
+    if (!is_held && dragged) {
+        actions.push_back(Prefer{sentence("{\"layout\":{\"side_width\":", std::round(10.0 * *dragged) / 10.0, "}}")});
+        dragged.reset();
+    }
+    return dragged;
+}
+
+// ---- Windows of their own
+
+/// Where it was left, or one beside the other in the picture.
+void place_window(const PanelRow& row, size_t number, const Model& model, const ImVec2& window)
+{
+    const double font = ImGui::GetFontSize();
+    const auto found = model.preferences.layout.panels.find(row.id);
+    const PanelLayout kept = found == model.preferences.layout.panels.end() ? PanelLayout{} : found->second;
+    const glm::dvec2 size = font * kept.size.value_or(FLOATING_SIZE);
+    const glm::dvec2 first = glm::dvec2(3.0, 6.0) + double(number) * glm::dvec2(3.0, 2.0);
+    const glm::dvec2 at = within_reach(font * kept.at.value_or(first), size, {window.x, window.y});
+    ImGui::SetNextWindowSize({float(size.x), float(size.y)}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
+}
+
+/// Once the mouse is let go.
+void keep_place(const PanelRow& row, const Model& model, Actions& actions)
+{
+    if (ImGui::IsAnyMouseDown() || ImGui::IsWindowAppearing()) return;
+    const double font = ImGui::GetFontSize();
+    const auto rounded = [&](const ImVec2& pixels) {
+        return glm::dvec2(std::round(10.0 * double(pixels.x) / font) / 10.0,
+                          std::round(10.0 * double(pixels.y) / font) / 10.0);
+    };
+    const glm::dvec2 at = rounded(ImGui::GetWindowPos()), size = rounded(ImGui::GetWindowSize());
+    const auto found = model.preferences.layout.panels.find(row.id);
+    if (found == model.preferences.layout.panels.end()) return;
+    if (found->second.at == at && found->second.size == size) return;
+    change(row, {.at = at, .size = size}, actions);
+}
+
+void floating_panel(const PanelRow& row, size_t number, const Model& model, const ImVec2& window, Actions& actions)
+{
+    place_window(row, number, model, window);
+    bool is_open = true;
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    if (ImGui::Begin(sentence(row.title, "###panel ", row.id).c_str(), &is_open, flags)) {
+        keep_place(row, model, actions);
+        if (ImGui::SmallButton("Back to the side")) change(row, {.place = PanelPlace::side}, actions);
+        ImGui::Separator();
+        draw_body(row, model, actions);
+    }
+    ImGui::End();
+    if (!is_open) change(row, {.place = PanelPlace::hidden}, actions);
+}
+
+void floating_panels(const Model& model, const ImVec2& window, Actions& actions)
+{
+    size_t number = 0;
+    for (const PanelRow& row : panel_rows())
+        if (model.preferences.layout.place_of(row) == PanelPlace::floating)
+            floating_panel(row, number++, model, window, actions);
 }
 
 }  // namespace
-
-void set_style(double content_scale)
-{
-    ImGui::StyleColorsDark();
-    ImGuiStyle& style = ImGui::GetStyle();
-    set_shapes(style);
-    set_colors(style.Colors);
-    style.ScaleAllSizes(float(content_scale));
-    load_font(content_scale);
-}
 
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions)
 {
     const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
     const glm::vec2 pixels_per_unit(scale.x > 0.0f ? scale.x : 1.0f, scale.y > 0.0f ? scale.y : 1.0f);
     const glm::vec2 size = glm::vec2(window) / pixels_per_unit;
-    const float bar = ImGui::GetFrameHeight();
-    const float panel = model.is_open ? std::min(PANEL_WIDTH * ImGui::GetFontSize(), size.x) : 0.0f;
+    const float bar = ImGui::GetFrameHeight(), font = ImGui::GetFontSize();
+    const bool has_tools = model.is_open && model.preferences.layout.shows_tool_bar;
+    const float top = bar + (has_tools ? tool_bar_height() : 0.0f);
+    const float height = std::max(size.y - top - bar, 1.0f);
+    WindowLayout wanted = model.preferences.layout;
+    float side = model.is_open ? float(std::round(side_units(wanted, size.x, font))) : 0.0f;
 
     menu_bar(model, actions);
+    if (side > 0.0f)
+        if (const std::optional<double> dragged = splitter({size.x - side, top}, height, size.x, actions)) {
+            wanted.side_width = dragged;
+            side = float(std::round(side_units(wanted, size.x, font)));
+        }
+    if (has_tools) tool_bar({0.0f, bar}, size.x, model, actions);
+    if (side > 0.0f) side_panel({size.x - side, top}, {side, height}, model, actions);
     if (model.is_open)
-        side_panel({size.x - panel, bar}, {panel, std::max(size.y - 2.0f * bar, 1.0f)}, model, actions);
+        floating_panels(model, {size.x, size.y}, actions);
     else
         start_page(model, actions);
     status_bar(model, window, actions);
-    notices(model, {0.0f, bar}, size.x - panel, actions);
+    notices(model, {0.0f, top}, size.x - side, actions);
+    if (model.is_open) first_hints(model, {0.5f * (size.x - side), top}, actions);
     if (model.shows_help) help_window(model, actions);
+    if (model.shows_preferences) preferences_window(model, actions);
     if (model.shows_palette) palette_window(model, actions);
     if (model.shows_messages) messages_window(model, actions);
     jobs_window(model, {0.0f, size.y - bar}, actions);
 
-    const glm::vec2 begin(0.0f, bar);
-    const glm::vec2 end = glm::max(begin, size - glm::vec2(panel, bar));
+    const glm::vec2 begin(0.0f, top);
+    const glm::vec2 end = glm::max(begin, size - glm::vec2(side, bar));
     const auto in_pixels = [&](const glm::vec2& at) {
         return glm::min(glm::uvec2(glm::round(at * pixels_per_unit)), window);
     };

@@ -2,6 +2,8 @@
 // The panels around the graphics window. Each function draws state and returns the user's actions; none changes
 // anything but its own widgets. Call between Window::begin_ui and Window::present, main thread.
 
+#include <imgui/imgui.h>
+
 #include "ui/workbench/action.h"
 #include "ui/workbench/model.h"
 
@@ -12,18 +14,17 @@ struct Layout {
     glm::uvec2 begin{0}, end{0};
 };
 
-/// The dark, even look of all panels, and a readable font. Call once, before the window is attached, since that uploads
-/// the font.
-void set_style(double content_scale);
+/// The window of the panels at the side, for those who give it the keyboard.
+inline constexpr const char* SIDE_PANEL = "Side panel";
 
 /// Whether a window of the interface was at that place in the last frame; units of the interface.
 bool covers(const glm::dvec2& at);
 
-/// Draws the menu bar, side panel, status bar and, if open, the help window; adds to `actions`. Returns the area left.
-/// While nothing is open, the start page is there instead of the side panel.
+/// Draws menu bar, tool bar, panels, status bar and the windows that are shown; adds to `actions`. Returns the area
+/// left. While nothing is open, the start page is there instead of tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// The parts of the side panel, each in its own file.
+// What panels show, each in its own file; which there are and where is in ui/workbench/appearance/layout.h.
 void probe_panel(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
@@ -33,6 +34,12 @@ void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void passes_panel(const Model& model, Actions& actions);
 void history_panel(const Model& model, Actions& actions);
+/// Below the menu, over the whole width: the tools, the active group, and what the mouse does.
+float tool_bar_height();
+void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);
+/// Until all are dismissed, at the upper edge of the picture.
+void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions);
+void preferences_window(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);

@@ -3,14 +3,22 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
+#include "engine/base/error.h"
+#include "engine/session/session_patch.h"
 #include "ui/panels/panels.h"
 
 namespace shvr::ui {
 
+namespace {
+
+constexpr float LABEL_COLUMN = 8.6f;  ///< in font sizes: "Density painting" fits
+
+}  // namespace
+
 void text_label(const char* text)
 {
     ImGui::TextUnformatted(text);
-    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+    ImGui::SameLine(LABEL_COLUMN * ImGui::GetFontSize());
 }
 
 void label(const char* text)
@@ -24,6 +32,15 @@ bool slider(const char* label, double& value, double lower, double upper, const 
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
     return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &lower, &upper, format,
                                ImGuiSliderFlags_AlwaysClamp | flags);
+}
+
+bool resets(const char* key, Actions& actions)
+{
+    const bool is_hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup);
+    if (!is_hovered || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return false;
+    ImGui::ClearActiveID();  // the widget would follow the mouse, or take typed digits
+    actions.push_back(Set{patch_of(sentence(key, "=null"))});
+    return true;
 }
 
 const char* spelled(const std::string& unit)

@@ -5,9 +5,17 @@
 
 #include <imgui/imgui.h>
 
+#include "ui/panels/style.h"
+#include "ui/workbench/action.h"
+
 namespace shvr::ui {
 
-inline constexpr ImU32 WARNING = IM_COL32(242, 184, 90, 255);
+/// A colour by what it is for, as the present theme has it.
+struct ThemeColor {
+    ColorRole role;
+    operator ImU32() const { return shade_of(role); }
+};
+inline constexpr ThemeColor WARNING{ColorRole::warning}, ERROR_TEXT{ColorRole::error};
 
 /// A tooltip for the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
@@ -19,6 +27,11 @@ void label(const char* text);
 /// A slider as wide as the panel, for a value within its limits.
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
+
+/// A double click on the widget drawn last gives a setting what ships, or what is chosen for the volume: its key as in
+/// the table of engine/session, "light.ambient". Returns whether that happened, so that the widget's own change is not
+/// sent as well.
+bool resets(const char* key, Actions& actions);
 
 /// A unit in its usual notation.
 const char* spelled(const std::string& unit);

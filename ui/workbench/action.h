@@ -69,6 +69,12 @@ struct MoveClip {
     double share = 0.0;
 };
 struct ResetCuts {};
+/// Brings all that is not cut away into sight, from where one looks.
+struct FitView {};
+/// Back to the camera that the session opens with.
+struct ResetView {};
+/// Towards what is selected, at the distance there is.
+struct LookAtSelection {};
 struct UpdateOcclusion {};  ///< updates it where it does not update by itself
 
 // ---- Settings
@@ -214,6 +220,17 @@ struct ChooseKeys {
 struct BindKeys {
     std::string shortcut, keys;
 };
+/// Changes preferences (preferences.h), as a patch of their file: {"theme": "light"}; null takes what ships.
+struct Prefer {
+    std::string patch;
+};
+struct ShowPreferences {
+    bool on = true;
+};
+/// Gives the keyboard to the panels or to the menu, until Escape or a click.
+struct FocusOn {
+    std::string what = "panels";  ///< or "menu"
+};
 struct ShowFullScreen {
     bool on = true;
 };
@@ -222,7 +239,7 @@ struct Quit {};
 using Action = std::variant<
     // looking
     Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, MoveCut, MoveClip,
-    ResetCuts, UpdateOcclusion,
+    ResetCuts, FitView, ResetView, LookAtSelection, UpdateOcclusion,
     // settings, the probe
     Set, EndStep, AutoContrast, ProbeTo, ProbeOnto, ProbeAlong, PushProbe, PlaceProbe, ScaleProbe,
     // painting and tracing
@@ -233,7 +250,7 @@ using Action = std::variant<
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,
-    ShowMessages, ShowPalette, ShowFullScreen, Quit>;
+    ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -66,6 +66,11 @@ std::string why(const Model& model, const LookFrom& action)
     return is_known || action.camera.empty() ? "" : sentence("no view is kept as ", action.camera);
 }
 
+std::string why(const Model& model, const LookAtSelection&)
+{
+    return model.trace.selection().empty() ? "nothing is selected" : "";
+}
+
 std::string why(const Model& model, const UpdateOcclusion&)
 {
     return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
@@ -220,7 +225,7 @@ constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
 constexpr bool NEEDS_DOCUMENT =
     !IS_ONE_OF<Kind, Open, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, Resize,
-               AwaitKey, ShowHelp, ShowMessages, ShowPalette, ShowFullScreen, Quit>;
+               AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 
 }  // namespace
 

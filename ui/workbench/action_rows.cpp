@@ -30,6 +30,9 @@ constexpr ActionRow ROWS[] = {
     {"move_cut", "Move a cutting plane", LOOKING, "moves one of the six planes by a share of the volume's size"},
     {"move_clip", "Move a clip plane", LOOKING, "moves the near or far plane by a share of the distance to the target"},
     {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
+    {"fit_view", "Fit", LOOKING, "brings all that is not cut away into sight"},
+    {"reset_view", "Reset the view", LOOKING, "takes the camera that the session opens with"},
+    {"look_at_selection", "Look at what is selected", LOOKING, "moves what is selected into the middle of the view"},
     {"update_occlusion", "Update ambient occlusion", LOOKING, "computes it anew where it is not automatic"},
     {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
     {"end_step", "End the step", SETTINGS, "makes one step of what was set since the last; it comes by itself"},
@@ -83,6 +86,9 @@ constexpr ActionRow ROWS[] = {
     {"show_help", "Keys and mouse", WINDOW, "shows or hides the list of keys"},
     {"show_messages", "Messages", WINDOW, "shows or hides all that was said, and takes it as read"},
     {"show_palette", "Find anything", WINDOW, "shows or hides a box that finds shortcuts, actions and settings"},
+    {"prefer", "Change preferences", WINDOW, "sets what a person keeps for all scans; null takes what ships"},
+    {"show_preferences", "Preferences", WINDOW, "shows or hides theme, sizes and keys"},
+    {"focus", "Use panels by keyboard", WINDOW, "gives the keyboard to the panels or to the menu"},
     {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
     {"quit", "Quit", WINDOW, "saves the work and closes the window"},
 };
@@ -169,6 +175,22 @@ void fields(Fields& f, Set& a)
         a.patch = node.dump();
     };
     f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
+}
+void fields(Fields& f, Prefer& a)
+{
+    const auto read = [&](const JsonNode& node) {
+        if (!node.is_object()) node.refuse("an object such as {\"theme\": \"light\"}");
+        a.patch = node.dump();
+    };
+    f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
+}
+void fields(Fields& f, ShowPreferences& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, FocusOn& a)
+{
+    f.choice("what", a.what, {"panels", "menu"}, {});
 }
 void fields(Fields& f, ProbeTo& a)
 {

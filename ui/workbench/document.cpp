@@ -57,6 +57,7 @@ std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opene
     std::unique_ptr<Document> document(
         new Document(renderer, std::move(opened), session_path_of(input), view_options, overridden));
     document->load_work(renderer, std::move(hold));
+    document->begin_with_turning();
     document->note_saved();
     return document;
 }
@@ -80,13 +81,26 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
     session_text_ = text_of_session(session_path);
     surfaces = std::exchange(session.surfaces, {});
-    ProbeSettings& probe = session.probe;
-    probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
+    choose_thresholds(session);
+    touch.place(session.probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
+}
+
+/// Nobody who opens a scan paints or adds a node by the first drag, whatever was done last; --set may still choose.
+void Document::begin_with_turning()
+{
+    const bool is_chosen =
+        std::ranges::any_of(overridden_, [](const std::string& setting) { return setting.starts_with("probe.tool="); });
+    if (!is_chosen) session.probe.tool = Tool::turn;
+}
+
+void Document::choose_thresholds(Session& of) const
+{
+    ProbeSettings& probe = of.probe;
+    if (!probe.brush.threshold) probe.brush.threshold = dab_of(of, volume(), statistics).threshold;
     if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
     if (!probe.node_radius_voxels) probe.node_radius_voxels = automatic_node_radius(volume());
-    SliceSettings& slices = session.view.slices;
+    SliceSettings& slices = of.view.slices;
     if (!slices.black && !slices.white) std::tie(slices.black, slices.white) = contrast_of(statistics);
-    touch.place(probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
 void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
@@ -115,9 +129,7 @@ void Document::take_kept_settings()
     set_kept_settings(session, kept);
     camera = camera_named(session, session.camera_name, volume());
     ProbeSettings& probe = session.probe;
-    if (!probe.brush.threshold) probe.brush.threshold = dab_of(session, volume(), statistics).threshold;
-    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
-    if (!probe.node_radius_voxels) probe.node_radius_voxels = automatic_node_radius(volume());
+    choose_thresholds(session);
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 

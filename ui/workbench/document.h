@@ -59,6 +59,8 @@ struct Document {
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
     const BrushSettings& brush() const { return session.probe.brush; }
+    /// Thresholds that are not given are chosen for the volume.
+    void choose_thresholds(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
     /// A stroke of the brush as it would paint now, without a path; at the probe's position.
@@ -111,6 +113,7 @@ private:
              const View::Options& view_options, const std::vector<std::string>& overridden);
     void load_work(Renderer& renderer, std::shared_ptr<Hold> hold);
     void take_kept_settings();
+    void begin_with_turning();
     void name_trace();
     std::optional<Notice> write_session();
     bool edits_are_saved() const;

@@ -13,14 +13,15 @@ Set edited(const Session& session, const Edit& edit)
 {
     Session after = session;
     edit(after);
-    return {patch_between(session, after)};
+    const std::string patch = patch_between(session, after);
+    return {patch.empty() ? "{}" : patch};
 }
 
 /// Adds it, where it changes anything. `edit(Session&)`.
 template <class Edit>
 void set(Actions& actions, const Model& model, const Edit& edit)
 {
-    if (Set action = edited(model.session, edit); !action.patch.empty()) actions.emplace_back(std::move(action));
+    if (Set action = edited(model.session, edit); action.patch != "{}") actions.emplace_back(std::move(action));
 }
 
 }  // namespace shvr::ui

@@ -74,7 +74,7 @@ struct Model {
     const RecentActions* recent = nullptr;  ///< the last actions; null where nobody remembers them
     std::string_view version{};             ///< of the program
     bool shows_help = false, shows_messages = false, shows_palette = false, is_full_screen = false;
-    bool asks_what_to_open = false;
+    bool asks_what_to_open = false, shows_preferences = false;
     std::string_view awaits_key{};  ///< id of the shortcut that the next key is for; empty: none
 
     // The device

@@ -8,6 +8,7 @@
 #include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/session/fields.h"
+#include "engine/session/session_patch.h"
 
 namespace shvr::ui {
 
@@ -37,11 +38,42 @@ void fields(Fields& f, RecentFile& recent)
     f.path("path", recent.path, {.is_required = true});
 }
 
+void fields(Fields& f, PanelLayout& panel)
+{
+    const NumberRange places{-1e5, 1e5}, sizes{1.0, 1e4};
+    std::string place = panel.place ? std::string(spelled(*panel.place)) : "as shipped";
+    f.choice("place", place, {"as shipped", "side", "floating", "hidden"}, {});
+    panel.place.reset();
+    for (const Spelling<PanelPlace>& each : PANEL_PLACES)
+        if (each.name == place) panel.place = each.value;
+    f.any_flag("folded", panel.folded, {});
+    f.numbers("at", panel.at, places, {});
+    f.numbers("size", panel.size, sizes, {});
+}
+
+void fields(Fields& f, WindowLayout& layout)
+{
+    std::vector<std::string> ids;
+    for (const auto& [id, panel] : layout.panels) ids.push_back(id);
+    f.entries("panels", ids, "ID", [&](Fields& entry, const std::string& id) { fields(entry, layout.panels[id]); }, {});
+    for (const auto& [id, panel] : layout.panels)
+        f.check("panels." + id, panel_named(id) != nullptr, "the id of a panel, as \"groups\"");
+    f.number("side_width", layout.side_width, NumberRange{MIN_SIDE_WIDTH, 1000.0}, {});
+    f.flag("shows_side", layout.shows_side, {});
+    f.flag("shows_tool_bar", layout.shows_tool_bar, {});
+}
+
 void fields(Fields& f, Preferences& preferences)
 {
     int64_t version = 1;
     f.whole("shvr_preferences", version, 1, 1, {.is_required = true});
     f.choice("key_set", preferences.key_set, {});
+    f.choice("theme", preferences.theme, {});
+    f.number("font_pixels", preferences.font_pixels,
+             NumberRange{Preferences::MIN_FONT_PIXELS, Preferences::MAX_FONT_PIXELS}, {});
+    f.number("scale", preferences.scale, NumberRange{Preferences::MIN_SCALE, Preferences::MAX_SCALE}, {});
+    f.section("layout", [&](Fields& inner) { fields(inner, preferences.layout); });
+    f.whole("hints_seen", preferences.hints_seen, 0, 1000, {});
     key_fields(f, preferences.keys);
     std::vector<RecentFile> recent;
     for (const std::filesystem::path& path : preferences.recent) recent.push_back({path});
@@ -65,6 +97,30 @@ void Preferences::note_opened(const std::filesystem::path& path)
     std::erase(recent, whole);
     recent.insert(recent.begin(), whole);
     recent.resize(std::min(recent.size(), MAX_RECENT));
+}
+
+Preferences patched(const Preferences& preferences, std::string_view patch)
+{
+    Preferences written = preferences, read;
+    const std::string text = write_fields({}, [&](Fields& f) { fields(f, written); });
+    const JsonDocument document(merged(text, patch, "preferences"), "preferences",
+                                {.depth = 8, .expected = "preferences"});
+    read_fields(document.root(), {}, [&](Fields& f) { fields(f, read); });
+    return read;
+}
+
+/// Only what changes: what a patch does not name stays.
+std::string patch_of_panel(const std::string& id, const PanelLayout& change)
+{
+    std::string parts;
+    const auto add = [&](const char* name, const std::string& value) {
+        parts += sentence(parts.empty() ? "" : ",", '"', name, "\":", value);
+    };
+    if (change.place) add("place", sentence('"', spelled(*change.place), '"'));
+    if (change.folded) add("folded", *change.folded ? "true" : "false");
+    if (change.at) add("at", sentence('[', change.at->x, ',', change.at->y, ']'));
+    if (change.size) add("size", sentence('[', change.size->x, ',', change.size->y, ']'));
+    return sentence("{\"layout\":{\"panels\":{\"", id, "\":{", parts, "}}}}");
 }
 
 std::filesystem::path preferences_file()

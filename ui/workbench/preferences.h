@@ -1,20 +1,28 @@
 #pragma once
-// What a person keeps for all scans: keys, and what was opened last. One JSON file, $XDG_CONFIG_HOME/shvr/
-// preferences.json, written whole or not at all. Any thread.
+// What a person keeps for all scans: keys, theme and sizes, where panels are, and what was opened last. One JSON file,
+// $XDG_CONFIG_HOME/shvr/ preferences.json, written whole or not at all. Any thread.
 
 #include <filesystem>
 #include <vector>
 
+#include "ui/workbench/appearance/layout.h"
+#include "ui/workbench/appearance/theme.h"
 #include "ui/workbench/bindings/keymap.h"
 
 namespace shvr::ui {
 
 struct Preferences {
     static constexpr size_t MAX_RECENT = 12;
+    static constexpr double MIN_FONT_PIXELS = 9.0, MAX_FONT_PIXELS = 32.0, MIN_SCALE = 0.5, MAX_SCALE = 4.0;
 
     KeySet key_set = KeySet::modern;
     Keymap::Changes keys;                       ///< in place of those of the set
     std::vector<std::filesystem::path> recent;  ///< newest first, each once
+    Theme theme = Theme::dark;
+    double font_pixels = 14.0;    ///< at a scale of 1
+    std::optional<double> scale;  ///< of everything; none: the screen's
+    WindowLayout layout;
+    int hints_seen = 0;  ///< of the three for a first start (appearance/hints.h)
 
     void note_opened(const std::filesystem::path& path);
     bool operator==(const Preferences&) const = default;
@@ -25,6 +33,10 @@ std::filesystem::path preferences_file();
 /// Those of a file that does not exist are the defaults. Fails at unknown keys, shortcuts and chords, naming file, key,
 /// value and what was expected.
 Preferences load_preferences(const std::filesystem::path& file);
+/// With a merge patch of that file applied, as in {"theme": "light"}; null takes what ships. Fails as reading does.
+Preferences patched(const Preferences& preferences, std::string_view patch);
+/// The patch that makes a change of a panel's place; `change` may set any of its parts.
+std::string patch_of_panel(const std::string& id, const PanelLayout& change);
 /// Makes the folder where it is missing.
 void save_preferences(const std::filesystem::path& file, const Preferences& preferences);
 

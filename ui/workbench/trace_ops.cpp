@@ -78,4 +78,21 @@ RadiusOp scaled_nodes_of_group(const Model& model, double factor)
         .of = RadiusOp::Of::nodes, .radius_voxels = scaled_radius(model, mean, factor), .group = model.brush().group};
 }
 
+std::optional<glm::dvec3> middle_of_selection(const TraceGraph& trace)
+{
+    const TraceSelection& selected = trace.selection();
+    if (selected.empty()) return std::nullopt;
+    glm::dvec3 lower(1e300), upper(-1e300);
+    const auto add = [&](uint32_t node) {
+        lower = glm::min(lower, trace.node(node).position);
+        upper = glm::max(upper, trace.node(node).position);
+    };
+    for (const uint32_t node : selected.nodes) add(node);
+    for (const uint32_t internode : selected.internodes) {
+        add(trace.internode(internode).a);
+        add(trace.internode(internode).b);
+    }
+    return 0.5 * (lower + upper);
+}
+
 }  // namespace shvr::ui

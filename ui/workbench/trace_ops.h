@@ -20,4 +20,7 @@ RadiusOp scaled(const Model& model, double factor);
 /// Gives all nodes of the chosen group the same radius: their mean, times the factor.
 RadiusOp scaled_nodes_of_group(const Model& model, double factor);
 
+/// The middle of the box around what is selected, volume space; nothing where nothing is.
+std::optional<glm::dvec3> middle_of_selection(const TraceGraph& trace);
+
 }  // namespace shvr::ui

@@ -68,13 +68,6 @@ bool Workbench::apply(const Action& action)
     }
 }
 
-void Workbench::act(const ForgetRecent& action)
-{
-    Preferences preferences = preferences_;
-    std::erase(preferences.recent, action.path);
-    prefer(std::move(preferences));
-}
-
 void Workbench::act(const AskOpen& action)
 {
     asks_what_to_open_ = action.on;
@@ -102,6 +95,16 @@ void Workbench::act(const ShowPalette& action)
     shows_palette_ = action.on;
 }
 
+void Workbench::act(const ShowPreferences& action)
+{
+    shows_preferences_ = action.on;
+}
+
+void Workbench::act(const FocusOn& action)
+{
+    focus_ = action.what;
+}
+
 void Workbench::act(const ShowFullScreen& action)
 {
     is_full_screen_ = action.on;
@@ -110,73 +113,6 @@ void Workbench::act(const ShowFullScreen& action)
 void Workbench::act(const Quit&)
 {
     quits_ = true;
-}
-
-// ---- Preferences ----------------------------------------------------------------------------------------------------
-
-/// A file that cannot be read stays as it is, and nothing is kept until it can.
-void Workbench::load_preferences()
-{
-    if (options_.preferences.empty()) return;
-    try {
-        preferences_ = ui::load_preferences(options_.preferences);
-        keymap_ = Keymap(preferences_.key_set, preferences_.keys);
-        are_preferences_kept_ = true;
-    } catch (const Error& error) {
-        say(sentence(error.what(), "; the keys that ship are used, and the file stays as it is"), Weight::warning);
-    }
-    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
-}
-
-/// Whether they can be kept is told, and changes nothing else.
-void Workbench::prefer(Preferences preferences)
-{
-    if (preferences == preferences_) return;
-    keymap_ = Keymap(preferences.key_set, preferences.keys);
-    preferences_ = std::move(preferences);
-    if (!are_preferences_kept_) return;
-    try {
-        save_preferences(options_.preferences, preferences_);
-    } catch (const Error& error) {
-        say(error.what(), Weight::warning);
-    }
-}
-
-void Workbench::act(const ChooseKeys& action)
-{
-    Preferences preferences = preferences_;
-    const auto set = std::ranges::find(KEY_SETS, action.set, &Spelling<KeySet>::name);
-    if (set == std::end(KEY_SETS)) fail("keys: '", action.set, "' is no set; expected modern or thesis");
-    preferences.key_set = set->value;
-    prefer(std::move(preferences));
-    say(set->value == KeySet::modern ? "Keys: today's conventions" : "Keys: as in the thesis");
-    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
-}
-
-void Workbench::act(const BindKeys& action)
-{
-    const Shortcut* const shortcut = shortcut_named(action.shortcut);
-    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
-    Preferences preferences = preferences_;
-    std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
-    keys_of_it.clear();
-    for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // What ships is no change, so that it goes along with another choice of the set.
-    if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
-        Keymap(preferences.key_set).chords_of(*shortcut))
-        preferences.keys.erase(action.shortcut);
-    prefer(std::move(preferences));
-    awaits_key_.clear();
-    const std::string keys = keymap_.text_of(*shortcut);
-    say(keys.empty() ? sentence("'", shortcut->name, "' has no key") : sentence(keys, ": ", shortcut->name));
-    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
-}
-
-void Workbench::act(const AwaitKey& action)
-{
-    if (!action.shortcut.empty() && !shortcut_named(action.shortcut))
-        fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
-    awaits_key_ = action.shortcut;
 }
 
 // ---- Documents ------------------------------------------------------------------------------------------------------
@@ -401,6 +337,7 @@ Model Workbench::model() const
                 .shows_palette = shows_palette_,
                 .is_full_screen = is_full_screen_,
                 .asks_what_to_open = asks_what_to_open_,
+                .shows_preferences = shows_preferences_,
                 .awaits_key = awaits_key_,
                 .gpu_name = renderer_.device().traits().name};
     const Document& document = *document_;
@@ -448,6 +385,7 @@ Model Workbench::model() const
             .shows_palette = shows_palette_,
             .is_full_screen = is_full_screen_,
             .asks_what_to_open = asks_what_to_open_,
+            .shows_preferences = shows_preferences_,
             .awaits_key = awaits_key_,
             .gpu_name = renderer_.device().traits().name,
             .view_is_complete = document.screen.complete(),

@@ -94,6 +94,8 @@ public:
     void wait_for_screenshots() const { screenshots_.wait(); }
     /// Quit was asked for; asking clears it.
     bool take_quit() { return std::exchange(quits_, false); }
+    /// What the keyboard was asked to be given to, once; empty: nothing.
+    std::string take_focus() { return std::exchange(focus_, {}); }
     bool shows_full_screen() const { return is_full_screen_; }
     /// Voxels that the preview showed when the last stroke began, if it had one.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
@@ -126,6 +128,9 @@ private:
     void act(const MoveCut& action);
     void act(const MoveClip& action);
     void act(const ResetCuts& action);
+    void act(const FitView& action);
+    void act(const ResetView& action);
+    void act(const LookAtSelection& action);
     void act(const UpdateOcclusion& action);
     void act(const Set& action);
     void act(const EndStep& action);
@@ -179,6 +184,9 @@ private:
     void act(const AwaitKey& action);
     void act(const ShowMessages& action);
     void act(const ShowPalette& action);
+    void act(const Prefer& action);
+    void act(const ShowPreferences& action);
+    void act(const FocusOn& action);
     void act(const ShowFullScreen& action);
     void act(const Quit& action);
 
@@ -273,7 +281,8 @@ private:
     std::string journal_failure_;                 ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
     bool shows_help_ = false, shows_messages_ = false, shows_palette_ = false, is_full_screen_ = false, quits_ = false;
-    bool asks_what_to_open_ = false;
+    bool asks_what_to_open_ = false, shows_preferences_ = false;
+    std::string focus_;  ///< what the keyboard was asked to be given to
     double opened_s_ = 0.0;
     uint64_t openings_ = 0;
     /// What a model refers to where nothing is open.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/workbench/trace_ops.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -170,6 +171,36 @@ void Workbench::act(const ResetCuts&)
     document_->camera.near_distance = document_->camera.far_distance = 0.0;
     look_again();
     say("All cutting planes are removed");
+}
+
+void Workbench::act(const FitView&)
+{
+    const VolumeInfo& volume = document_->volume();
+    const glm::dvec3 size(volume.size);
+    const CutBox& cut = document_->session.cut;
+    const glm::dvec3 lower = glm::clamp(cut.lower, glm::dvec3(0.0), size);
+    const glm::dvec3 upper = glm::clamp(cut.upper, lower, size);
+    const glm::uvec2 pixels = document_->screen.parts().empty() ? pixels_ : pane(0).pixels();
+    look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
+    say("All that is not cut away is in sight");
+}
+
+void Workbench::act(const ResetView&)
+{
+    const Session& session = document_->session;
+    // A session that was left open names the camera it was left with; then the side that shows most is meant.
+    const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
+    look_from(camera_named(session, name, document_->volume()));
+    say("The view is as at the beginning");
+}
+
+void Workbench::act(const LookAtSelection&)
+{
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const std::optional<glm::dvec3> middle = middle_of_selection(trace);
+    if (!middle) fail("Nothing is selected");
+    look_from(looking_at(document_->camera, *middle));
+    say("Looking at what is selected");
 }
 
 void Workbench::act(const UpdateOcclusion&)

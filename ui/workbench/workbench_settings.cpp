@@ -71,6 +71,7 @@ void Workbench::act(const Set& action)
     if (!after.transfer_preset.empty())
         after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
                                                        document_->statistics);
+    document_->choose_thresholds(after);
     const Session before = document_->session;
     take_session(std::move(after));
     if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;

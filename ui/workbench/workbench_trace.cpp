@@ -11,8 +11,18 @@ namespace shvr::ui {
 
 namespace {
 
-/// The result, for the status bar.
-std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace)
+struct TraceSize {
+    size_t nodes = 0, internodes = 0;
+};
+
+std::string counted(size_t number, const char* what)
+{
+    return sentence(number, " ", what, number == 1 ? "" : "s");
+}
+
+/// The result, for the status bar. `before`: how much there was.
+std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace,
+                    const TraceSize& before)
 {
     const TraceSelection& selected = trace.selection();
     if (selects) {
@@ -29,7 +39,23 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
         if (internodes.empty()) return sentence("Node ", node, " added");
         return sentence("Node ", node, " added, linked with node ", trace.internode(internodes[0]).other(node));
     }
-    return "Trace: " + done->label;
+    const std::string what = selected.node()        ? sentence("Node ", *selected.node())
+                             : selected.internode() ? sentence("Internode ", *selected.internode())
+                             : selected.empty()     ? std::string()
+                                                    : std::string("What is selected");
+    if (std::holds_alternative<MoveOp>(op)) return what + " was moved";
+    if (std::holds_alternative<DeleteOp>(op))
+        return sentence("Deleted: ", counted(before.nodes - trace.nodes().size(), "node"), ", ",
+                        counted(before.internodes - trace.internodes().size(), "internode"));
+    if (const LinkOp* link = std::get_if<LinkOp>(&op); link && link->node)
+        return sentence(what, " is linked with node ", *link->node);
+    if (std::holds_alternative<LinkOp>(op)) return what + " is linked with the nearest node";
+    if (const GroupOp* group = std::get_if<GroupOp>(&op))
+        return sentence(what, " belongs to group ", int(group->group));
+    if (const RadiusOp* radius = std::get_if<RadiusOp>(&op); radius && radius->of != RadiusOp::Of::selected)
+        return sentence(radius->of == RadiusOp::Of::nodes ? "Nodes" : "Internodes", " of group ", int(radius->group),
+                        radius->radius_voxels ? " have another radius" : " taper");
+    return what + " has another radius";
 }
 
 /// The neighbours of the selected node, if it has two: then deleting it cuts the trace.
@@ -63,6 +89,7 @@ void Workbench::trace(const TraceOp& asked)
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
         fail("Group 0 is the eraser, and what is traced belongs to a group from 1 up");
     record_settings();
+    const TraceSize before{trace.nodes().size(), trace.internodes().size()};
     const auto cut = std::holds_alternative<DeleteOp>(op) ? ends_of_cut(trace) : std::nullopt;
     TraceEffect effect = effect_of(op, trace, document_->trace_defaults());
     if (effect.selection) annotator.work().select_trace(*effect.selection);
@@ -70,7 +97,7 @@ void Workbench::trace(const TraceOp& asked)
     document_->drags_node = false;
     if (done) show_changes(*done);
     if (cut && done) return note_cut(cut);
-    say(said_of(op, effect.selection.has_value(), done, trace));
+    say(said_of(op, effect.selection.has_value(), done, trace, before));
 }
 
 /// Tracing goes on from one of the ends.

@@ -146,3 +146,46 @@ TEST_CASE("the pixels of a ball or a box are all that may show it")
     CHECK(pixels_of_ball(camera, PIXELS, {0, 0, 10.5}, 1.0) == PixelBox{glm::uvec2(0), PIXELS});  // around the eye
     CHECK(pixels_of_ball(camera, PIXELS, {1000, 0, 0}, 1.0).empty());
 }
+
+TEST_CASE("Fitting shows all of a box, near its margin, from where one looks; planes stay where they are")
+{
+    std::mt19937 random(31);
+    for (int i = 0; i < 200; ++i) {
+        Camera camera = random_camera(random);
+        camera.near_distance = 2.0;
+        camera.far_distance = 30.0;
+        const glm::dvec3 lower = point(random, 40.0), upper = lower + glm::abs(point(random, 40.0)) + 0.1;
+        const Camera fit = fitted(camera, PIXELS, lower, upper);
+        const CameraAxes before = axes_of(camera), after = axes_of(fit);
+        CHECK(is_near(before.forward, after.forward));
+        CHECK(is_near(before.up, after.up));
+        CHECK(is_near(fit.target, 0.5 * (lower + upper)));
+        glm::dvec2 most(0.0);
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 at(corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
+                                corner & 4 ? upper.z : lower.z);
+            const auto seen = project(fit, PIXELS, at);
+            REQUIRE(seen.has_value());
+            CHECK(seen->depth > 0.0);
+            most = glm::max(most, glm::abs(seen->pixel - 0.5 * glm::dvec2(PIXELS)) / (0.5 * glm::dvec2(PIXELS)));
+        }
+        CHECK(std::max(most.x, most.y) <= 1.0);
+        CHECK(std::max(most.x, most.y) > 0.9);
+        const auto plane = [&](const Camera& each, double distance) {
+            return glm::dot(each.eye, before.forward) + distance;
+        };
+        if (fit.near_distance > 0.0) CHECK(plane(fit, fit.near_distance) == doctest::Approx(plane(camera, 2.0)));
+    }
+}
+
+TEST_CASE("Looking at a point keeps direction and distance")
+{
+    std::mt19937 random(37);
+    for (int i = 0; i < 50; ++i) {
+        const Camera camera = random_camera(random);
+        const glm::dvec3 target = point(random, 60.0);
+        const Camera turned = looking_at(camera, target);
+        CHECK(is_near(turned.target, target));
+        CHECK(is_near(turned.eye - turned.target, camera.eye - camera.target));
+    }
+}

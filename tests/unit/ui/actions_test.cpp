@@ -91,6 +91,12 @@ std::vector<Action> samples()
             ShowHelp{false},
             ShowMessages{false},
             ShowPalette{false},
+            FitView{},
+            ResetView{},
+            LookAtSelection{},
+            Prefer{R"({"layout":null,"theme":"light"})"},
+            ShowPreferences{false},
+            FocusOn{"menu"},
             ShowFullScreen{false},
             Quit{}};
 }

@@ -9,6 +9,7 @@
 
 #include "engine/session/session_patch.h"
 #include "ui/workbench/action_rows.h"
+#include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/lists/palette.h"
 #include "ui/workbench/preferences.h"
 
@@ -476,4 +477,62 @@ TEST_CASE("the palette finds shortcuts by words, actions by their text and setti
     CHECK(first("look_f").completion == "look_from ");
     CHECK(first("paint while").why_not == "goes on while its key is held");
     CHECK(palette_entries(world.model, "no such thing at all").empty());
+}
+
+TEST_CASE("Groups are stepped through with those in use, and a new one is the first without anything")
+{
+    World world;
+    world.session.probe.brush.group = 9;
+    world.model.voxels_by_group[42] = 5;
+    constexpr int PAGE_UP = 266, PAGE_DOWN = 267;
+    CHECK(after(world, PAGE_DOWN, ALT).probe.brush.group == 42);
+    CHECK(after(world, PAGE_UP, ALT).probe.brush.group == 8);
+    world.session.probe.brush.group = 42;
+    CHECK(after(world, PAGE_DOWN, ALT).probe.brush.group == 1);
+    world.session.probe.brush.group = 0;
+    CHECK(after(world, PAGE_UP, ALT).probe.brush.group == 42);
+    CHECK(after(world, PAGE_DOWN, ALT).probe.brush.group == 1);
+
+    world.model.voxels_by_group[1] = 7;
+    world.session.groups[2].name = "vein";
+    world.session.groups[5].parent = 3;
+    CHECK(after(world, 'G', CONTROL).probe.brush.group == 4);
+}
+
+TEST_CASE("Escape closes what is in front, and then the mouse turns again")
+{
+    constexpr int ESCAPE = 256;
+    World world;
+    world.session.probe.tool = Tool::paint;
+    world.model.shows_preferences = world.model.shows_help = world.model.is_full_screen = true;
+    CHECK_FALSE(only<ShowPreferences>(actions_of(world, ESCAPE, 0)).on);
+    world.model.shows_preferences = false;
+    CHECK_FALSE(only<ShowHelp>(actions_of(world, ESCAPE, 0)).on);
+    world.model.shows_help = false;
+    CHECK_FALSE(only<ShowFullScreen>(actions_of(world, ESCAPE, 0)).on);
+    world.model.is_full_screen = false;
+    CHECK((after(world, ESCAPE).probe.tool == Tool::turn));
+}
+
+TEST_CASE("Panels used by keyboard take arrows, Tab, Space, Enter and Escape, and no other key")
+{
+    for (const int key : {256, 257, 258, 262, 263, 264, 265, 32}) {
+        CHECK(moves_in_panels({.key = key, .pressed = true}));
+        CHECK_FALSE(moves_in_panels({.key = key, .mods = CONTROL, .pressed = true}));
+        CHECK_FALSE(moves_in_panels({.key = key, .mods = ALT, .pressed = true}));
+    }
+    for (const int key : {int('X'), int('1'), 290, 268}) CHECK_FALSE(moves_in_panels({.key = key, .pressed = true}));
+}
+
+TEST_CASE("The bar tells what each tool's buttons do, and every tool has a key")
+{
+    const Keymap keymap;
+    for (const ToolRow& row : tool_rows()) {
+        REQUIRE(shortcut_named(row.shortcut) != nullptr);
+        CHECK_FALSE(keymap.text_of(*shortcut_named(row.shortcut)).empty());
+        CHECK(mouse_in_words(row.tool).find(row.left) != std::string::npos);
+        CHECK(sentence_of(row.tool).starts_with(row.name));
+    }
+    CHECK(mouse_in_words(Tool::paint) == "left: paint, right or middle: turn, wheel: zoom");
+    CHECK(mouse_in_words(Tool::turn) == "left: turn, right: paint, middle: move, wheel: zoom");
 }

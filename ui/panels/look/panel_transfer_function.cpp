@@ -24,11 +24,8 @@ constexpr float REACH = 0.65f;            ///< the mouse grabs things within thi
 constexpr float COLUMN = 2.0f;            ///< width of one colour in the coloured area, in pixels
 constexpr float STROKE = 0.11f;           ///< in font sizes
 
-constexpr ImU32 BACKGROUND = IM_COL32(26, 26, 26, 255);
-constexpr ImU32 BARS = IM_COL32(78, 78, 78, 255);
-constexpr ImU32 LINE = IM_COL32(225, 225, 225, 255);
-constexpr ImU32 PAINT_LINE = IM_COL32(240, 184, 90, 255);
-constexpr ImU32 FELT_LINE = IM_COL32(120, 200, 150, 255);
+constexpr ThemeColor BACKGROUND{ColorRole::chart}, BARS{ColorRole::chart_bars}, LINE{ColorRole::chart_line},
+    PAINT_LINE{ColorRole::chart_paint}, FELT_LINE{ColorRole::chart_felt};
 
 /// What the mouse is dragging.
 enum class Grip { nothing, point, all_points, paint_threshold, haptic_threshold };
@@ -163,7 +160,8 @@ void draw_threshold(const Canvas& canvas, double intensity, const char* word, fl
     const float left = x + gap + size.x < canvas.end.x ? x + gap : x - gap - size.x;
     const float top = canvas.begin.y + gap + row * size.y;
     list.AddLine({x, canvas.begin.y}, {x, canvas.end.y}, color, STROKE * ImGui::GetFontSize());
-    list.AddRectFilled({left - 2.0f, top}, {left + size.x + 2.0f, top + size.y}, IM_COL32(26, 26, 26, 190), 3.0f);
+    list.AddRectFilled({left - 2.0f, top}, {left + size.x + 2.0f, top + size.y}, shade_of(ColorRole::chart, 0.75f),
+                       3.0f);
     list.AddText({left, top}, color, word);
 }
 

@@ -5,6 +5,8 @@
 
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
+#include "ui/workbench/lists/group_list.h"
+#include "ui/workbench/preferences.h"
 #include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
@@ -183,6 +185,38 @@ Action begin_and_end(const Model&, double amount)
     return Kind{amount > 0.0};
 }
 
+// ---- The window
+
+template <int DIRECTION>
+Action neighbour_group(const Model& model, double)
+{
+    return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
+}
+
+Action new_group(const Model& model, double)
+{
+    return edited(model.session, [&](Session& s) { s.probe.brush.group = unused_group(model); });
+}
+
+/// Closes what is in front; where nothing is, the mouse turns again.
+Action step_back(const Model& model, double amount)
+{
+    if (model.shows_palette) return ShowPalette{false};
+    if (model.shows_preferences) return ShowPreferences{false};
+    if (model.shows_help) return ShowHelp{false};
+    if (model.shows_messages) return ShowMessages{false};
+    if (model.is_full_screen) return ShowFullScreen{false};
+    return take<Tool::turn>(model, amount);
+}
+
+template <bool WindowLayout::*FLAG>
+Action toggle_shown(const Model& model, double)
+{
+    const char* const name = FLAG == &WindowLayout::shows_side ? "shows_side" : "shows_tool_bar";
+    const char* const value = model.preferences.layout.*FLAG ? "false" : "true";
+    return Prefer{sentence("{\"layout\":{\"", name, "\":", value, "}}")};
+}
+
 // ---- The table ------------------------------------------------------------------------------------------------------
 
 using Mode = Shortcut::Mode;
@@ -226,6 +260,10 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "palette", WORK_KEYS, "Find anything", Mode::tap,
         [](const Model& model, double) -> Action { return ShowPalette{!model.shows_palette}; }, "Ctrl+Shift+P"),
+    both(
+        "preferences", WORK_KEYS, "Preferences...", Mode::tap,
+        [](const Model& model, double) -> Action { return ShowPreferences{!model.shows_preferences}; }, "Ctrl+,"),
+    both("step_back", WORK_KEYS, "Close, or back to turning", Mode::tap, step_back, "Escape"),
     both("quit", WORK_KEYS, "Quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
 
     both("slices", VIEWS_KEYS, "Slices", Mode::tap, arrange<Arrangement::slices>, "F6"),
@@ -241,7 +279,7 @@ constexpr Shortcut SHORTCUTS[] = {
 
     both(
         "keep_view", VIEWS_KEYS, "Keep this view", Mode::tap,
-        [](const Model&, double) -> Action { return KeepCamera{}; }, "Ctrl+B"),
+        [](const Model&, double) -> Action { return KeepCamera{}; }, "Ctrl+D"),
     {"kept_view_1", VIEWS_KEYS, "Kept view 1", Mode::tap, look_from_kept<1>, {"Shift+1", ""}},
     {"kept_view_2", VIEWS_KEYS, "Kept view 2", Mode::tap, look_from_kept<2>, {"Shift+2", ""}},
     {"kept_view_3", VIEWS_KEYS, "Kept view 3", Mode::tap, look_from_kept<3>, {"Shift+3", ""}},
@@ -260,6 +298,18 @@ constexpr Shortcut SHORTCUTS[] = {
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
     {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
     both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, "Escape"),
+    {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, plain<FitView>, {"Home", "Ctrl+Home"}},
+    both("reset_view", VIEWS_KEYS, "Reset the view", Mode::tap, plain<ResetView>, "Shift+Home"),
+    both("look_at_selection", VIEWS_KEYS, "Look at what is selected", Mode::tap, plain<LookAtSelection>, "Alt+Home"),
+    both("side_panels", VIEWS_KEYS, "Panels at the side", Mode::tap, toggle_shown<&WindowLayout::shows_side>, "Ctrl+B"),
+    both("tool_bar", VIEWS_KEYS, "Tool bar", Mode::tap, toggle_shown<&WindowLayout::shows_tool_bar>, ""),
+    both(
+        "reset_layout", VIEWS_KEYS, "Reset the layout", Mode::tap,
+        [](const Model&, double) -> Action { return Prefer{R"({"layout":null})"}; }, ""),
+    both("focus_panels", VIEWS_KEYS, "Use the panels by keyboard", Mode::tap, plain<FocusOn>, "Ctrl+F6"),
+    both(
+        "focus_menu", VIEWS_KEYS, "Use the menu by keyboard", Mode::tap,
+        [](const Model&, double) -> Action { return FocusOn{"menu"}; }, "Shift+F10"),
 
     both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
     both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),
@@ -280,6 +330,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both("group_7", PAINTING_KEYS, "Group 7", Mode::tap, choose<7>, "7"),
     both("group_8", PAINTING_KEYS, "Group 8", Mode::tap, choose<8>, "8"),
     both("group_9", PAINTING_KEYS, "Group 9", Mode::tap, choose<9>, "9"),
+    both("next_group", PAINTING_KEYS, "Next group", Mode::tap, neighbour_group<1>, "Alt+PageDown"),
+    both("previous_group", PAINTING_KEYS, "Previous group", Mode::tap, neighbour_group<-1>, "Alt+PageUp"),
+    both("new_group", PAINTING_KEYS, "New group", Mode::tap, new_group, "Ctrl+G"),
     both("next_brush", PAINTING_KEYS, "Next brush", Mode::tap, next_brush, "End"),
     both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
     both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
@@ -325,11 +378,11 @@ constexpr Shortcut SHORTCUTS[] = {
     both("regroup_8", TRACING_KEYS, "Selected to group 8", Mode::tap, regroup<8>, "Ctrl+8"),
     both("regroup_9", TRACING_KEYS, "Selected to group 9", Mode::tap, regroup<9>, "Ctrl+9"),
 
-    both("guide", PROBE_KEYS, "Guide the probe", Mode::tap, toggle<&ProbeSettings::guided>, "Space"),
+    both("guide", PROBE_KEYS, "Guidance", Mode::tap, toggle<&ProbeSettings::guided>, "Space"),
     both("probe_onto", PROBE_KEYS, "Put the probe onto what is under the pointer", Mode::tap, at_pointer<ProbeOnto>,
          "L"),
     both("shell", PROBE_KEYS, "Iso-surface around the probe", Mode::tap, toggle<&ProbeSettings::shell>, "F4"),
-    both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Home"),
+    {"next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, {"Shift+Space", "Home"}},
     both("larger_probe", PROBE_KEYS, "Larger probe", Mode::hold, scale_probe<1>, "PageUp"),
     both("smaller_probe", PROBE_KEYS, "Smaller probe", Mode::hold, scale_probe<-1>, "PageDown"),
 

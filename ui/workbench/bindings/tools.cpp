@@ -8,7 +8,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr ToolRow ROWS[] = {
+constexpr ToolRow TOOL_ROWS[] = {
     {Tool::turn, "Turn", "tool_turn",
      "Drag to turn the volume. The right button paints with the active group, and a double click puts the probe onto "
      "what is seen.",
@@ -20,7 +20,7 @@ constexpr ToolRow ROWS[] = {
     {Tool::trace, "Trace", "tool_trace",
      "Click beside all nodes to add one, linked with the selected node. Click a node to select it, drag it to move it. "
      "The right button turns the volume.",
-     "add, select or drag a node", "turn"},
+     "add, pick or drag a node", "turn"},
     {Tool::select, "Select", "tool_select",
      "Click a node or an internode to select it. The right button turns the volume.", "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
@@ -32,26 +32,26 @@ constexpr ToolRow ROWS[] = {
 
 std::span<const ToolRow> tool_rows()
 {
-    return ROWS;
+    return TOOL_ROWS;
 }
 
 const ToolRow& row_of(Tool tool)
 {
-    const auto found = std::ranges::find(ROWS, tool, &ToolRow::tool);
-    SHVR_CHECK(found != std::end(ROWS), "tool");
+    const auto found = std::ranges::find(TOOL_ROWS, tool, &ToolRow::tool);
+    SHVR_CHECK(found != std::end(TOOL_ROWS), "tool");
     return *found;
 }
 
 std::string sentence_of(Tool tool)
 {
-    return sentence(row_of(tool).name, ": ", row_of(tool).hint);
+    return sentence(row_of(tool).name, " (", mouse_in_words(tool), ")");
 }
 
 std::string mouse_in_words(Tool tool)
 {
     const ToolRow& row = row_of(tool);
-    const char* const middle = tool == Tool::turn ? "move" : "turn";
-    return sentence("Left: ", row.left, "    Right: ", row.right, "    Middle: ", middle, "    Wheel: zoom");
+    if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", row.right, ", middle: move, wheel: zoom");
+    return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
 }
 
 }  // namespace shvr::ui

@@ -22,7 +22,7 @@ const ToolRow& row_of(Tool tool);
 
 /// What is said when it is taken.
 std::string sentence_of(Tool tool);
-/// What the mouse does now, in one line: "Left: turn    Right: paint    Wheel: zoom".
+/// What the mouse does now, in one line: "left: paint, right or middle: turn, wheel: zoom".
 std::string mouse_in_words(Tool tool);
 
 }  // namespace shvr::ui

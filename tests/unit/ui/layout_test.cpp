@@ -1,0 +1,123 @@
+#include "ui/workbench/appearance/layout.h"
+
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "tests/support/volume_files.h"
+#include "ui/workbench/appearance/glyphs.h"
+#include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/preferences.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+TEST_CASE("The panels at the side take what is wanted, but never more than half of the window")
+{
+    constexpr double FONT = 14.0;
+    WindowLayout layout;
+    CHECK(side_units(layout, 1280.0, FONT) == doctest::Approx(SIDE_WIDTH * FONT));
+    CHECK(side_units(layout, 500.0, FONT) == doctest::Approx(250.0));
+    CHECK(side_units(layout, 1280.0, 28.0) == doctest::Approx(640.0));
+    layout.side_width = 40.0;
+    CHECK(side_units(layout, 1280.0, FONT) == doctest::Approx(560.0));
+    layout.side_width = 3.0;
+    CHECK(side_units(layout, 1280.0, FONT) == doctest::Approx(MIN_SIDE_WIDTH * FONT));
+    layout.shows_side = false;
+    CHECK(side_units(layout, 1280.0, FONT) == 0.0);
+    layout.shows_side = true;
+    for (const PanelRow& row : panel_rows()) layout.panels[row.id].place = PanelPlace::floating;
+    CHECK(side_units(layout, 1280.0, FONT) == 0.0);
+    layout.panels["groups"].place.reset();
+    CHECK(side_units(layout, 1280.0, FONT) > 0.0);
+}
+
+TEST_CASE("Panels have ids of their own, and what nobody changed is as it ships")
+{
+    std::set<std::string> ids;
+    for (const PanelRow& row : panel_rows()) {
+        CHECK(ids.insert(row.id).second);
+        CHECK(panel_named(row.id) == &row);
+        CHECK((WindowLayout().place_of(row) == row.place));
+    }
+    CHECK(panel_named("curtains") == nullptr);
+    WindowLayout layout;
+    layout.panels["history"].folded = false;
+    CHECK_FALSE(layout.is_folded(*panel_named("history")));
+    CHECK(layout.is_folded(*panel_named("light")));
+    CHECK((layout.place_of(*panel_named("passes")) == PanelPlace::hidden));
+}
+
+TEST_CASE("A floating panel comes back into a window that became smaller")
+{
+    CHECK(within_reach({100, 50}, {200, 100}, {1000, 800}) == glm::dvec2(100, 50));
+    CHECK(within_reach({1900, 900}, {200, 100}, {1000, 800}) == glm::dvec2(800, 700));
+    CHECK(within_reach({-40, 20}, {3000, 100}, {1000, 800}) == glm::dvec2(0, 20));
+}
+
+TEST_CASE("Preferences of look and layout are kept, patched, and given back")
+{
+    TemporaryFolder folder;
+    Preferences preferences =
+        patched(Preferences(), R"({"theme":"light","font_pixels":18,"scale":1.5,"hints_seen":2})");
+    CHECK((preferences.theme == Theme::light));
+    CHECK(preferences.font_pixels == 18.0);
+    CHECK(preferences.scale == std::optional(1.5));
+    preferences =
+        patched(preferences, patch_of_panel("groups", {.place = PanelPlace::floating, .at = glm::dvec2(3, 4)}));
+    preferences = patched(preferences, patch_of_panel("trace", {.folded = true}));
+    preferences = patched(preferences, R"({"layout":{"side_width":30}})");
+    preferences.note_opened("/tmp/scan.json");
+    const std::filesystem::path file = folder.path / "preferences.json";
+    save_preferences(file, preferences);
+    CHECK((load_preferences(file) == preferences));
+    const WindowLayout& layout = preferences.layout;
+    CHECK((layout.place_of(*panel_named("groups")) == PanelPlace::floating));
+    CHECK(layout.panels.at("groups").at == std::optional(glm::dvec2(3, 4)));
+    CHECK(layout.is_folded(*panel_named("trace")));
+
+    // What one patch does not name stays; null takes what ships.
+    const Preferences size_only = patched(preferences, patch_of_panel("groups", {.size = glm::dvec2(20, 10)}));
+    CHECK((size_only.layout.place_of(*panel_named("groups")) == PanelPlace::floating));
+    CHECK((patched(preferences, R"({"layout":null})").layout == WindowLayout()));
+    CHECK_FALSE(patched(preferences, R"({"scale":null})").scale.has_value());
+    CHECK_THROWS_WITH_AS(static_cast<void>(patched(Preferences(), R"({"theme":"blue"})")),
+                         doctest::Contains("theme is \"blue\"; expected"), Error);
+    CHECK_THROWS_AS(static_cast<void>(patched(Preferences(), R"({"font_pixels":400})")), Error);
+    CHECK_THROWS_AS(static_cast<void>(patched(Preferences(), R"({"layout":{"panels":{"curtains":{}}}})")), Error);
+    CHECK_THROWS_AS(static_cast<void>(patched(Preferences(), "[1]")), Error);
+}
+
+TEST_CASE("The fonts learn each character once, from any text")
+{
+    GlyphSet glyphs;
+    CHECK_FALSE(glyphs.add("plain, and \u00b5m \u2013 K\u00f6ln"));
+    CHECK_FALSE(glyphs.has_rare());
+    CHECK(glyphs.add("\u0391\u03bf\u03c1\u03c4\u03ae"));  // Greek: every font has it
+    CHECK_FALSE(glyphs.has_rare());
+    CHECK(glyphs.add("\u8840\u7ba1"));
+    CHECK(glyphs.has_rare());
+    CHECK_FALSE(glyphs.add("\u7ba1\u8840"));
+    CHECK_FALSE(glyphs.add("\xff\xc3 \xe8\xa1"));  // broken
+    bool has = false;
+    for (const auto& [first, last] : glyphs.ranges()) {
+        CHECK(first <= last);
+        has = has || (first <= 0x7ba1 && 0x7ba1 <= last);
+    }
+    CHECK(has);
+    CHECK(glyphs.add(uint32_t{0x5d0}));
+    CHECK_FALSE(glyphs.add(uint32_t{0x1f600}));  // above what Dear ImGui knows
+}
+
+TEST_CASE("The first hints name keys as they are")
+{
+    const Keymap shipped, changed(KeySet::modern, {{"undo", {"Ctrl+U"}}, {"fit_view", {}}});
+    CHECK(first_hint(2, shipped).find("(Ctrl + Z)") != std::string::npos);
+    CHECK(first_hint(2, changed).find("(Ctrl + U)") != std::string::npos);
+    CHECK(first_hint(0, shipped).find("Fit (Home)") != std::string::npos);
+    CHECK(first_hint(0, changed).find("Fit brings") != std::string::npos);
+    CHECK(name_with_key("fit_view", shipped) == "Fit (Home)");
+}

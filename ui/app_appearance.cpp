@@ -1,0 +1,68 @@
+// How the interface looks and who has the keyboard: theme, scale, fonts, and panels used without a mouse.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
+
+#include "ui/app.h"
+#include "ui/workbench/preferences.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Everything that people named. What is derived from it, as histories and lists are, has the same characters.
+void want_glyphs_of(const Model& model)
+{
+    want_glyphs(model.volume.name);
+    want_glyphs(model.session_path.native());
+    want_glyphs(model.holder);
+    for (const auto& [group, settings] : model.session.groups) want_glyphs(settings.name);
+    for (const auto& [name, camera] : model.session.cameras) want_glyphs(name);
+    for (const std::filesystem::path& path : model.preferences.recent) want_glyphs(path.native());
+}
+
+/// As if a key of navigation had been pressed: the first thing of the window is framed and takes the keys.
+void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
+{
+    if (!window) return;
+    ImGuiContext& context = *ImGui::GetCurrentContext();
+    ImGui::FocusWindow(window);
+    context.NavLayer = layer;
+    ImGui::NavInitWindow(window, true);
+    context.NavDisableHighlight = false;
+    context.NavDisableMouseHover = true;
+}
+
+}  // namespace
+
+/// Follows preferences, the screen that the window is on, and names in other scripts. Between frames.
+void App::follow_appearance()
+{
+    const Model now = bench_->model();
+    want_glyphs_of(now);
+    want_typed_glyphs();
+    if (std::exchange(read_messages_, bench_->messages().count()) != bench_->messages().count())
+        for (const Message& message : bench_->messages().all()) want_glyphs(message.text);
+    const Preferences& preferences = now.preferences;
+    const Appearance wanted{.theme = preferences.theme,
+                            .font_pixels = preferences.font_pixels,
+                            .scale = std::clamp(preferences.scale.value_or(window_.content_scale()),
+                                                Preferences::MIN_SCALE, Preferences::MAX_SCALE)};
+    if (wanted == appearance_ && !fonts_are_stale()) return;
+    appearance_ = wanted;
+    set_style(appearance_);
+    window_.renew_fonts();
+    ui_until_s_ = std::max(ui_until_s_, window_.now_s() + 0.5);  // panels find their places anew
+}
+
+/// Inside a frame, since windows are known by then.
+void App::follow_focus()
+{
+    const std::string what = bench_->take_focus();
+    if (what == "panels") give_keyboard_to(ImGui::FindWindowByName(SIDE_PANEL), ImGuiNavLayer_Main);
+    if (what == "menu") give_keyboard_to(ImGui::FindWindowByName("##MainMenuBar"), ImGuiNavLayer_Menu);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,140 @@
+// What a person keeps for all scans: theme, sizes, keys.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/preferences.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr float LABELS = 9.0f;  ///< width of the column, in font sizes
+
+void row_label(const char* text)
+{
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine(LABELS * ImGui::GetFontSize());
+}
+
+void prefer(Actions& actions, const std::string& patch)
+{
+    actions.push_back(Prefer{"{" + patch + "}"});
+}
+
+void theme_row(const Preferences& preferences, Actions& actions)
+{
+    row_label("Theme");
+    for (const Spelling<Theme>& each : THEMES) {
+        const char* const name = each.value == Theme::dark ? "dark" : "light";
+        if (ImGui::RadioButton(name, preferences.theme == each.value))
+            prefer(actions, sentence("\"theme\":\"", each.name, '"'));
+        ImGui::SameLine();
+    }
+    ImGui::NewLine();
+}
+
+/// Takes effect when the mouse lets go, since it moves what the mouse holds.
+void number_row(const char* label, const char* key, double now, double least, double most, const char* format,
+                const char* text, Actions& actions)
+{
+    static const char* edited_key = nullptr;
+    static double edited = 0.0;
+    row_label(label);
+    ImGui::PushID(key);
+    ImGui::SetNextItemWidth(11.0f * ImGui::GetFontSize());
+    double shown = edited_key == key ? edited : now;
+    ImGui::SliderScalar("##value", ImGuiDataType_Double, &shown, &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+    hint(text);
+    if (ImGui::IsItemActive()) {
+        edited_key = key;
+        edited = shown;
+    } else if (edited_key == key) {
+        edited_key = nullptr;
+        if (edited != now) prefer(actions, sentence('"', key, "\":", edited));
+    }
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        edited_key = nullptr;
+        prefer(actions, sentence('"', key, "\":null"));
+    }
+    ImGui::PopID();
+}
+
+void keys_row(const Model& model, Actions& actions)
+{
+    row_label("Keys");
+    for (const auto& [set, name] :
+         {std::pair{KeySet::modern, "usual"}, std::pair{KeySet::thesis, "of the SHVR thesis"}}) {
+        if (ImGui::RadioButton(name, model.preferences.key_set == set))
+            actions.push_back(ChooseKeys{std::string(KEY_SETS[size_t(set)].name)});
+        ImGui::SameLine();
+    }
+    if (ImGui::Button("Change single keys...")) actions.push_back(ShowHelp{true});
+}
+
+void buttons(Actions& actions)
+{
+    row_label("Panels");
+    if (ImGui::Button("Reset the layout")) prefer(actions, "\"layout\":null");
+    hint("All panels go back to the side, in their usual width.");
+    row_label("First hints");
+    if (ImGui::Button("Show again")) prefer(actions, "\"hints_seen\":0");
+}
+
+}  // namespace
+
+void preferences_window(const Model& model, Actions& actions)
+{
+    const Preferences& preferences = model.preferences;
+    bool is_open = true;
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetWorkCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+    if (ImGui::Begin("Preferences", &is_open, flags)) {
+        theme_row(preferences, actions);
+        number_row("Text", "font_pixels", preferences.font_pixels, Preferences::MIN_FONT_PIXELS,
+                   Preferences::MAX_FONT_PIXELS, "%.0f pixels", "Height of letters, at a scale of 1.", actions);
+        bool follows = !preferences.scale;
+        row_label("Scale");
+        if (ImGui::Checkbox("as the screen says", &follows))
+            prefer(actions, follows ? "\"scale\":null" : "\"scale\":1");
+        hint("Changes with the screen that the window is on.");
+        if (preferences.scale)
+            number_row("", "scale", *preferences.scale, Preferences::MIN_SCALE, Preferences::MAX_SCALE, "%.2f times",
+                       "Size of everything but the picture.", actions);
+        keys_row(model, actions);
+        buttons(actions);
+        ImGui::TextDisabled("Kept for all scans. A double click on a slider takes what ships.");
+    }
+    ImGui::End();
+    if (!is_open) actions.push_back(ShowPreferences{false});
+}
+
+// ---- At the first start
+
+void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions)
+{
+    const int number = model.preferences.hints_seen;
+    if (number >= FIRST_HINTS || model.shows_help || model.shows_palette || model.shows_preferences) return;
+    const float font = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({top_middle.x, top_middle.y + font}, ImGuiCond_Always, {0.5f, 0.0f});
+    ImGui::SetNextWindowSize({std::min(36.0f * font, 1.8f * top_middle.x), 0.0f});
+    ImGui::Begin("First hints", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::TextWrapped("%s", first_hint(number, model.keymap).c_str());
+    const bool is_last = number + 1 == FIRST_HINTS;
+    if (ImGui::Button(is_last ? "Done" : "Next hint")) prefer(actions, sentence("\"hints_seen\":", number + 1));
+    ImGui::SameLine();
+    if (!is_last && ImGui::Button("No more hints")) prefer(actions, sentence("\"hints_seen\":", FIRST_HINTS));
+    ImGui::SameLine();
+    ImGui::TextDisabled("%d of %d", number + 1, FIRST_HINTS);
+    ImGui::End();
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,244 @@
+// The bar below the menu: what the next click does, and with which group.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <imgui/imgui.h>
+
+#include "engine/base/image.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/style.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/bindings/tools.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/lists/group_list.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr float NAMED_FROM = 74.0f;   ///< font sizes of width from which tools have their names beside them
+constexpr float GROUP_WIDTH = 13.0f;  ///< of the active group's name, in font sizes
+
+/// Draws lines into a square of the unit size at `corner`.
+struct Pen {
+    ImDrawList& list;
+    ImVec2 corner;
+    float size;
+    ImU32 color;
+
+    ImVec2 at(float x, float y) const { return {corner.x + x * size, corner.y + y * size}; }
+    float stroke() const { return std::max(1.3f, 0.09f * size); }
+    void line(float ax, float ay, float bx, float by) const { list.AddLine(at(ax, ay), at(bx, by), color, stroke()); }
+    void disc(float x, float y, float radius) const { list.AddCircleFilled(at(x, y), radius * size, color); }
+    void ring(float x, float y, float radius) const { list.AddCircle(at(x, y), radius * size, color, 0, stroke()); }
+};
+
+void draw_turn(const Pen& pen)
+{
+    constexpr float RADIUS = 0.34f, FROM = -0.6f, TO = 4.1f;
+    pen.list.PathArcTo(pen.at(0.5f, 0.52f), RADIUS * pen.size, FROM, TO, 24);
+    pen.list.PathStroke(pen.color, ImDrawFlags_None, pen.stroke());
+    const float x = 0.5f + RADIUS * std::cos(FROM), y = 0.52f + RADIUS * std::sin(FROM);
+    pen.list.AddTriangleFilled(pen.at(x - 0.2f, y - 0.02f), pen.at(x + 0.14f, y + 0.06f), pen.at(x + 0.08f, y - 0.28f),
+                               pen.color);
+}
+
+void draw_paint(const Pen& pen)
+{
+    pen.line(0.9f, 0.1f, 0.52f, 0.5f);
+    pen.list.AddTriangleFilled(pen.at(0.44f, 0.42f), pen.at(0.6f, 0.58f), pen.at(0.1f, 0.92f), pen.color);
+    pen.disc(0.36f, 0.66f, 0.15f);
+}
+
+void draw_erase(const Pen& pen)
+{
+    const ImVec2 block[] = {pen.at(0.1f, 0.62f), pen.at(0.52f, 0.18f), pen.at(0.82f, 0.44f), pen.at(0.42f, 0.88f)};
+    pen.list.AddPolyline(block, 4, pen.color, ImDrawFlags_Closed, pen.stroke());
+    pen.line(0.3f, 0.4f, 0.62f, 0.67f);
+    pen.line(0.42f, 0.9f, 0.95f, 0.9f);
+}
+
+void draw_trace(const Pen& pen)
+{
+    pen.line(0.16f, 0.8f, 0.42f, 0.36f);
+    pen.line(0.42f, 0.36f, 0.84f, 0.2f);
+    pen.disc(0.16f, 0.8f, 0.13f);
+    pen.disc(0.42f, 0.36f, 0.13f);
+    pen.disc(0.84f, 0.2f, 0.13f);
+}
+
+void draw_select(const Pen& pen)
+{
+    const ImVec2 arrow[] = {pen.at(0.26f, 0.08f), pen.at(0.26f, 0.8f),  pen.at(0.44f, 0.63f), pen.at(0.57f, 0.92f),
+                            pen.at(0.69f, 0.86f), pen.at(0.56f, 0.58f), pen.at(0.8f, 0.56f)};
+    pen.list.AddPolyline(arrow, 7, pen.color, ImDrawFlags_Closed, pen.stroke());
+}
+
+void draw_measure(const Pen& pen)
+{
+    pen.line(0.1f, 0.3f, 0.1f, 0.7f);
+    pen.line(0.9f, 0.3f, 0.9f, 0.7f);
+    pen.line(0.1f, 0.5f, 0.9f, 0.5f);
+    for (const float x : {0.3f, 0.5f, 0.7f}) pen.line(x, 0.5f, x, 0.62f);
+}
+
+void draw_sign(Tool tool, const Pen& pen)
+{
+    switch (tool) {
+        case Tool::turn: return draw_turn(pen);
+        case Tool::paint: return draw_paint(pen);
+        case Tool::erase: return draw_erase(pen);
+        case Tool::trace: return draw_trace(pen);
+        case Tool::select: return draw_select(pen);
+        case Tool::measure: return draw_measure(pen);
+    }
+}
+
+/// What it is, its key, and what a click does then.
+std::string explanation(const ToolRow& row, const Keymap& keymap)
+{
+    return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
+}
+
+/// A sign, and its name where there is room; the tool in use is underlined as well.
+void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions& actions)
+{
+    const bool is_used = model.tool() == row.tool;
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float height = ImGui::GetFrameHeight(), sign = ImGui::GetFontSize() * 1.1f;
+    const float name = has_name ? ImGui::CalcTextSize(row.name).x + style.ItemInnerSpacing.x : 0.0f;
+    const float width = 2.0f * style.FramePadding.x + sign + name;
+    ImGui::PushID(row.shortcut);
+    ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_used ? ColorRole::chosen : ColorRole::bar));
+    if (ImGui::Button("##tool", {width, height}))
+        if (const Shortcut* const shortcut = shortcut_named(row.shortcut))
+            actions.push_back(shortcut->action(model, 1.0));
+    ImGui::PopStyleColor();
+    hint(explanation(row, model.keymap).c_str());
+    const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImU32 color = shade_of(ColorRole::text);
+    draw_sign(row.tool, {list, {begin.x + style.FramePadding.x, begin.y + 0.5f * (height - sign)}, sign, color});
+    if (has_name)
+        list.AddText({begin.x + style.FramePadding.x + sign + style.ItemInnerSpacing.x, begin.y + style.FramePadding.y},
+                     color, row.name);
+    if (is_used) {
+        const float stroke = std::max(2.0f, 0.14f * ImGui::GetFontSize());
+        list.AddRectFilled({begin.x, end.y - stroke}, end, shade_of(ColorRole::accent_strong));
+    }
+    ImGui::PopID();
+    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+}
+
+ImU32 color_of_group(const glm::dvec3& linear)
+{
+    const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
+    return ImGui::ColorConvertFloat4ToU32({encoded(linear.r), encoded(linear.g), encoded(linear.b), 1.0f});
+}
+
+/// Its colour; the eraser's is crossed out.
+void swatch(const Model& model, uint8_t group)
+{
+    const float size = ImGui::GetFrameHeight();
+    ImGui::Dummy({size, size});
+    const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+    const float inset = 0.12f * size;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 from{begin.x + inset, begin.y + inset}, to{end.x - inset, end.y - inset};
+    if (group != 0) list.AddRectFilled(from, to, color_of_group(group_of(model.session.groups, group).color), 2.0f);
+    list.AddRect(from, to, shade_of(ColorRole::line), 2.0f);
+    if (group == 0) {
+        list.AddLine(from, to, shade_of(ColorRole::line), 1.5f);
+        list.AddLine({from.x, to.y}, {to.x, from.y}, shade_of(ColorRole::line), 1.5f);
+    }
+}
+
+std::string label_of_group(const Model& model, uint8_t group)
+{
+    if (group == 0) return "0  eraser";
+    return sentence(int(group), "  ", group_of(model.session.groups, group).name);
+}
+
+/// The button of a shortcut whose name is a sign of its own.
+void step_button(const char* sign, const char* id, const Model& model, Actions& actions)
+{
+    const Shortcut* const shortcut = shortcut_named(id);
+    if (!shortcut) return;
+    const float size = ImGui::GetFrameHeight();
+    if (ImGui::Button(sentence(sign, "##", id).c_str(), {size, size})) actions.push_back(shortcut->action(model, 1.0));
+    hint(name_with_key(id, model.keymap).c_str());
+    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+}
+
+void active_group(const Model& model, Actions& actions)
+{
+    const uint8_t group = model.brush().group;
+    step_button("<", "previous_group", model, actions);
+    swatch(model, model.session.probe.painted_group());
+    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(GROUP_WIDTH * ImGui::GetFontSize());
+    const bool erases = model.tool() == Tool::erase;
+    const std::string shown = erases ? "erases any group" : label_of_group(model, group);
+    if (ImGui::BeginCombo("##group", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+        for (const uint8_t each : known_groups(model)) {
+            ImGui::PushID(int{each});
+            swatch(model, each);
+            ImGui::SameLine();
+            if (ImGui::Selectable(label_of_group(model, each).c_str(), each == group))
+                set(actions, model, [&](Session& s) { s.probe.brush.group = each; });
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    hint(erases ? "The active group stays as it is, and is painted again with another tool."
+                : "The active group: what painting and tracing belong to.");
+    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    step_button(">", "next_group", model, actions);
+    step_button("+", "new_group", model, actions);
+}
+
+/// What the buttons do now, as far as there is room; all of it when the mouse is over it.
+void mouse_words(const Model& model)
+{
+    const std::string words = mouse_in_words(model.tool());
+    ImGui::SameLine(0.0f, ImGui::GetFontSize());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Mouse  %s", words.c_str());
+    hint(sentence(words, "\n", row_of(model.tool()).hint, "\nAlt + left drag turns, Shift + left drag moves.").c_str());
+}
+
+}  // namespace
+
+float tool_bar_height()
+{
+    return ImGui::GetFrameHeight() + 2.0f * ImGui::GetStyle().FramePadding.y + 2.0f;
+}
+
+void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions)
+{
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSize({width, tool_bar_height()});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {style.FramePadding.x, style.FramePadding.y + 1.0f});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::bar));
+    ImGui::Begin("Tools", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    const bool has_names = width >= NAMED_FROM * ImGui::GetFontSize();
+    for (const ToolRow& row : tool_rows()) tool_button(row, has_names, model, actions);
+    ImGui::SameLine(0.0f, ImGui::GetFontSize());
+    active_group(model, actions);
+    mouse_words(model);
+    ImGui::End();
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(4);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,69 @@
+#pragma once
+// Which panels there are, where each is, and how much of the window is left for the picture. Lengths are in font sizes
+// where nothing else is said, so that a layout fits every scale. Pure; any thread.
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <glm/vec2.hpp>
+
+#include "engine/base/spelling.h"
+
+namespace shvr::ui {
+
+/// `side`: under the others at the right; `floating`: a window of its own; `hidden`: not there.
+enum class PanelPlace { side, floating, hidden };
+inline constexpr Spelling<PanelPlace> PANEL_PLACES[] = {
+    {PanelPlace::side, "side"}, {PanelPlace::floating, "floating"}, {PanelPlace::hidden, "hidden"}};
+constexpr std::span<const Spelling<PanelPlace>> spellings_of(PanelPlace)
+{
+    return PANEL_PLACES;
+}
+
+struct PanelRow {
+    const char* id = "";     ///< never changes: preferences refer to it
+    const char* title = "";  ///< the same in menus, headings and help
+    const char* hint = "";   ///< what it is for
+    PanelPlace place = PanelPlace::side;
+    bool is_folded = false;
+    bool is_tool = false;  ///< for those who look into the program: in the menu Tools, not in View
+};
+/// From top to bottom.
+std::span<const PanelRow> panel_rows();
+/// Null where there is none.
+const PanelRow* panel_named(std::string_view id);
+
+/// What a person changed of a panel; the rest is as it ships.
+struct PanelLayout {
+    std::optional<PanelPlace> place;
+    std::optional<bool> folded;
+    std::optional<glm::dvec2> at, size;  ///< of its own window; `at` from the upper left corner
+    bool operator==(const PanelLayout&) const = default;
+};
+
+inline constexpr double SIDE_WIDTH = 25.0, MIN_SIDE_WIDTH = 17.0;
+inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< of the window
+inline constexpr glm::dvec2 FLOATING_SIZE{26.0, 30.0};
+
+struct WindowLayout {
+    std::map<std::string, PanelLayout> panels;  ///< by id
+    std::optional<double> side_width;
+    bool shows_side = true, shows_tool_bar = true;
+
+    PanelPlace place_of(const PanelRow& row) const;
+    bool is_folded(const PanelRow& row) const;
+    /// Whether anything is at the right.
+    bool has_side() const;
+    bool operator==(const WindowLayout&) const = default;
+};
+
+/// Units of the window's width that the panels at the right take: as wide as wanted, but at most half of it.
+double side_units(const WindowLayout& layout, double window_units, double font_units);
+
+/// A floating panel's corner, so that its title can be reached: within the window, whose size it is given.
+glm::dvec2 within_reach(const glm::dvec2& at, const glm::dvec2& size, const glm::dvec2& window);
+
+}  // namespace shvr::ui

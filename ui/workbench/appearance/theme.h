@@ -1,0 +1,77 @@
+#pragma once
+// The colours of the interface by what they are for, in two themes. Every text can be read on every surface: the
+// contrast by WCAG 2.1 is at least MIN_TEXT_CONTRAST, also where a widget is greyed (tests/unit/ui/theme_test.cpp).
+// Pure; any thread.
+
+#include <array>
+#include <span>
+
+#include "engine/base/spelling.h"
+
+namespace shvr::ui {
+
+enum class Theme { dark, light };
+inline constexpr Spelling<Theme> THEMES[] = {{Theme::dark, "dark"}, {Theme::light, "light"}};
+constexpr std::span<const Spelling<Theme>> spellings_of(Theme)
+{
+    return THEMES;
+}
+
+/// sRGB, 0 ... 1, opaque.
+using Shade = std::array<float, 3>;
+
+enum class ColorRole {
+    // Texts
+    text,
+    faint_text,  ///< hints, keys, what cannot be done now
+    warning,     ///< beside the word or sign that says so
+    error,
+    accent_text,  ///< headings
+    // Surfaces that texts stand on
+    window,
+    popup,
+    bar,  ///< menu, tools, status
+    frame,
+    frame_hovered,
+    frame_active,
+    button,
+    button_hovered,
+    button_active,
+    header,
+    header_hovered,
+    header_active,
+    chosen,  ///< the one of several that is in use
+    selection,
+    table_header,
+    notice,
+    // Drawings
+    accent,
+    accent_strong,
+    line,
+    border,
+    separator,
+    scrollbar,
+    scrollbar_hovered,
+    scrollbar_active,
+    chart,
+    chart_bars,
+    chart_line,
+    chart_paint,
+    chart_felt,
+    COUNT
+};
+
+inline constexpr double MIN_TEXT_CONTRAST = 4.5;
+/// What a greyed widget keeps of itself over the window's surface.
+inline constexpr float DISABLED_SHARE = 0.75f;
+
+Shade shade_of(ColorRole role, Theme theme);
+std::span<const ColorRole> text_roles();
+std::span<const ColorRole> surface_roles();
+
+/// (L1 + 0.05) / (L2 + 0.05) of the relative luminances, 1 ... 21.
+double contrast(const Shade& a, const Shade& b);
+/// `share` of `over`, the rest `below`, as the device blends them.
+Shade blended(const Shade& over, const Shade& below, float share);
+
+}  // namespace shvr::ui
