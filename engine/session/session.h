@@ -25,8 +25,11 @@ struct InteractionSettings {
     double resolution = 0.7;  ///< share of the screen's, along each axis, while something moves; less if that is slow
     double frames_per_second = 30.0;  ///< at most
     uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
+    double workspace_scale = 1.0;     ///< how far the probe goes for a move of a haptic device's hand
     bool operator==(const InteractionSettings&) const = default;
 };
+
+inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 
 /// What the right mouse button, F and the stylus do in the window, and which preview is shown.
 enum class Tool { paint, trace };
@@ -58,6 +61,10 @@ struct ProbeSettings {
     Tool tool = Tool::paint;
     bool guided = false;
     Guidance guidance = Guidance::potential;
+    std::optional<glm::dvec3> color;  ///< linear light; default: its group's
+    double opacity = 1.0;             ///< of its ball
+    bool silhouette = true;           ///< its outline over whatever hides it
+    bool arrow = true;                ///< towards it, where it is out of sight
     bool operator==(const ProbeSettings&) const = default;
 };
 
@@ -77,6 +84,7 @@ struct Session {
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< `open_session` turns it into a function and clears it
     Groups groups;
+    Unpainted unpainted;
     Light light;
     DistanceBlend blend;
     RenderSettings render;
@@ -94,7 +102,7 @@ struct Session {
     bool operator==(const Session&) const = default;
 
     /// The part that pictures depend on.
-    Look look() const { return {transfer_function, groups, light, blend, cut, render, view.slices}; }
+    Look look() const;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -293,6 +293,10 @@ void fields(Fields& f, ProbeSettings& probe)
     f.choice("tool", probe.tool, {"what the right mouse button, F and the stylus do in the window"});
     f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"the law that pulls it"});
+    f.color("color", probe.color, {.meaning = "colour of its ball, silhouette and arrow", .standard = "its group's"});
+    f.number("opacity", probe.opacity, SHARE, {"of its ball; 0: none is drawn"});
+    f.flag("silhouette", probe.silhouette, {"its outline is drawn over whatever hides it"});
+    f.flag("arrow", probe.arrow, {"an arrow points towards it where it is out of sight"});
     const About density{
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",
@@ -349,6 +353,7 @@ void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
     fields(f, session.groups);
+    f.section("unpainted", session.unpainted);
     f.section("light", session.light);
     f.section("blend", session.blend);
 }

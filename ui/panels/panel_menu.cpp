@@ -12,8 +12,8 @@
 #include "engine/base/error.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/edit.h"
 #include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
 
@@ -133,6 +133,10 @@ void view_menu(const Model& model, Actions& actions)
     item("slices", model, actions, arrangement == Arrangement::slices);
     item("full_screen", model, actions, model.is_full_screen);
     ImGui::Separator();
+    item("volume", model, actions, model.session.view.volume);
+    item("meshes", model, actions, model.session.view.meshes);
+    item("cut_box", model, actions, model.session.view.cut_box);
+    ImGui::Separator();
     held_items("Turn the view", model, actions);
     held_items("Move the view", model, actions);
     ImGui::Separator();
@@ -210,7 +214,11 @@ void probe_menu(const Model& model, Actions& actions)
     item("guide", model, actions, model.session.probe.guided);
     item("next_guidance", model, actions);
     item("shell", model, actions, model.session.probe.shell);
+    item("silhouette", model, actions, model.session.probe.silhouette);
+    item("arrow", model, actions, model.session.probe.arrow);
     ImGui::Separator();
+    item("larger_workspace", model, actions);
+    item("smaller_workspace", model, actions);
     item("larger_probe", model, actions);
     item("smaller_probe", model, actions);
     ImGui::EndMenu();
@@ -222,6 +230,7 @@ void help_menu(const Model& model, Actions& actions)
     item("help", model, actions, model.shows_help);
     item("palette", model, actions);
     item("messages", model, actions, model.shows_messages);
+    item("passes", model, actions, model.shows_passes);
     ImGui::EndMenu();
 }
 
@@ -232,6 +241,21 @@ std::string place_of(const glm::dvec3& voxel)
     char text[96];
     std::snprintf(text, sizeof text, "probe at voxel %.1f, %.1f, %.1f", voxel.x, voxel.y, voxel.z);
     return text;
+}
+
+/// What of the picture is switched off, so that nobody wonders where it is.
+std::string hidden_in_words(const Model& model)
+{
+    const ViewSettings& view = model.session.view;
+    std::string words;
+    const auto add = [&](const char* what, const char* shortcut) {
+        const std::string key = model.keymap.text_of(*shortcut_named(shortcut));
+        words += (words.empty() ? "" : ", ") + std::string(what) + (key.empty() ? "" : " (" + key + ")");
+    };
+    if (!view.volume) add("no volume", "volume");
+    if (!view.meshes) add("no nodes", "meshes");
+    if (view.solo) words += (words.empty() ? "only group " : ", only group ") + std::to_string(*view.solo);
+    return words.empty() ? words : words + "    |    ";
 }
 
 void align_right(const std::string& text)
@@ -310,7 +334,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
     const std::string right = !model.is_open ? std::string()
-                                             : place_of(model.probe_voxel) + "    |    " +
+                                             : hidden_in_words(model) + place_of(model.probe_voxel) + "    |    " +
                                                    (model.is_saved ? "saved" : "not saved") + "    |    " +
                                                    (!model.view_is_complete ? "refining"
                                                     : model.view_is_limited ? "coarser than the screen: device budget"

@@ -121,13 +121,16 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     // While painting, the transfer function needs the space; while tracing, this section opens even if it was folded.
     if (model.tool() == Tool::trace) ImGui::SetNextItemOpen(true);
     section("Tracing", !model.trace.nodes().empty(), trace_panel, model, actions);
+    section("Tracing list", false, trace_list_panel, model, actions);
     section("Transfer function", true, transfer_function_panel, model, actions);
     section("Light and depth", false, light_panel, model, actions);
     section("Ambient occlusion", false, occlusion_panel, model, actions);
+    section("Cutting planes", false, cuts_panel, model, actions);
+    section("Render quality", false, quality_panel, model, actions);
+    section("What is shown", false, aids_panel, model, actions);
     section("Views", false, views_panel, model, actions);
     section("Colour groups", true, groups_panel, model, actions);
     section("History", false, history_panel, model, actions);
-    section("GPU passes", false, passes_panel, model, actions);
     ImGui::End();
     ImGui::PopStyleVar();
 }
@@ -162,6 +165,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     if (model.shows_help) help_window(model, actions);
     if (model.shows_palette) palette_window(model, actions);
     if (model.shows_messages) messages_window(model, actions);
+    if (model.shows_passes) passes_window(model, actions);
     jobs_window(model, {0.0f, size.y - bar}, actions);
 
     const glm::vec2 begin(0.0f, bar);

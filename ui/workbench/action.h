@@ -49,6 +49,10 @@ struct KeepCamera {
 struct ForgetCamera {
     std::string name;
 };
+/// The camera looks at a voxel, from the same side and as far away as before.
+struct GoTo {
+    glm::dvec3 voxel{0.0};
+};
 /// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
 struct MoveCut {
     int axis = 0;
@@ -59,6 +63,10 @@ struct MoveCut {
 struct MoveClip {
     bool far = false;
     double share = 0.0;
+};
+/// Both clip planes, as distances from the eye in physical units; 0: no plane.
+struct PlaceClips {
+    double near = 0.0, far = 0.0;
 };
 struct ResetCuts {};
 struct UpdateOcclusion {};  ///< updates it where it does not update by itself
@@ -71,6 +79,21 @@ struct Set {
 
 /// What was set since the last step becomes one; it does by itself when the hand lets go.
 struct EndStep {};
+
+// ---- A person's own transfer functions, kept for all scans (transfer_presets.h)
+struct KeepPreset {
+    std::string name;
+};
+struct RenamePreset {
+    std::string name, to;
+};
+struct ForgetPreset {
+    std::string name;
+};
+/// Takes the transfer function of a file, which need not be among those that are kept.
+struct TakePreset {
+    std::filesystem::path path;
+};
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
@@ -151,6 +174,18 @@ struct ShowHelp {
 struct ShowMessages {
     bool on = true;
 };
+/// What the device spends on each step of a picture.
+struct ShowPasses {
+    bool on = true;
+};
+/// Writes what the steps of the present picture took, to compare others with.
+struct SavePasses {
+    std::filesystem::path path;
+};
+/// Compares with such a file, or with what `shvr profile --json` printed; an empty path: with nothing any more.
+struct ComparePasses {
+    std::filesystem::path path;
+};
 /// A box to type in, which finds all shortcuts, actions and settings.
 struct ShowPalette {
     bool on = true;
@@ -175,17 +210,18 @@ struct Quit {};
 
 using Action = std::variant<
     // looking
-    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, MoveCut, MoveClip, ResetCuts,
-    UpdateOcclusion,
+    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, GoTo, MoveCut, MoveClip, PlaceClips,
+    ResetCuts, UpdateOcclusion,
     // settings, the probe
-    Set, EndStep, ProbeTo, ProbeOnto, PushProbe, PlaceProbe, ScaleProbe,
+    Set, EndStep, KeepPreset, RenamePreset, ForgetPreset, TakePreset, ProbeTo, ProbeOnto, PushProbe, PlaceProbe,
+    ScaleProbe,
     // painting and tracing
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,
-    ShowMessages, ShowPalette, ShowFullScreen, Quit>;
+    ShowMessages, ShowPasses, SavePasses, ComparePasses, ShowPalette, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -123,6 +123,9 @@ void Document::show_again(Renderer& renderer)
 ProbeLook Document::probe_look() const
 {
     ProbeLook look{.center = touch.probe(), .radius = probe_radius(), .color = probe_color(session, brush().group)};
+    look.ball_opacity = session.probe.opacity;
+    look.has_silhouette = session.probe.silhouette;
+    look.has_arrow = session.probe.arrow;
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
@@ -368,6 +371,7 @@ std::optional<uint32_t> Document::nearby_node() const
 
 TraceMarks Document::trace_marks() const
 {
+    if (!session.view.meshes) return {};
     const glm::dvec3& spacing = volume().spacing;
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
     return shvr::trace_marks(annotator.document().trace,
