@@ -99,6 +99,8 @@ void App::follow_workbench()
     }
     if (bench_->take_quit()) window_.close();
     window_.set_full_screen(bench_->shows_full_screen());
+    if (std::exchange(drew_cut_box_, bench_->shows_cut_box()) != bench_->shows_cut_box())
+        ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
     if (std::exchange(drawn_messages_, bench_->messages().count()) != bench_->messages().count())
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
 }

@@ -90,6 +90,7 @@ private:
     double ui_until_s_ = 1.0;  ///< the interface is drawn at least until then
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
+    bool drew_cut_box_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     glm::dvec3 drawn_probe_voxel_{0.0};
     RunReport report_;

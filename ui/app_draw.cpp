@@ -89,7 +89,7 @@ void App::draw_strokes() const
             return ImVec2(float(pixel.x + origin.x), float(pixel.y + origin.y));
         };
         list.PushClipRect(on_screen(glm::dvec2(0.0)), on_screen(glm::dvec2(pixels)));
-        for (const Stroke& stroke : document.screen.strokes(part, look, marks))
+        for (const Stroke& stroke : document.screen.strokes(part, look, marks, bench_->shows_cut_box()))
             list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f),
                          float(stroke.width));
         if (part.view->shown_camera()) {

@@ -8,6 +8,7 @@ void Screen::look(const Session& session, const Camera& camera, const glm::uvec2
 {
     look_ = session.look();
     view_ = session.view;
+    cut_ = session.cut;
     interaction_ = session.interaction;
     camera_ = camera;
     pixels_ = pixels;
@@ -150,7 +151,8 @@ bool Screen::complete() const
            std::ranges::all_of(parts_, [](const Part& part) { return part.view->is_finished(); });
 }
 
-std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks) const
+std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks,
+                                    bool shows_cut_box) const
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};
     Pane shown = part.pane;
@@ -159,10 +161,21 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
     return strokes_of(shown,
                       {.main = camera_,
                        .main_pixels = box.end - box.begin,
-                       .probe = {.center = probe.center, .radius = probe.radius, .color = probe.color},
+                       .probe = {.center = probe.center,
+                                 .radius = probe.radius,
+                                 .color = probe.color,
+                                 .is_outlined = probe.has_silhouette,
+                                 .has_arrow = probe.has_arrow},
                        .balls = marks.balls,
-                       .lines = marks.lines},
+                       .lines = marks.lines,
+                       .box = cut_box(shows_cut_box)},
                       renderer_.scene().info());
+}
+
+std::optional<OverlayScene::Box> Screen::cut_box(bool is_wanted) const
+{
+    if (!view_.cut_box && !is_wanted) return std::nullopt;
+    return box_of(cut_, renderer_.scene().info());
 }
 
 Image8 Screen::read_back()
@@ -175,11 +188,12 @@ Image8 Screen::read_back()
             std::ranges::copy_n(&shown.rgba[4 * size_t(shown.width) * y], 4 * shown.width,
                                 &whole.rgba[4 * (box.begin.x + size_t(pixels_.x) * (box.begin.y + y))]);
         const bool is_map = part.pane.kind == Pane::Kind::map || part.pane.kind == Pane::Kind::slice;
-        if (!is_map) continue;
+        if (!is_map && !view_.cut_box) continue;
         const glm::dvec3 probe = probe_voxel_ * renderer_.scene().info().spacing;
         const OverlayScene scene{.main = camera_,
                                  .main_pixels = parts_[0].pane.box.end - parts_[0].pane.box.begin,
-                                 .probe = {.center = probe, .is_outlined = false}};
+                                 .probe = {.center = probe, .is_outlined = false, .has_arrow = false},
+                                 .box = cut_box(false)};
         draw_strokes(whole, strokes_of(part.pane, scene, renderer_.scene().info()), box);
     }
     return whole;

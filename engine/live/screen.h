@@ -39,8 +39,9 @@ public:
     };
     /// The panes; the first is the camera's.
     const std::vector<Part>& parts() const { return parts_; }
-    /// The lines drawn over a pane, in its pixels.
-    std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {}) const;
+    /// The lines drawn over a pane, in its pixels. `shows_cut_box`: whatever the session says.
+    std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {},
+                                bool shows_cut_box = false) const;
     /// Whether the first pane has something to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
@@ -59,11 +60,13 @@ private:
     void take_changed();
     void give_turn(size_t part);
     bool is_loading() const;
+    std::optional<OverlayScene::Box> cut_box(bool is_wanted) const;
 
     Renderer& renderer_;
     View::Options options_;
     Look look_;
     ViewSettings view_;
+    CutBox cut_;
     InteractionSettings interaction_;
     Camera camera_;
     glm::uvec2 pixels_{0};

@@ -141,6 +141,10 @@ bool View::patch_is_due() const
 bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
+    if (is_drawing_finer_sketch() && (sight_ != shown_sight_ || patch_is_due())) {
+        if (base_.running > 0) return false;  // for a moment: its image is needed for something else
+        drop_finer_sketch();
+    }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
     if (base_.job || patch_.job) return false;  // in flight
     if (sight_ != shown_sight_) {
@@ -161,6 +165,7 @@ bool View::submit_next(bool sketches_alone)
     if (submit_occlusion()) return true;
     if (scene().has_changed()) return false;  // must be collected first, so that no tile is drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
+    if (submit_finer_sketch()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
         start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draw it sharp
@@ -229,10 +234,42 @@ bool View::submit_occlusion()
     return true;
 }
 
+/// Takes the tiles of the next batch: those nearest to the focus, so many that few batches make the picture, and all
+/// that are left where they take but a moment.
+void View::choose_batch(const glm::dvec2& focus)
+{
+    constexpr size_t BATCHES = 6;
+    const uint32_t across = tile_counts().x;
+    std::vector<std::pair<double, uint32_t>> left;  // by distance
+    for (uint32_t index = 0; index < tiles_.size(); ++index) {
+        if (tiles_[index].is_in_batch && !tiles_[index].is_drawn) return;  // there is one
+        if (tiles_[index].is_shown || !tiles_[index].is_due) continue;
+        const glm::dvec2 apart = (glm::dvec2(index % across, index / across) + 0.5) * double(TILE) - focus;
+        left.emplace_back(glm::dot(apart, apart), index);
+    }
+    const auto of_moment = size_t(options_.moment_ms / cost_ms(uint64_t(TILE) * TILE));
+    const size_t count = std::min(left.size(), std::max((tiles_.size() + BATCHES - 1) / BATCHES, of_moment));
+    std::ranges::nth_element(left, left.begin() + std::ptrdiff_t(count));
+    for (size_t i = 0; i < count; ++i) tiles_[left[i].second].is_in_batch = true;
+}
+
+/// Shows the tiles of the batch once all of it is drawn.
+void View::show_batch()
+{
+    const auto is_missing = [](const Tile& tile) { return tile.is_in_batch && !tile.is_drawn; };
+    if (std::ranges::any_of(tiles_, is_missing)) return;
+    for (Tile& tile : tiles_) {
+        if (!std::exchange(tile.is_in_batch, false)) continue;
+        tile.is_shown = true;
+        ++revision_;
+    }
+}
+
 bool View::may_draw(const Tile& tile) const
 {
     constexpr double AGAIN_S = 0.25;
-    if (!tile.is_due || !tile.is_shown || tile.is_urgent) return tile.is_due;
+    if (!tile.is_shown && !tile.is_urgent && !tile.is_in_batch) return false;  // its turn comes
+    if (!tile.is_due || tile.drawn_s == 0.0 || tile.is_urgent) return tile.is_due;
     const bool more_comes = scene().volume().state() == DeviceVolume::State::loading;
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
@@ -243,6 +280,7 @@ bool View::submit_tiles()
     glm::dvec2 focus = 0.5 * glm::dvec2(pixels);
     if (probe_)
         if (const auto seen = project(shown_sight_->shot.camera, pixels, probe_->center)) focus = seen->pixel;
+    choose_batch(focus);
     std::optional<glm::uvec2> nearest;
     double best = 0.0;
     for (uint32_t y = 0; y < counts.y; ++y)
@@ -282,6 +320,7 @@ bool View::submit_tiles()
     submit(std::move(graph), std::move(running));
     for (const uint32_t index : running_.back().tiles) {
         Tile& tile = tiles_[index];
+        if (tile.is_urgent) tile.is_in_batch = false;  // what was changed is shown at once
         tile.is_due = tile.is_urgent = false;
         tile.drawn_s = now_s();
     }
@@ -368,8 +407,13 @@ void View::reap()
             case Purpose::patch: --patch_.running; break;
             case Purpose::tiles:
                 if (done.sight != shown_sight_) break;
-                for (uint32_t tile : done.tiles) tiles_[tile].is_shown = true;
-                ++revision_;
+                for (const uint32_t index : done.tiles) {
+                    Tile& tile = tiles_[index];
+                    tile.is_drawn = true;
+                    tile.is_shown = tile.is_shown || !tile.is_in_batch;
+                    if (tile.is_shown) ++revision_;
+                }
+                show_batch();
                 break;
         }
         finish_sketches();

@@ -4,7 +4,9 @@
 //   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all is done
 //                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
-//   still             sharp tiles, until the picture is what `Renderer::render` makes, bit for bit
+//   still             a finer sketch of the whole picture, where that is a small part of the work
+//                     then sharp tiles, until the picture is what `Renderer::render` makes, bit for bit. They are shown
+//                     a good part of the picture at a time, so that no edge runs through it
 //   voxels changed    the tiles that show them, again
 //   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
@@ -31,6 +33,7 @@ public:
         double in_flight_ms = 3.5;   ///< device time of the graphs in flight
         double motion_ms = 40.0;     ///< for the sketch of a picture
         double probe_ms = 20.0;      ///< for the sketch of the pixels that the probe may cover
+        double moment_ms = 300.0;    ///< sharp tiles that take less are shown all at once
         bool swap_red_blue = false;  ///< in the shown images
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
@@ -128,6 +131,8 @@ private:
     };
     struct Tile {
         bool is_shown = false;
+        bool is_drawn = false;  ///< and shown together with the others of its batch
+        bool is_in_batch = false;
         bool is_due = false;
         bool is_urgent = false;  ///< changed by painting
         double drawn_s = 0.0;    ///< host time of the last submission
@@ -150,6 +155,7 @@ private:
     Scene& scene() const { return renderer_.scene(); }
     Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
     void start(Sketch& sketch, const SightRef& sight, const std::optional<ProbeLook>& probe, double target_ms);
+    void start(Sketch& sketch, Sketch::Content content, PixelBox part);
     bool submit_sketch(Sketch& sketch, Purpose purpose);
     void submit_rows(Sketch& sketch, Purpose purpose);
     void submit_encoding(Sketch& sketch, Purpose purpose);
@@ -157,6 +163,11 @@ private:
     bool occlusion_is_due() const;
     void mark_voxels(const VoxelBox& voxels, bool is_urgent = true);
     PixelBox pixels_of(const Sight& sight, const VoxelBox& voxels) const;
+    bool submit_finer_sketch();
+    void drop_finer_sketch();
+    bool is_drawing_finer_sketch() const { return base_.job && base_.job->sight == shown_sight_; }
+    void choose_batch(const glm::dvec2& focus);
+    void show_batch();
     bool submit_tiles();
     void encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end);
     gpu::EncodeParams encoding() const;
@@ -189,6 +200,7 @@ private:
     gpu::Storage sharp_;           ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
+    SightRef finer_sight_;  ///< the last one of which a finer sketch was begun
     bool occlusion_is_asked_for_ = false;
     bool occlusion_was_renewed_ = false;  ///< and the pixels under the probe do not show it yet
     std::deque<Running> running_;

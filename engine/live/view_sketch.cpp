@@ -36,8 +36,16 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
     // Without motion it is drawn sharp, whatever it costs.
     const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
+    start(sketch, {.sight = sight, .probe = probe, .share = share}, part);
+}
+
+/// `part`: pixels of the screen.
+void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
+{
+    const bool is_patch = &sketch == &patch_;
+    const SightRef& sight = content.sight;
+    const double share = content.share;
     sketch_ms_ = 0.0;
-    Sketch::Content content{.sight = sight, .probe = probe, .share = share};
     content.pixels = glm::uvec2(glm::ceil(glm::dvec2(sight->pixels) * share));
     if (!part.empty()) {
         const glm::dvec2 scale = glm::dvec2(content.pixels) / glm::dvec2(sight->pixels);
@@ -52,6 +60,23 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
     sketch.next_row = content.part.begin.y;
     sketch.next_encoded = content.target.begin.y;
     sketch.job = std::move(content);
+}
+
+/// Before the sharp tiles, whose edges stand out less beside a finer sketch. Once for each sight, and only where it
+/// adds little to the time that the picture takes.
+bool View::submit_finer_sketch()
+{
+    constexpr double SHARE = 0.18;  // of the pixels along each axis: 3 % of all
+    if (finer_sight_ == shown_sight_ || !(base_.shown.share < 0.8 * SHARE)) return false;
+    finer_sight_ = shown_sight_;
+    start(base_, {.sight = shown_sight_, .probe = {}, .share = SHARE}, {glm::uvec2(0), shown_sight_->pixels});
+    return true;
+}
+
+void View::drop_finer_sketch()
+{
+    base_.job.reset();
+    changed_during_base_.clear();  // their tiles are marked
 }
 
 /// Submits the next graph of a sketch; false if all are in flight.

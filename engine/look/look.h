@@ -16,6 +16,7 @@ struct Look {
     CutBox cut;
     RenderSettings render;
     SliceSettings slices;
+    bool shows_meshes = true;  ///< a trace, surfaces and the probe's ball
 };
 
 /// Whether a light uses ambient occlusion.

@@ -165,7 +165,11 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     const bool is_in_sight = std::ranges::any_of(outline, [&](const glm::dvec2& at) {
         return glm::all(glm::greaterThanEqual(at, glm::dvec2(0.0))) && glm::all(glm::lessThan(at, glm::dvec2(pixels)));
     });
-    if (is_in_sight) return strokes.closed(outline, probe.color);
+    if (is_in_sight) {
+        if (probe.is_outlined) strokes.closed(outline, probe.color);
+        return;
+    }
+    if (!probe.has_arrow) return;
     const CameraAxes axes = axes_of(camera);
     const glm::dvec3 from_eye = probe.center - camera.eye;
     glm::dvec2 way(glm::dot(from_eye, axes.right), -glm::dot(from_eye, axes.up));
@@ -210,6 +214,38 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
             if (from && to) strokes.line(from->pixel, to->pixel, line.color, false, TRACE_WIDTH);
         }
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
+}
+
+/// The edges of a box, in the colours of their axes: solid where its faces look at the viewer, stippled behind them.
+void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, const OverlayScene::Box& box)
+{
+    const CameraAxes axes = axes_of(camera);
+    const bool is_perspective = camera.projection == Camera::Projection::perspective;
+    const double nearest = 1e-3 * glm::distance(camera.eye, camera.target);
+    const glm::dvec3 middle = 0.5 * (box.lower + box.upper);
+    const auto depth_of = [&](const glm::dvec3& point) { return glm::dot(point - camera.eye, axes.forward); };
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 4; ++side) {
+            const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+            glm::dvec3 from = box.lower, to;
+            if (side & 1) from[second] = box.upper[second];
+            if (side & 2) from[third] = box.upper[third];
+            to = from;
+            to[axis] = box.upper[axis];
+            // Of the two faces that meet in the edge, one looks at the viewer.
+            const glm::dvec3 to_viewer = is_perspective ? camera.eye - 0.5 * (from + to) : -axes.forward;
+            const auto faces = [&](int normal) { return (from[normal] - middle[normal]) * to_viewer[normal] > 0.0; };
+            const bool is_seen = faces(second) || faces(third);
+            if (is_perspective) {  // the part before the eye
+                const double begin = depth_of(from), end = depth_of(to);
+                if (begin < nearest && end < nearest) continue;
+                const glm::dvec3 way = to - from;
+                if (begin < nearest) from += way * ((nearest - begin) / (end - begin));
+                if (end < nearest) to -= way * ((nearest - end) / (begin - end));
+            }
+            const auto a = project(camera, pixels, from), b = project(camera, pixels, to);
+            if (a && b) strokes.line(a->pixel, b->pixel, COLORS[size_t(axis)], !is_seen);
+        }
 }
 
 /// The pixels of `pane` that a stroke touches, and its coverage of each. Stroke coordinates start at `origin`.
@@ -272,6 +308,12 @@ std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pi
     return outline;
 }
 
+OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume)
+{
+    const glm::dvec3 size(volume.size);
+    return {glm::min(cut.lower, size) * volume.spacing, glm::min(cut.upper, size) * volume.spacing};
+}
+
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume)
 {
     const glm::uvec2 pixels = pane.box.end - pane.box.begin;
@@ -280,9 +322,11 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     if (pane.kind == Pane::Kind::map) add_frustum(strokes, pane, pixels, scene, volume);
     if (pane.kind == Pane::Kind::slice) add_cross(strokes, pane, pixels, scene);
     // An anaglyph gets no outline: it has a line for one camera only, which two eyes would see at two depths.
-    if (scene.probe.is_outlined && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
+    if ((scene.probe.is_outlined || scene.probe.has_arrow) && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
         add_probe(strokes, pane.shot.camera, pixels, scene.probe);
     if (!pane.shot.right_eye) add_trace(strokes, pane, pixels, scene);
+    if (scene.box && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
+        add_box(strokes, pane.shot.camera, pixels, *scene.box);
     return strokes.taken();
 }
 

@@ -3,11 +3,13 @@
 // hides it or where it is out of sight. They are computed once, as straight strokes in pixels; the window draws them
 // its own way, and `draw_strokes` draws them into image files. Pure; any thread.
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/base/image.h"
 #include "engine/look/panes.h"
+#include "engine/look/settings.h"
 
 namespace shvr {
 
@@ -25,7 +27,8 @@ struct OverlayScene {
         glm::dvec3 center{0.0};   ///< volume space
         double radius = 1.0;      ///< physical units
         glm::dvec3 color{1.0};    ///< linear light
-        bool is_outlined = true;  ///< draw its silhouette, or an arrow where it is out of sight
+        bool is_outlined = true;  ///< draw its silhouette
+        bool has_arrow = true;    ///< or an arrow where it is out of sight
     };
     Probe probe;
     /// Highlights of the trace: nodes as rings, internodes as lines along their middles.
@@ -40,7 +43,15 @@ struct OverlayScene {
     };
     std::vector<Ball> balls{};
     std::vector<Line> lines{};
+    /// A box in volume space of which the edges are drawn: what the cutting planes leave.
+    struct Box {
+        glm::dvec3 lower{0.0}, upper{0.0};
+    };
+    std::optional<Box> box{};
 };
+/// What the cutting planes leave of a volume.
+OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
+
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
 /// The silhouette of a ball, as a closed line: the circle in which lines from the eye touch it. Empty if the eye is

@@ -54,6 +54,10 @@ struct ViewSettings {
     StereoSettings stereo;
     SliceSettings slices;
     double overview_zoom = 1.0;
+    bool volume = true;           ///< false: voxels are seen in slices alone
+    bool meshes = true;           ///< a trace, surfaces and the probe's ball
+    bool cut_box = false;         ///< lines along the edges of what the cutting planes leave
+    std::optional<uint8_t> solo;  ///< the one group that is drawn, with those below it; 0: what is unpainted
     bool operator==(const ViewSettings&) const = default;
 };
 

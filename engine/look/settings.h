@@ -66,6 +66,13 @@ constexpr std::span<const Spelling<Paging>> spellings_of(Paging)
     return PAGINGS;
 }
 
+/// How voxels look that no group holds, beside the transfer function.
+struct Unpainted {
+    bool visible = true;
+    double opacity = 1.0;  ///< the transfer function's opacities are multiplied by it
+    bool operator==(const Unpainted&) const = default;
+};
+
 struct RenderSettings {
     glm::uvec2 size{512, 512};                  ///< pixels
     double step_voxels = 0.5;                   ///< reference lengths (voxels along the finest axis)

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/passes/anaglyph.h"
+#include "engine/passes/mix.h"
 #include "engine/passes/saturation.h"
 #include "engine/picture/ray_params.h"
 
@@ -43,7 +44,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     }
     input.table = scene.tables().upload_function(graph, look, scene.volume().window(), step_voxels);
     if (input.mask) input.groups = scene.tables().upload_groups(graph, look, step_voxels);
-    if (!shot.is_slice) prepared.listed = scene.surfaces().upload(graph);
+    if (!shot.is_slice && look.shows_meshes) prepared.listed = scene.surfaces().upload(graph);
     input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
     input.shaded = look.light.shaded && !shot.is_slice;
     input.slice = shot.is_slice;
@@ -72,13 +73,26 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
+/// Where it shows what lies behind the probe's ball, too: two pictures are mixed.
+bool is_translucent(const std::optional<ProbeLook>& probe)
+{
+    return probe && probe->ball_share > 0.0 && probe->ball_opacity > 0.0 && probe->ball_opacity < 1.0;
+}
+
+/// The part as it is drawn where no ball of the probe is seen.
+PicturePart without_ball(PicturePart part)
+{
+    if (part.probe) part.probe->ball_share = 0.0;
+    return part;
+}
+
 /// The volume and what is in it. A preview is drawn before the rays, so that they end at it, and then over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
-                       const PicturePart& part, Resource target, const WaitingRays* rays, size_t eye)
+                       const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
 {
     RaysInWaiting waiting;
     if (rays) {
-        waiting = rays->import(graph, eye);
+        waiting = rays->import(graph, which);
         input.waiting = &waiting;
     }
     input.surfaces = draw_surfaces(graph, scene, prepared, input, camera, part);
@@ -98,11 +112,29 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
+/// The same, through a translucent ball: as with an opaque one, and as without it.
+Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
+                           const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
+                           size_t eye)
+{
+    const glm::uvec2 size = part.end - part.begin;
+    const Resource opaque = draw_contents(graph, scene, prepared, input, camera, part, target, rays, 2 * eye);
+    RaycastInput bare = input;
+    bare.params.target = glm::uvec2(0);
+    const Resource without = draw_contents(
+        graph, scene, prepared, bare, camera, without_ball(part),
+        graph.create("without the probe", image_desc(Format::rgba32_float, glm::uvec3(size, 1))), rays, 2 * eye + 1);
+    return mix(graph, without, opaque,
+               {.target = input.params.target, .size = size, .share = float(1.0 - part.probe->ball_opacity)});
+}
+
 /// The picture of one eye.
 Resource draw_eye(FrameGraph& graph, Scene& scene, const Look& look, Prepared& prepared, const RaycastInput& input,
                   const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays, size_t eye)
 {
-    const Resource picture = draw_contents(graph, scene, prepared, input, camera, part, target, rays, eye);
+    const Resource picture = input.slice || !is_translucent(part.probe)
+                                 ? draw_contents(graph, scene, prepared, input, camera, part, target, rays, eye)
+                                 : draw_through_ball(graph, scene, prepared, input, camera, part, target, rays, eye);
     if (look.render.saturation == 1.0) return picture;
     return saturation(
         graph, picture,
@@ -111,21 +143,28 @@ Resource draw_eye(FrameGraph& graph, Scene& scene, const Look& look, Prepared& p
 
 }  // namespace
 
-WaitingRays::WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int eyes)
+WaitingRays::WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int pictures)
 {
-    for (int eye = 0; eye < eyes; ++eye)
-        eyes_.push_back(memory.create("waiting rays", image_desc(Format::rgba32_float, glm::uvec3(pixels, 2)),
-                                      gpu::Placement::device, "the picture"));
+    for (int picture = 0; picture < pictures; ++picture)
+        pictures_.push_back(memory.create("waiting rays", image_desc(Format::rgba32_float, glm::uvec3(pixels, 2)),
+                                          gpu::Placement::device, "the picture"));
 }
 
-RaysInWaiting WaitingRays::import(FrameGraph& graph, size_t eye) const
+RaysInWaiting WaitingRays::import(FrameGraph& graph, size_t picture) const
 {
-    return {graph.import("waiting rays", eyes_.at(eye).import()), have_begun_};
+    return {graph.import("waiting rays", pictures_.at(picture).import()), have_begun_};
 }
 
-Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
+int pictures_of(const Shot& shot, const std::optional<ProbeLook>& probe)
+{
+    return (shot.right_eye ? 2 : 1) * (!shot.is_slice && is_translucent(probe) ? 2 : 1);
+}
+
+Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& whole_part,
            Resource target, bool count_work, WaitingRays* waiting)
 {
+    const bool has_ball = look.shows_meshes && whole_part.probe && whole_part.probe->ball_opacity > 0.0;
+    const PicturePart part = has_ball ? whole_part : without_ball(whole_part);
     Prepared prepared = prepare(graph, scene, look, shot, part, true);
     prepared.input.count_work = count_work;
     Drawn drawn;
@@ -159,7 +198,8 @@ Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& sho
 {
     Prepared prepared = prepare(graph, scene, look, shot, part, false);
     RaycastInput input = prepared.input;
-    input.surfaces = draw_surfaces(graph, scene, prepared, input, shot.camera, part);
+    const bool has_ball = look.shows_meshes && part.probe && part.probe->ball_opacity >= 0.5;
+    input.surfaces = draw_surfaces(graph, scene, prepared, input, shot.camera, has_ball ? part : without_ball(part));
     input.pick = true;
     input.shaded = false;
     return raycast(graph, prepared.volume, input,

@@ -10,6 +10,7 @@
 //   preview    [preview]                                                               (what a brush would change)
 //   rays       raycast, one thread a pixel
 //   preview    [preview_over]
+//   ball       [the last four without the probe's ball, then mix]                      (a translucent one)
 //   colours    [saturation]
 //   anaglyph   the last five for each eye, then anaglyph
 //
@@ -42,17 +43,20 @@ struct PicturePart {
 /// What rays have gathered that wait for bricks, from one graph to the next (engine/passes/raycast.h, RaysInWaiting).
 class WaitingRays {
 public:
-    /// Bytes on the device for a pixel of each eye.
+    /// Bytes on the device for a pixel of each picture.
     static constexpr uint64_t PIXEL_BYTES = 2 * 4 * sizeof(float);
-    /// `pixels`: of the part that is drawn. Fails where the budget does not hold them.
-    WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int eyes);
-    RaysInWaiting import(FrameGraph& graph, size_t eye) const;
+    /// `pixels`: of the part that is drawn; `pictures`: pictures_of it. Fails where the budget does not hold them.
+    WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int pictures);
+    RaysInWaiting import(FrameGraph& graph, size_t picture) const;
     void have_begun() { have_begun_ = true; }
 
 private:
-    std::vector<gpu::Storage> eyes_;
+    std::vector<gpu::Storage> pictures_;
     bool have_begun_ = false;
 };
+
+/// Pictures that are followed by rays: of each eye, and of each with and without a translucent ball of the probe.
+int pictures_of(const Shot& shot, const std::optional<ProbeLook>& probe);
 
 /// What was added to a graph: the target's new version, and the feedback to hand to the volume when the graph is done.
 struct Drawn {

@@ -40,6 +40,8 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     uint64_t images_of_eye = 0;
     if (!shot.is_slice && (scene.has_surfaces() || (probe && probe->ball_share > 0.0))) ++images_of_eye;
     if (probe && probe->preview) images_of_eye += 2;
+    const int pictures = pictures_of(shot, probe), eyes = shot.right_eye ? 2 : 1;
+    if (pictures > eyes) images_of_eye = 2 * images_of_eye + 1;
     return PIXEL_BYTES * (1 + (shot.right_eye ? 2 * (1 + images_of_eye) : images_of_eye));
 }
 
@@ -97,13 +99,15 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
     panes_ = panes_of(session.view, camera, size_, info, probe_voxel);
     overlay_ = {.main = camera,
                 .main_pixels = panes_[0].box.end - panes_[0].box.begin,
-                .probe = {.center = probe_voxel * info.spacing, .is_outlined = false}};
+                .probe = {.center = probe_voxel * info.spacing, .is_outlined = false, .has_arrow = false}};
     if (const auto& probe = options_.probe) {
         overlay_.probe = {.center = probe->center,
                           .radius = probe->radius,
                           .color = probe->color,
-                          .is_outlined = options_.outlines_probe};
+                          .is_outlined = options_.outlines_probe && probe->has_silhouette,
+                          .has_arrow = options_.outlines_probe && probe->has_arrow};
     }
+    if (session.view.cut_box) overlay_.box = box_of(session.cut, info);
     const uint64_t row_bytes = PIXEL_BYTES * size_.x;
     const uint64_t band_bytes = std::min(MAX_BAND_BYTES, renderer_.memory().host_bytes_left() / 8);
     band_rows_ = uint32_t(std::clamp<uint64_t>(band_bytes / row_bytes, 1, size_.y));
@@ -276,7 +280,7 @@ void PictureJob::draw_completely(const PicturePart& part)
 void PictureJob::draw_waiting(const PicturePart& part)
 {
     DeviceVolume& volume = scene().volume();
-    WaitingRays rays(renderer_.memory(), part.end - part.begin, pane().shot.right_eye ? 2 : 1);
+    WaitingRays rays(renderer_.memory(), part.end - part.begin, pictures_of(pane().shot, part.probe));
     std::vector<gpu::PassReport> passes;
     bool waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
     std::function<bool(const BrickKey&)> is_ready;

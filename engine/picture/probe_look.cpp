@@ -9,6 +9,7 @@ namespace shvr {
 
 glm::dvec3 probe_color(const Session& session, uint8_t group)
 {
+    if (session.probe.color) return *session.probe.color;
     return group == 0 ? glm::dvec3(0.5) : group_of(session.groups, group).color;
 }
 
@@ -22,7 +23,10 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
                    .color = probe_color(session, probe.brush.group),
                    .ball_share = !probe.shown                   ? 0.0
                                  : probe.shell || probe.preview ? BALL_IN_SHELL
-                                                                : 1.0};
+                                                                : 1.0,
+                   .ball_opacity = probe.opacity};
+    look.has_silhouette = probe.silhouette;
+    look.has_arrow = probe.arrow;
     if (probe.shell)
         look.shell = ShellLook{
             .threshold = probe.brush.threshold.value_or(automatic_threshold(session.transfer_function, statistics)),

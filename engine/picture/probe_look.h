@@ -19,20 +19,22 @@ struct ShellLook {
 
 /// What is drawn of the probe: a ball that ends rays, and a shell.
 struct ProbeLook {
-    glm::dvec3 center{0.0};   ///< volume space
-    double radius = 1.0;      ///< of its region, physical units
-    glm::dvec3 color{1.0};    ///< linear light
-    double ball_share = 1.0;  ///< radius of the ball as a share of `radius`; 0: no ball
+    glm::dvec3 center{0.0};     ///< volume space
+    double radius = 1.0;        ///< of its region, physical units
+    glm::dvec3 color{1.0};      ///< linear light
+    double ball_share = 1.0;    ///< radius of the ball as a share of `radius`; 0: no ball
+    double ball_opacity = 1.0;  ///< of its surface
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
         preview;  ///< what its brush would change, also shown in slices; null: not shown
+    bool has_silhouette = true, has_arrow = true;  ///< lines over the picture, where lines are drawn
     bool operator==(const ProbeLook&) const = default;
     /// The radius of a ball that encloses all of it. `spacing`: of the volume.
     double reach(const glm::dvec3& spacing) const;
 };
 /// Size of the ball beside a shell, small enough not to hide it.
 inline constexpr double BALL_IN_SHELL = 0.12;
-/// The colour of the probe's group; grey where it erases.
+/// The probe's own colour, or its group's; grey where it erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);
 /// How pictures of a session show its probe.
 std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,

@@ -17,6 +17,7 @@ void set_lasting_settings(Session& session, const SettingValues& values)
     const auto has = [&](const char* name) { return values.contains(name); };
     if (has("transfer_function")) session.transfer_function = read.transfer_function;
     if (has("groups")) session.groups = read.groups;
+    if (has("unpainted")) session.unpainted = read.unpainted;
     if (has("light")) session.light = read.light;
     if (has("blend")) session.blend = read.blend;
     if (has("cut")) session.cut = read.cut;

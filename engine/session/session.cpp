@@ -50,6 +50,32 @@ JsonDocument document_for_project(const fs::path& session_file, std::vector<std:
 
 }  // namespace
 
+namespace {
+
+/// Linear between points, so that multiplied points make a multiplied function.
+TransferFunction multiplied(const TransferFunction& function, double factor)
+{
+    std::vector<ControlPoint> points(function.points().begin(), function.points().end());
+    for (ControlPoint& point : points) point.opacity *= factor;
+    return TransferFunction(std::move(points));
+}
+
+}  // namespace
+
+Look Session::look() const
+{
+    Look look{transfer_function, groups, light, blend, cut, render, view.slices, view.meshes};
+    const bool shows_unpainted = unpainted.visible && view.solo.value_or(0) == 0;
+    const double factor = shows_unpainted ? unpainted.opacity : 0.0;
+    if (factor != 1.0) look.transfer_function = multiplied(transfer_function, factor);
+    for (int group = 1; view.solo && group < 256; ++group)
+        if (*view.solo == 0 || !is_within(groups, uint8_t(group), *view.solo))
+            look.groups[uint8_t(group)].visible = false;
+    // Nothing of it is left, but slices, which no plane cuts, and surfaces.
+    if (!view.volume) look.cut.upper = look.cut.lower;
+    return look;
+}
+
 fs::path session_file_of(const fs::path& path)
 {
     if (path.empty())

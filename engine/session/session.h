@@ -38,9 +38,12 @@ struct InteractionSettings {
     // Lines and words that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;  ///< the probe's depth, and how much of it is relevant
+    bool probe_label = true;       ///< the probe's depth, and how much of it is relevant
+    double workspace_scale = 1.0;  ///< how far the probe goes for a move of a haptic device's hand
     bool operator==(const InteractionSettings&) const = default;
 };
+
+inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 
 /// What the left mouse button does in the window, where Alt is not held:
 ///
@@ -85,6 +88,10 @@ struct ProbeSettings {
     Tool tool = Tool::turn;
     bool guided = false;
     Guidance guidance = Guidance::potential;
+    std::optional<glm::dvec3> color;           ///< linear light; default: its group's
+    double opacity = 1.0;                      ///< of its ball
+    bool silhouette = true;                    ///< its outline over whatever hides it
+    bool arrow = true;                         ///< towards it, where it is out of sight
     std::optional<double> node_radius_voxels;  ///< of new nodes, along x; default: for the volume
     bool measured_radius = false;              ///< new nodes are as wide as what they lie in, where that can be told
     /// What painting gives voxels to: the active group, or 0.
@@ -108,6 +115,7 @@ struct Session {
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< `open_session` turns it into a function and clears it
     Groups groups;
+    Unpainted unpainted;
     Light light;
     DistanceBlend blend;
     RenderSettings render;
@@ -125,7 +133,7 @@ struct Session {
     bool operator==(const Session&) const = default;
 
     /// The part that pictures depend on.
-    Look look() const { return {transfer_function, groups, light, blend, cut, render, view.slices}; }
+    Look look() const;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

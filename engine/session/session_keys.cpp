@@ -299,6 +299,10 @@ void fields(Fields& f, ProbeSettings& probe)
               .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's"});
     f.flag("measured_radius", probe.measured_radius,
            {"the window makes new nodes as wide as what they lie in, above the paint threshold"});
+    f.color("color", probe.color, {.meaning = "colour of its ball, silhouette and arrow", .standard = "its group's"});
+    f.number("opacity", probe.opacity, SHARE, {"of its ball; 0: none is drawn"});
+    f.flag("silhouette", probe.silhouette, {"its outline is drawn over whatever hides it"});
+    f.flag("arrow", probe.arrow, {"an arrow points towards it where it is out of sight"});
     const About density{
         .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
         .allowed = "object",
@@ -355,6 +359,7 @@ void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
     fields(f, session.groups);
+    f.section("unpainted", session.unpainted);
     f.section("light", session.light);
     f.section("blend", session.blend);
 }

@@ -28,6 +28,7 @@ void fields(Fields& f, ProbeSettings& probe);
 void fields(Fields& f, CutBox& cut);
 void fields(Fields& f, InteractionSettings& interaction);
 void fields(Fields& f, ControlPoint& point);
+void fields(Fields& f, Unpainted& unpainted);
 void fields(Fields& f, Light& light);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);

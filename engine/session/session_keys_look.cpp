@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "engine/session/quality.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -61,11 +62,40 @@ void fields(Fields& f, DistanceBlend& blend)
     f.color("color", blend.color, {.meaning = "that colour", .standard = "the background's"});
 }
 
+void fields(Fields& f, Unpainted& unpainted)
+{
+    f.flag("visible", unpainted.visible, {"false: voxels that no group holds are not drawn"});
+    f.number("opacity", unpainted.opacity, SHARE,
+             {"of voxels that no group holds: the transfer function's opacities are multiplied by it"});
+}
+
+namespace {
+
+/// Sets the keys that a preset is about; those that are there, too, are read afterwards.
+void quality_fields(Fields& f, RenderSettings& render)
+{
+    const About about{.meaning =
+                          "sets `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space` and "
+                          "`preintegration` at once, where they are not given (quality.h)",
+                      .allowed = "`\"draft\"`, `\"interactive\"`, `\"good\"`, `\"reference\"`",
+                      .standard = "none"};
+    if (!f.has("quality", false)) return f.mention("quality", about);
+    std::vector<std::string_view> names;
+    for (const Quality& each : qualities()) names.push_back(each.name);
+    std::string name;
+    f.choice("quality", name, names, about);
+    for (const Quality& each : qualities())
+        if (name == each.name) take(render, each);
+}
+
+}  // namespace
+
 void fields(Fields& f, RenderSettings& render)
 {
     std::vector<int64_t> size{render.size.x, render.size.y};
     f.wholes("size", size, 1, 65536, {"width and height of the picture", "pixels"});
     render.size = {size[0], size[1]};
+    quality_fields(f, render);
     f.number("step_voxels", render.step_voxels, above_zero(1e-4, 1024.0),
              {"distance between samples", "reference lengths"});
     f.number("opacity_limit", render.opacity_limit, above_zero(1e-6, 1.0),
@@ -129,6 +159,14 @@ void fields(Fields& f, ViewSettings& view)
     f.section("stereo", view.stereo);
     f.section("slices", view.slices);
     f.number("overview_zoom", view.overview_zoom, above_zero(1e-3, 1e3), {"of the three maps"});
+    f.flag("volume", view.volume, {"false: no voxels are drawn, except in slices"});
+    f.flag("meshes", view.meshes, {"false: no nodes, internodes and surfaces are drawn, and no ball of the probe"});
+    f.flag("cut_box", view.cut_box, {"lines along the edges of the box that the cutting planes leave"});
+    std::optional<int64_t> solo = view.solo;
+    f.any_whole("solo", solo, 0, 255,
+                {.meaning = "the one group that is drawn, with those below it; 0: only what no group holds",
+                 .standard = "none: all that are visible"});
+    view.solo = solo ? std::optional(uint8_t(*solo)) : std::nullopt;
 }
 
 void fields(Fields& f, InteractionSettings& interaction)
@@ -144,6 +182,8 @@ void fields(Fields& f, InteractionSettings& interaction)
     f.flag("axes", interaction.axes, {"the window draws the directions of x, y and z over each pane"});
     f.flag("probe_label", interaction.probe_label,
            {"the window writes beside the probe how deep it is, and how much of it is at or above the threshold"});
+    f.number("workspace_scale", interaction.workspace_scale, above_zero(MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE),
+             {"how far the probe goes for a move of a haptic device; 1: its whole reach is the height of the view"});
 }
 
 void fields(Fields& f, CutBox& cut)

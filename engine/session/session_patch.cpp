@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/session/lasting_settings.h"
+#include "engine/session/quality.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -72,12 +73,15 @@ Session patched(const Session& session, std::string_view patch)
     if (!change.value().is_object()) change.root().refuse("an object such as {\"light\": {\"ambient\": 0.4}}");
     JsonDocument document = session_document("{}", "settings");
     document.value() = settings_of(session);
+    if (change.root()["render"]["quality"].exists())
+        for (const std::string_view key : keys_of_quality()) document.value()["render"].erase(std::string(key));
     document.value().merge_patch(change.value());
     const Session read = read_settings(document);
     Session changed = session;
     changed.transfer_function = read.transfer_function;
     changed.transfer_preset = read.transfer_preset;
     changed.groups = read.groups;
+    changed.unpainted = read.unpainted;
     changed.light = read.light;
     changed.blend = read.blend;
     changed.cut = read.cut;

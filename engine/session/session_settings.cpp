@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/session/quality.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -83,6 +84,12 @@ json missing_container(const json* fallback)
     return fallback && fallback->is_array() ? *fallback : json::object();
 }
 
+/// It takes the place of those that were given before.
+void erase_keys_of_quality(json& render)
+{
+    for (const std::string_view key : keys_of_quality()) render.erase(std::string(key));
+}
+
 }  // namespace
 
 void apply_settings(JsonDocument& session, const std::vector<std::string>& settings)
@@ -103,6 +110,7 @@ void apply_settings(JsonDocument& session, const std::vector<std::string>& setti
             fallback = fallback && fallback->is_object() && fallback->contains(key) ? &(*fallback)[key] : nullptr;
         }
         *place = parsed.value;
+        if (place_key == "render.quality") erase_keys_of_quality(document["render"]);
     }
 }
 

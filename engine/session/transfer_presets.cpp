@@ -1,10 +1,12 @@
 #include "engine/session/transfer_presets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/base/assets.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -12,6 +14,18 @@ namespace shvr {
 namespace {
 
 constexpr int64_t LARGEST_FILE = 1 << 20;
+constexpr double LARGEST_PLACE = 1e6;
+constexpr size_t MAX_NAME_BYTES = 100;
+
+std::vector<std::filesystem::path> preset_files(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> files;
+    std::error_code ignored;
+    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".json") files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
 
 }  // namespace
 
@@ -19,13 +33,14 @@ TransferPreset parse_transfer_preset(const std::string& text, const std::string&
 {
     const JsonDocument json(text, origin, {.expected = "a transfer function"});
     const JsonNode document = json.root();
-    document.allow({"note", "points"});
-    TransferPreset preset{.name = name, .note = document["note"].text("a sentence")};
-    double last = -1.0;
+    document.allow({"note", "points", "extends"});
+    TransferPreset preset{.name = name, .note = document["note"].text("a sentence"), .points = {}};
+    preset.extends = document["extends"].flag(true);
+    double last = -LARGEST_PLACE;
     for (const JsonNode& element : document["points"].elements()) {
         element.allow({"at", "color", "opacity"});
         ControlPoint point;
-        point.intensity = element["at"].number({last, 10.0});
+        point.intensity = element["at"].number({last, LARGEST_PLACE});
         point.color = read_color(element["color"]);
         point.opacity = element["opacity"].number(SHARE);
         last = point.intensity;
@@ -37,16 +52,77 @@ TransferPreset parse_transfer_preset(const std::string& text, const std::string&
 
 std::vector<TransferPreset> transfer_presets()
 {
-    std::vector<std::filesystem::path> files;
     const std::filesystem::path folder = asset_folder("transfer_functions");
-    if (!folder.empty())
-        for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder))
-            if (entry.path().extension() == ".json") files.push_back(entry.path());
-    std::ranges::sort(files);
     std::vector<TransferPreset> presets;
-    for (const std::filesystem::path& file : files)
-        presets.push_back(parse_transfer_preset(read_text(file, LARGEST_FILE), file.stem().string(), file.string()));
+    if (folder.empty()) return presets;
+    for (const std::filesystem::path& file : preset_files(folder)) presets.push_back(read_transfer_preset(file));
     return presets;
+}
+
+TransferPreset read_transfer_preset(const std::filesystem::path& file)
+{
+    return parse_transfer_preset(read_text(file, LARGEST_FILE), file.stem().string(), file.string());
+}
+
+std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
+                                                 std::vector<std::string>& warnings)
+{
+    std::vector<TransferPreset> presets;
+    for (const std::filesystem::path& file : preset_files(folder)) {
+        try {
+            presets.push_back(read_transfer_preset(file));
+            presets.back().is_own = true;
+        } catch (const Error& error) {
+            warnings.emplace_back(error.what());
+        }
+    }
+    return presets;
+}
+
+std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name)
+{
+    const bool is_name = !name.empty() && name.size() <= MAX_NAME_BYTES && name[0] != '.' && !has_controls(name) &&
+                         name.find('/') == std::string::npos && name.find_first_not_of(' ') != std::string::npos;
+    if (!is_name)
+        fail("'", name, "' is no name for a transfer function; expected 1 to ", MAX_NAME_BYTES,
+             " bytes without /, not beginning with a dot");
+    return folder / (name + ".json");
+}
+
+/// Colours are rounded to the 8 bits of their spelling, shares are not.
+TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics)
+{
+    const TissueRange tissue = tissue_range(statistics);
+    TransferPreset preset{.name = name, .note = "Kept by hand.", .points = {}, .extends = false, .is_own = true};
+    preset.points.assign(function.points().begin(), function.points().end());
+    if (preset.points.size() < 2)
+        fail("the transfer function has ", preset.points.size(), " points; expected at least two");
+    for (ControlPoint& point : preset.points) {
+        point.intensity = (point.intensity - tissue.lower) / (tissue.upper - tissue.lower);
+        if (!(std::abs(point.intensity) <= LARGEST_PLACE))
+            fail("the transfer function has a point too far from the volume's intensities to be kept; expected one ",
+                 "within a million times the range of its tissue");
+    }
+    return preset;
+}
+
+std::string text_of(const TransferPreset& preset)
+{
+    TransferPreset written = preset;  // fields take what they may change
+    return write_fields({},
+                        [&](Fields& f) {
+                            f.text("note", written.note, {});
+                            f.flag("extends", written.extends, {});
+                            f.items("points", written.points.size(), SIZE_MAX,
+                                    [&](Fields& point, size_t index, size_t) {
+                                        ControlPoint& each = written.points[index];
+                                        point.number("at", each.intensity, {-LARGEST_PLACE, LARGEST_PLACE}, {});
+                                        point.color("color", each.color, {});
+                                        point.number("opacity", each.opacity, SHARE, {});
+                                    },
+                                    {});
+                        }) +
+           "\n";
 }
 
 TransferPreset transfer_preset_named(const std::string& name)
@@ -64,7 +140,7 @@ TransferFunction transfer_function_of(const TransferPreset& preset, const Volume
     const TissueRange tissue = tissue_range(statistics);
     std::vector<ControlPoint> points = preset.points;
     for (ControlPoint& point : points) point.intensity = tissue.lower + point.intensity * (tissue.upper - tissue.lower);
-    if (const double maximum = statistics.range().upper; points.back().intensity < maximum) {
+    if (const double maximum = statistics.range().upper; preset.extends && points.back().intensity < maximum) {
         points.push_back(points.back());
         points.back().intensity = maximum;
     }

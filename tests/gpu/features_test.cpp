@@ -108,6 +108,13 @@ const std::vector<Feature> FEATURES{
      {}},
     {"work counters", [](Scenery& s) { s.options.count_work = true; }, {}},
     {"pre-integration", [](Scenery& s) { s.session.render.preintegration = true; }, {}},
+    {"translucent ball",
+     [](Scenery& s) {
+         if (!s.options.probe) s.options.probe = probe_of(0.5, false);
+         s.options.probe->ball_opacity = 0.5;
+     },
+     {"surfaces", "raycast_surfaced", "mix"},
+     {"surfaces", "without the probe"}},
     {"saturation", [](Scenery& s) { s.session.render.saturation = 0.3; }, {"saturation"}},
     {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }, {}},
     {"bricks that come and go",

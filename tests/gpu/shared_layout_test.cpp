@@ -6,6 +6,7 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
+#include "shaders/mix.h"
 #include "shaders/occlusion/occlusion_bake.h"
 #include "shaders/pages.h"
 #include "shaders/preview.h"
@@ -188,6 +189,7 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members(
         "preview_over", "push",
         {MEMBER(PreviewOverParams, target), MEMBER(PreviewOverParams, size), MEMBER(PreviewOverParams, share)});
+    check_members("mix", "push", {MEMBER(MixParams, target), MEMBER(MixParams, size), MEMBER(MixParams, share)});
     check_members(
         "saturation", "push",
         {MEMBER(SaturationParams, target), MEMBER(SaturationParams, size), MEMBER(SaturationParams, saturation)});

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <random>
+#include <set>
 
 #include <doctest/doctest.h>
 
@@ -125,6 +126,42 @@ TEST_CASE_FIXTURE(Seen, "a view with less colour comes to rest on the direct pic
             settle(view);
             CHECK(shown(view) == direct(camera({1, 2, 3})));
         }
+    }
+}
+
+namespace {
+
+/// Pixels of sharp tiles that are shown.
+uint64_t sharp_pixels(const View& view)
+{
+    uint64_t pixels = 0;
+    for (const View::Layer& layer : view.layers())
+        if (layer.image.desc.format == Format::rgba8_unorm && layer.source.begin == layer.target.begin)
+            pixels += layer.source.area();
+    return pixels;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Seen,
+                  "sharp tiles are shown a good part of the picture at a time, and all at once if they take a moment")
+{
+    session.render.size = {320, 256};  // 80 tiles
+    for (const double moment_ms : {0.0, 1e6}) {
+        View::Options options = CRAWLING;
+        options.moment_ms = moment_ms;
+        View view(renderer(), options);
+        view.look(session, camera({1, 2, 3}), pixels());
+        std::set<size_t> seen;
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 10'000'000);
+            view.advance();
+            seen.insert(view.layers().size() > 1 ? sharp_pixels(view) - pixels().x * pixels().y : 0);
+        }
+        CAPTURE(moment_ms);
+        // Nothing, then five parts of fourteen tiles, then all of it.
+        CHECK(seen.size() == (moment_ms == 0.0 ? 6 : 1));
+        CHECK(shown(view) == direct(camera({1, 2, 3})));
     }
 }
 

@@ -58,6 +58,8 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     state["open"] = sentence(model.is_open, ' ', model.session_path.string());
     state["help"] = sentence(model.shows_help);
     state["messages"] = sentence(model.shows_messages);
+    state["passes"] = sentence(model.shows_passes, ' ', model.compared_passes != nullptr);
+    for (const TransferPreset& preset : model.presets) state["presets"] += preset.is_own ? preset.name + ";" : "";
     state["palette"] = sentence(model.shows_palette);
     state["preferences"] = sentence(model.shows_preferences);
     state["awaits_key"] = sentence(model.awaits_key);
@@ -69,8 +71,8 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
             state["file " + entry.path().filename().string()] = read_text(entry.path(), int64_t{1} << 30);
     if (!model.is_open) return state;
     Session session = model.session;
-    for (const char* section :
-         {"transfer_function", "groups", "light", "blend", "cut", "render", "view", "interaction", "probe"}) {
+    for (const char* section : {"transfer_function", "groups", "unpainted", "light", "blend", "cut", "render", "view",
+                                "interaction", "probe"}) {
         const JsonDocument whole(patch_between({}, session).empty() ? "{}" : patch_between({}, session), "state");
         const JsonNode part = whole.root()[section];
         state[section] = part.exists() ? part.dump() : "";

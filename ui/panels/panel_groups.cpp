@@ -1,65 +1,53 @@
+// Colour groups as a tree: looks, locks, what is in them, and where they belong.
+
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <set>
+#include <optional>
 #include <vector>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
-#include "engine/base/image.h"
+#include "ui/panels/look/color_field.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
+#include "ui/workbench/lists/group_list.h"
 
 namespace shvr::ui {
 
 namespace {
 
-constexpr uint8_t GROUPS_WITH_KEYS = 9;
 constexpr float CHOSEN_ALPHA = 0.45f;  ///< of the accent colour
+constexpr const char* DRAGGED = "group";
+constexpr float MAX_GROUP_LINES = 16.0f;
 
-/// 1234567 as "1,234,567"
-std::string with_separators(int64_t count)
-{
-    std::string text = std::to_string(count);
-    for (size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
-    return text;
-}
-
-struct Row {
-    uint8_t group = 0;
-    int depth = 0;  ///< below the groups without a parent
+/// Between frames.
+struct GroupsState {
+    std::string search;
+    bool shows_sizes = false;
+    uint64_t revision = ~uint64_t{0};  ///< of the trace that `traced` is of
+    std::array<TracedGroup, 256> traced{};
+    std::vector<uint8_t> in_trace;
 };
+GroupsState groups_state;
 
-/// Groups that have a key, are described by the session, are painted or are chosen; each below its parent.
-std::vector<Row> listed_groups(const Model& model)
+void follow_trace(const Model& model)
 {
-    std::set<uint8_t> groups{model.brush().group};
-    for (uint8_t group = 0; group <= GROUPS_WITH_KEYS; ++group) groups.insert(group);
-    for (const auto& [group, settings] : model.session.groups) groups.insert({group, settings.parent});
-    for (size_t group = 1; group < model.voxels_by_group.size(); ++group)
-        if (model.voxels_by_group[group] > 0) groups.insert(uint8_t(group));
-    std::vector<Row> rows;
-    const auto add = [&](const auto& self, uint8_t group, int depth) -> void {
-        rows.push_back({group, depth});
-        for (const uint8_t child : groups)
-            if (group != 0 && parent_of(model.session.groups, child) == group) self(self, child, depth + 1);
-    };
-    for (const uint8_t group : groups)
-        if (parent_of(model.session.groups, group) == 0) add(add, group, 0);
-    return rows;
+    if (groups_state.revision == model.trace.revision()) return;
+    groups_state.revision = model.trace.revision();
+    groups_state.traced = traced_groups(model.trace);
+    groups_state.in_trace = groups_in(groups_state.traced);
 }
 
-// ---- The cells of a row. Each returns whether it changed a setting, and writes the result to `look`.
+// ---- The cells of a row. Each returns whether it changed a setting, and writes the result to `settings`.
 
 bool color_cell(const ColorGroup& look, GroupSettings& settings)
 {
     ImGui::TableNextColumn();
-    float shown[3];
-    for (int i = 0; i < 3; ++i) shown[i] = float(srgb_encode(std::clamp(look.color[i], 0.0, 1.0)));
-    if (!ImGui::ColorEdit3("##color", shown, ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel)) return false;
-    glm::dvec3 color;
-    for (int i = 0; i < 3; ++i) color[i] = std::clamp(srgb_decode(double(shown[i])), 0.0, 1.0);
+    glm::dvec3 color = look.color;
+    if (!color_field("##color", color, ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel)) return false;
     settings.color = color;
     return true;
 }
@@ -84,136 +72,278 @@ bool locked_cell(bool is_locked, GroupSettings& settings)
     return changed;
 }
 
-/// Chooses another parent, which must not be below this group.
-bool parent_menu(uint8_t group, const Model& model, GroupSettings& settings)
+/// Only this group is drawn; the settings of the others stay.
+void solo_cell(uint8_t group, const Model& model, Actions& actions)
 {
-    int parent = settings.parent;
-    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
-    if (!ImGui::InputInt("Parent group (0: none)", &parent, 1, 10)) return false;
-    parent = std::clamp(parent, 0, 255);
-    if (parent != 0 && is_within(model.session.groups, uint8_t(parent), group)) return false;
-    settings.parent = uint8_t(parent);
-    return true;
+    ImGui::TableNextColumn();
+    const bool is_alone = model.session.view.solo == group;
+    if (is_alone) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(ImGuiCol_SliderGrab));
+    if (ImGui::SmallButton("S"))
+        set(actions, model, [&](Session& s) { s.view.solo = is_alone ? std::nullopt : std::optional(group); });
+    if (is_alone) ImGui::PopStyleColor();
+    hint(is_alone     ? "Shows the others again, as they were."
+         : group == 0 ? "Shows only what no group holds, until it is clicked again."
+                      : "Shows only this group and its subgroups, until it is clicked again.");
 }
 
-/// A click on the name chooses the group; a right click opens its name and its parent for editing.
-bool name_cell(const Row& row, const Model& model, const ColorGroup& look, GroupSettings& settings, Actions& actions)
+// ---- The tree
+
+void set_parent(uint8_t group, uint8_t parent, const Model& model, Actions& actions)
+{
+    set(actions, model, [&](Session& s) { s.groups[group].parent = parent; });
+}
+
+/// A row that is dropped onto another goes below it; onto the row of what is unpainted, below none.
+void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
+{
+    if (group != 0 && ImGui::BeginDragDropSource()) {
+        ImGui::SetDragDropPayload(DRAGGED, &group, sizeof group);
+        ImGui::TextUnformatted(label_of_group(model.session.groups, group).c_str());
+        ImGui::TextDisabled("Drop it onto the group that it belongs to;\nonto 0, if it belongs to none.");
+        ImGui::EndDragDropSource();
+    }
+    if (!ImGui::BeginDragDropTarget()) return;
+    if (const ImGuiPayload* const payload = ImGui::AcceptDragDropPayload(DRAGGED)) {
+        const uint8_t dragged = *static_cast<const uint8_t*>(payload->Data);
+        if (why_not_below(model.session.groups, dragged, group).empty()) set_parent(dragged, group, model, actions);
+    }
+    ImGui::EndDragDropTarget();
+}
+
+bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, Actions& actions)
+{
+    if (!ImGui::BeginPopupContextItem("settings")) return false;
+    bool changed = false;
+    ImGui::SetNextItemWidth(12.0f * ImGui::GetFontSize());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    changed = ImGui::InputText("Name", &settings.name);
+    if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
+    if (ImGui::MenuItem("Belongs to no group", nullptr, false, settings.parent != 0))
+        set_parent(group, 0, model, actions);
+    if (ImGui::MenuItem("Usual colour", nullptr, false, settings.color.has_value())) {
+        settings.color.reset();
+        changed = true;
+    }
+    if (ImGui::MenuItem("Usual opacity", nullptr, false, settings.opacity.has_value())) {
+        settings.opacity.reset();
+        changed = true;
+    }
+    hint("Its parent's, where it has one.");
+    ImGui::EndPopup();
+    return changed;
+}
+
+/// A click on the name chooses the group.
+bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings, Actions& actions)
 {
     const uint8_t group = row.group;
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     const float indent = float(row.depth) * ImGui::GetFontSize();
     if (indent > 0.0f) ImGui::Indent(indent);
-    const std::string label = group == 0 ? "0  eraser" : std::to_string(group) + "  " + look.name;
+    if (!row.is_found) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
+    const std::string label = group == 0 ? "0  unpainted" : label_of_group(model.session.groups, group);
     if (ImGui::Selectable(label.c_str(), group == model.brush().group))
         set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
-    ImGui::PopStyleColor();
+    ImGui::PopStyleColor(row.is_found ? 1 : 2);
     if (indent > 0.0f) ImGui::Unindent(indent);
+    drag_and_drop(group, model, actions);
     if (group == 0) {
-        hint("Removes paint. Key: 0.");
+        hint("The volume where nothing is painted. Click: the eraser. Key: 0.");
         return false;
     }
-    hint("Click: paint with this group. Right click: rename it, or choose its parent.");
-    bool changed = false;
-    if (ImGui::BeginPopupContextItem("settings")) {
-        ImGui::SetNextItemWidth(12.0f * ImGui::GetFontSize());
-        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        changed = ImGui::InputText("Name", &settings.name);
-        if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
-        changed |= parent_menu(group, model, settings);
-        if (ImGui::MenuItem("Usual colour", nullptr, false, settings.color.has_value())) {
-            settings.color.reset();
-            changed = true;
-        }
-        if (ImGui::MenuItem("Usual opacity", nullptr, false, settings.opacity.has_value())) {
-            settings.opacity.reset();
-            changed = true;
-        }
-        hint("Its parent's, where it has one.");
-        ImGui::EndPopup();
-    }
-    return changed;
+    hint((label + "\nClick: paint with this group. Drag: put it below another. Right click: rename it, and more.")
+             .c_str());
+    return settings_popup(group, model, settings, actions);
 }
 
-bool opacity_cell(const ColorGroup& look, GroupSettings& settings)
+bool opacity_drag(double& opacity)
 {
     ImGui::TableNextColumn();
-    ImGui::SetNextItemWidth(3.2f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(3.0f * ImGui::GetFontSize());
     const double least = 0.0, most = 1.0;
-    double opacity = look.opacity;
-    const bool changed = ImGui::DragScalar("##opacity", ImGuiDataType_Double, &opacity, 0.005f, &least, &most, "%.2f",
-                                           ImGuiSliderFlags_AlwaysClamp);
-    if (changed) settings.opacity = opacity;
-    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways.");
-    return changed;
+    return ImGui::DragScalar("##opacity", ImGuiDataType_Double, &opacity, 0.005f, &least, &most, "%.2f",
+                             ImGuiSliderFlags_AlwaysClamp);
+}
+
+void right_aligned(const std::string& text, bool is_grey)
+{
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+    if (room > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    ImGui::AlignTextToFramePadding();
+    if (is_grey)
+        ImGui::TextDisabled("%s", text.c_str());
+    else
+        ImGui::TextUnformatted(text.c_str());
 }
 
 void count_cell(int64_t count)
 {
     ImGui::TableNextColumn();
-    const std::string text = with_separators(count);
-    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
-    if (room > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
-    ImGui::AlignTextToFramePadding();
-    if (count == 0)
-        ImGui::TextDisabled("0");
-    else
-        ImGui::TextUnformatted(text.c_str());
+    right_aligned(with_separators(count), count == 0);
     hint("Voxels of this group.");
 }
 
-void show_row(const Row& row, const Model& model, Actions& actions)
+/// Radius of nodes or internodes of a group, in voxels; set when the hand lets go: one step of the history.
+void size_cell(const char* id, uint8_t group, size_t count, double radius_units, RadiusOp::Of of, const Model& model,
+               Actions& actions)
 {
-    ImGui::PushID(int{row.group});
-    ImGui::TableNextRow();
+    static ImGuiID edited_id = 0;
+    static double edited = 0.0;
+    ImGui::TableNextColumn();
+    if (count == 0) return right_aligned("-", true);
+    const ImGuiID own = ImGui::GetID(id);
+    double radius = edited_id == own ? edited : radius_units / model.volume.spacing.x;
+    constexpr double LEAST = 0.0, MOST = 1000.0;
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::DragScalar(id, ImGuiDataType_Double, &radius, 0.05f, &LEAST, &MOST, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemActive()) {
+        edited_id = own;
+        edited = radius;
+    } else if (edited_id == own) {
+        edited_id = 0;
+    }
+    if (ImGui::IsItemDeactivatedAfterEdit())
+        actions.push_back(RadiusOp{.of = of, .radius_voxels = radius, .group = group});
+    hint(of == RadiusOp::Of::nodes
+             ? "Mean radius of the group's nodes, in voxels; a change gives all the same."
+             : "Mean radius of the group's internodes, in voxels; a change gives all the same, and "
+               "they taper no more.");
+}
+
+void size_cells(uint8_t group, const Model& model, Actions& actions)
+{
+    const TracedGroup& traced = groups_state.traced[group];
+    size_cell("##nodes", group, traced.nodes, traced.node_radius, RadiusOp::Of::nodes, model, actions);
+    size_cell("##internodes", group, traced.internodes, traced.internode_radius, RadiusOp::Of::internodes, model,
+              actions);
+}
+
+// ---- Rows
+
+/// Of the volume where nothing is painted.
+void unpainted_row(const GroupRow& row, const Model& model, Actions& actions)
+{
+    Unpainted unpainted = model.session.unpainted;
+    GroupSettings none;
+    ImGui::TableNextColumn();
+    ImGui::TableNextColumn();
+    bool changed = ImGui::Checkbox("##visible", &unpainted.visible);
+    hint("Shows or hides the volume where nothing is painted.");
+    ImGui::TableNextColumn();
+    solo_cell(0, model, actions);
+    name_cell(row, model, none, actions);
+    changed |= opacity_drag(unpainted.opacity);
+    hint("Opacity of the volume where nothing is painted: the transfer function is multiplied by it. Drag sideways.");
+    if (changed) set(actions, model, [&](Session& s) { s.unpainted = unpainted; });
+    ImGui::TableNextColumn();
+}
+
+void group_row(const GroupRow& row, const Model& model, Actions& actions)
+{
     const ColorGroup look = group_of(model.session.groups, row.group);
     const auto found = model.session.groups.find(row.group);
     GroupSettings settings = found == model.session.groups.end() ? GroupSettings{} : found->second;
-    if (row.group == 0) {
-        for (int empty = 0; empty < 3; ++empty) ImGui::TableNextColumn();
-        name_cell(row, model, look, settings, actions);
-    } else {
-        bool changed = color_cell(look, settings);
-        changed |= visible_cell(look, settings);
-        changed |= locked_cell(is_locked(model.session.groups, row.group), settings);
-        changed |= name_cell(row, model, look, settings, actions);
-        changed |= opacity_cell(look, settings);
-        count_cell(model.voxels_by_group[row.group]);
-        if (changed) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
+    bool changed = color_cell(look, settings);
+    changed |= visible_cell(look, settings);
+    changed |= locked_cell(is_locked(model.session.groups, row.group), settings);
+    solo_cell(row.group, model, actions);
+    changed |= name_cell(row, model, settings, actions);
+    double opacity = look.opacity;
+    if (opacity_drag(opacity)) {
+        settings.opacity = opacity;
+        changed = true;
     }
-    ImGui::PopID();
+    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways.");
+    count_cell(model.voxels_by_group[row.group]);
+    if (changed) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
 }
 
-/// Chooses a group that has neither a key nor a row.
-void other_group(const Model& model, Actions& actions)
+/// A group with the sizes of what is traced in it.
+void size_row(const GroupRow& row, const Model& model, Actions& actions)
 {
-    int group = model.brush().group;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Paint with group");
+    GroupSettings settings;
+    if (const auto found = model.session.groups.find(row.group); found != model.session.groups.end())
+        settings = found->second;
+    bool changed = color_cell(group_of(model.session.groups, row.group), settings);
+    changed |= name_cell(row, model, settings, actions);
+    size_cells(row.group, model, actions);
+    if (changed) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
+}
+
+void set_up_group_columns()
+{
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableSetupColumn("##color");
+    if (groups_state.shows_sizes) {
+        ImGui::TableSetupColumn("Group", ImGuiTableColumnFlags_WidthStretch);
+        ImGui::TableSetupColumn("Nodes", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
+        ImGui::TableSetupColumn("Internodes", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
+    } else {
+        for (const char* name : {"See", "Lock", "##solo"}) ImGui::TableSetupColumn(name);
+        ImGui::TableSetupColumn("Group", ImGuiTableColumnFlags_WidthStretch);
+        ImGui::TableSetupColumn("Opacity");
+        ImGui::TableSetupColumn("Voxels");
+    }
+    ImGui::TableHeadersRow();
+}
+
+void group_table(const Model& model, Actions& actions)
+{
+    const std::vector<GroupRow> rows = listed_groups(model.session.groups, model.voxels_by_group, groups_state.in_trace,
+                                                     model.brush().group, groups_state.search);
+    if (rows.empty()) return ImGui::TextDisabled("No group has this in its name.");
+    const float line = ImGui::GetFrameHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
+    const float height = line * std::min(float(rows.size()) + 1.0f, MAX_GROUP_LINES);
+    const ImGuiTableFlags flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollY;
+    if (!ImGui::BeginTable("groups", groups_state.shows_sizes ? 4 : 7, flags, {0.0f, height})) return;
+    set_up_group_columns();
+    for (const GroupRow& row : rows) {
+        if (row.group == 0 && groups_state.shows_sizes) continue;
+        ImGui::PushID(int{row.group});
+        ImGui::TableNextRow();
+        if (groups_state.shows_sizes)
+            size_row(row, model, actions);
+        else if (row.group == 0)
+            unpainted_row(row, model, actions);
+        else
+            group_row(row, model, actions);
+        ImGui::PopID();
+    }
+    ImGui::EndTable();
+}
+
+/// Search, new group, and which of two things are shown beside the name.
+void tools(const Model& model, Actions& actions)
+{
+    const uint8_t next = free_group(model.session.groups, model.voxels_by_group, groups_state.in_trace);
+    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    ImGui::InputTextWithHint("##search", "Search", &groups_state.search);
+    hint("Part of a name, or a number.");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
-    if (ImGui::InputInt("##group", &group, 1, 10))
-        set(actions, model, [&](Session& s) { s.probe.brush.group = uint8_t(std::clamp(group, 0, 255)); });
-    hint("There are 255 groups; 0 erases. Groups in use are listed.");
+    ImGui::BeginDisabled(next == 0);
+    if (ImGui::Button("New group"))
+        set(actions, model, [&](Session& s) {
+            s.groups[next].name = group_of(s.groups, next).name;
+            s.probe.brush.group = next;
+        });
+    ImGui::EndDisabled();
+    hint(next == 0 ? "All 255 groups are in use." : "A group that nothing uses yet, to paint and trace with.");
+    ImGui::SameLine();
+    ImGui::Checkbox("Sizes", &groups_state.shows_sizes);
+    hint("Shows radii of nodes and internodes instead of numbers of voxels.");
+    if (!model.session.view.solo) return;
+    if (ImGui::SmallButton("Show all groups again")) set(actions, model, [](Session& s) { s.view.solo.reset(); });
 }
 
 }  // namespace
 
 void groups_panel(const Model& model, Actions& actions)
 {
-    if (ImGui::BeginTable("groups", 6, ImGuiTableFlags_SizingFixedFit)) {
-        ImGui::TableSetupColumn("##color");
-        ImGui::TableSetupColumn("See");
-        ImGui::TableSetupColumn("Lock");
-        ImGui::TableSetupColumn("Group", ImGuiTableColumnFlags_WidthStretch);
-        ImGui::TableSetupColumn("Opacity");
-        ImGui::TableSetupColumn("Voxels");
-        ImGui::TableHeadersRow();
-        for (const Row& row : listed_groups(model)) show_row(row, model, actions);
-        ImGui::EndTable();
-    }
-    other_group(model, actions);
+    follow_trace(model);
+    tools(model, actions);
+    group_table(model, actions);
 }
 
 }  // namespace shvr::ui

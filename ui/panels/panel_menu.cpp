@@ -16,7 +16,7 @@
 #include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
-#include "ui/workbench/lists/group_list.h"
+#include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/sight/words.h"
 
@@ -128,7 +128,7 @@ void panel_item(const PanelRow& row, const Model& model, Actions& actions)
 {
     const bool is_shown = model.preferences.layout.place_of(row) != PanelPlace::hidden;
     if (ImGui::MenuItem(row.title, nullptr, is_shown, model.is_open)) {
-        const PanelPlace next = is_shown ? PanelPlace::hidden : row.is_tool ? PanelPlace::floating : PanelPlace::side;
+        const PanelPlace next = is_shown ? PanelPlace::hidden : PanelPlace::side;
         actions.push_back(Prefer{patch_of_panel(row.id, {.place = next})});
         if (next == PanelPlace::side && !model.preferences.layout.shows_side)
             actions.push_back(Prefer{R"({"layout":{"shows_side":true}})"});
@@ -139,8 +139,7 @@ void panel_item(const PanelRow& row, const Model& model, Actions& actions)
 void panels_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Panels")) return;
-    for (const PanelRow& row : panel_rows())
-        if (!row.is_tool) panel_item(row, model, actions);
+    for (const PanelRow& row : panel_rows()) panel_item(row, model, actions);
     ImGui::Separator();
     item("side_panels", model, actions, model.preferences.layout.shows_side);
     item("tool_bar", model, actions, model.preferences.layout.shows_tool_bar);
@@ -170,6 +169,10 @@ void view_menu(const Model& model, Actions& actions)
     item("reset_view", model, actions);
     item("look_at_selection", model, actions);
     sight_items(model, actions);
+    ImGui::Separator();
+    item("volume", model, actions, model.session.view.volume);
+    item("meshes", model, actions, model.session.view.meshes);
+    item("cut_box", model, actions, model.session.view.cut_box);
     ImGui::Separator();
     held_items("Turn the view", model, actions);
     held_items("Move the view", model, actions);
@@ -268,7 +271,11 @@ void probe_menu(const Model& model, Actions& actions)
     item("guide", model, actions, model.session.probe.guided);
     item("next_guidance", model, actions);
     item("shell", model, actions, model.session.probe.shell);
+    item("silhouette", model, actions, model.session.probe.silhouette);
+    item("arrow", model, actions, model.session.probe.arrow);
     ImGui::Separator();
+    item("larger_workspace", model, actions);
+    item("smaller_workspace", model, actions);
     item("larger_probe", model, actions);
     item("smaller_probe", model, actions);
     ImGui::EndMenu();
@@ -281,8 +288,7 @@ void tools_menu(const Model& model, Actions& actions)
     item("tool_measure", model, actions, model.tool() == Tool::measure);
     item("palette", model, actions);
     ImGui::Separator();
-    for (const PanelRow& row : panel_rows())
-        if (row.is_tool) panel_item(row, model, actions);
+    item("passes", model, actions, model.shows_passes);
     ImGui::EndMenu();
 }
 
@@ -301,6 +307,21 @@ std::string reading_of(const Model& model)
 {
     const uint8_t group = model.reading.group;
     return in_words(model.reading, model.volume, group > 0 ? group_of(model.session.groups, group).name : "");
+}
+
+/// What of the picture is switched off, so that nobody wonders where it is.
+std::string hidden_in_words(const Model& model)
+{
+    const ViewSettings& view = model.session.view;
+    std::string words;
+    const auto add = [&](const char* what, const char* shortcut) {
+        const std::string key = model.keymap.text_of(*shortcut_named(shortcut));
+        words += (words.empty() ? "" : ", ") + std::string(what) + (key.empty() ? "" : " (" + key + ")");
+    };
+    if (!view.volume) add("no volume", "volume");
+    if (!view.meshes) add("no nodes", "meshes");
+    if (view.solo) words += (words.empty() ? "only group " : ", only group ") + std::to_string(*view.solo);
+    return words.empty() ? words : words + "    |    ";
 }
 
 void align_right(const std::string& text)
@@ -381,7 +402,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
     const std::string right = !model.is_open ? std::string()
-                                             : reading_of(model) + "    |    " +
+                                             : hidden_in_words(model) + reading_of(model) + "    |    " +
                                                    (model.is_saved ? "saved" : "not saved") + "    |    " +
                                                    (!model.view_is_complete ? "refining"
                                                     : model.view_is_limited ? "coarser than the screen: device budget"

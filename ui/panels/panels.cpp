@@ -25,11 +25,14 @@ constexpr PanelBody BODIES[] = {
     {"groups", groups_panel},
     {"probe", probe_panel},
     {"trace", trace_panel},
+    {"trace_list", trace_list_panel},
     {"light", light_panel},
     {"occlusion", occlusion_panel},
+    {"cuts", cuts_panel},
+    {"quality", quality_panel},
+    {"aids", aids_panel},
     {"views", views_panel},
     {"history", history_panel},
-    {"passes", passes_panel},
 };
 
 constexpr float SPLITTER = 6.0f / 14.0f;  ///< its width, in font sizes
@@ -248,6 +251,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     if (model.shows_preferences) preferences_window(model, actions);
     if (model.shows_palette) palette_window(model, actions);
     if (model.shows_messages) messages_window(model, actions);
+    if (model.shows_passes) passes_window(model, actions);
     jobs_window(model, {0.0f, size.y - bar}, actions);
 
     const glm::vec2 begin(0.0f, top);

@@ -30,9 +30,14 @@ void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);
+void quality_panel(const Model& model, Actions& actions);
+void cuts_panel(const Model& model, Actions& actions);
+void aids_panel(const Model& model, Actions& actions);
 void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
-void passes_panel(const Model& model, Actions& actions);
+void trace_list_panel(const Model& model, Actions& actions);
+/// What the device spends on each step of a picture, in a window of its own.
+void passes_window(const Model& model, Actions& actions);
 void history_panel(const Model& model, Actions& actions);
 /// Below the menu, over the whole width: the tools, the active group, and what the mouse does.
 float tool_bar_height();

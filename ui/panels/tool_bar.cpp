@@ -13,7 +13,7 @@
 #include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/edit.h"
-#include "ui/workbench/lists/group_list.h"
+#include "ui/workbench/lists/group_steps.h"
 
 namespace shvr::ui {
 

@@ -57,6 +57,10 @@ struct PivotAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
+/// The camera looks at a voxel, from the same side and as far away as before.
+struct GoTo {
+    glm::dvec3 voxel{0.0};
+};
 /// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
 struct MoveCut {
     int axis = 0;
@@ -67,6 +71,10 @@ struct MoveCut {
 struct MoveClip {
     bool far = false;
     double share = 0.0;
+};
+/// Both clip planes, as distances from the eye in physical units; 0: no plane.
+struct PlaceClips {
+    double near = 0.0, far = 0.0;
 };
 struct ResetCuts {};
 /// Brings all that is not cut away into sight, from where one looks.
@@ -85,6 +93,21 @@ struct Set {
 
 /// What was set since the last step becomes one; it does by itself when the hand lets go.
 struct EndStep {};
+
+// ---- A person's own transfer functions, kept for all scans (transfer_presets.h)
+struct KeepPreset {
+    std::string name;
+};
+struct RenamePreset {
+    std::string name, to;
+};
+struct ForgetPreset {
+    std::string name;
+};
+/// Takes the transfer function of a file, which need not be among those that are kept.
+struct TakePreset {
+    std::filesystem::path path;
+};
 
 // ---- The probe
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
@@ -203,6 +226,18 @@ struct ShowHelp {
 struct ShowMessages {
     bool on = true;
 };
+/// What the device spends on each step of a picture.
+struct ShowPasses {
+    bool on = true;
+};
+/// Writes what the steps of the present picture took, to compare others with.
+struct SavePasses {
+    std::filesystem::path path;
+};
+/// Compares with such a file, or with what `shvr profile --json` printed; an empty path: with nothing any more.
+struct ComparePasses {
+    std::filesystem::path path;
+};
 /// A box to type in, which finds all shortcuts, actions and settings.
 struct ShowPalette {
     bool on = true;
@@ -238,10 +273,11 @@ struct Quit {};
 
 using Action = std::variant<
     // looking
-    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, MoveCut, MoveClip,
-    ResetCuts, FitView, ResetView, LookAtSelection, UpdateOcclusion,
+    Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, GoTo, MoveCut,
+    MoveClip, PlaceClips, ResetCuts, FitView, ResetView, LookAtSelection, UpdateOcclusion,
     // settings, the probe
-    Set, EndStep, AutoContrast, ProbeTo, ProbeOnto, ProbeAlong, PushProbe, PlaceProbe, ScaleProbe,
+    Set, EndStep, AutoContrast, KeepPreset, RenamePreset, ForgetPreset, TakePreset, ProbeTo, ProbeOnto, ProbeAlong,
+    PushProbe, PlaceProbe, ScaleProbe,
     // painting and tracing
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp, NodeAt, SelectAt, StepNode, MendCut,
@@ -250,7 +286,8 @@ using Action = std::variant<
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,
-    ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
+    ShowMessages, ShowPasses, SavePasses, ComparePasses, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen,
+    Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -71,6 +71,32 @@ std::string why(const Model& model, const LookAtSelection&)
     return model.trace.selection().empty() ? "nothing is selected" : "";
 }
 
+std::string why_not_own(const Model& model, const std::string& name)
+{
+    const auto is_it = [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; };
+    return std::ranges::any_of(model.presets, is_it) ? "" : sentence("no transfer function is kept as ", name);
+}
+
+std::string why(const Model& model, const KeepPreset&)
+{
+    return model.session.transfer_function.points().size() < 2 ? "there is no transfer function" : "";
+}
+
+std::string why(const Model& model, const RenamePreset& action)
+{
+    return why_not_own(model, action.name);
+}
+
+std::string why(const Model& model, const ForgetPreset& action)
+{
+    return why_not_own(model, action.name);
+}
+
+std::string why(const Model& model, const ComparePasses& action)
+{
+    return action.path.empty() && !model.compared_passes ? "they are compared with nothing" : "";
+}
+
 std::string why(const Model& model, const UpdateOcclusion&)
 {
     return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";

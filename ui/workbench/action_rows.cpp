@@ -27,8 +27,10 @@ constexpr ActionRow ROWS[] = {
     {"forget_camera", "Forget a view", LOOKING, "removes a camera of the session"},
     {"rename_camera", "Rename a view", LOOKING, "gives a camera of the session another name"},
     {"pivot_at", "Turn about what is seen", LOOKING, "turning goes about what is seen at a pixel of a pane"},
+    {"go_to", "Go to", LOOKING, "the camera looks at a voxel, from the same side and as far away as before"},
     {"move_cut", "Move a cutting plane", LOOKING, "moves one of the six planes by a share of the volume's size"},
     {"move_clip", "Move a clip plane", LOOKING, "moves the near or far plane by a share of the distance to the target"},
+    {"place_clips", "Place the clip planes", LOOKING, "puts the near and the far plane at distances from the eye"},
     {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
     {"fit_view", "Fit", LOOKING, "brings all that is not cut away into sight"},
     {"reset_view", "Reset the view", LOOKING, "takes the camera that the session opens with"},
@@ -37,6 +39,10 @@ constexpr ActionRow ROWS[] = {
     {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
     {"end_step", "End the step", SETTINGS, "makes one step of what was set since the last; it comes by itself"},
     {"auto_contrast", "Contrast of the slices", SETTINGS, "sets black and white so that almost all lies between them"},
+    {"keep_preset", "Keep the transfer function", SETTINGS, "keeps it under a name, for all scans"},
+    {"rename_preset", "Rename a transfer function", SETTINGS, "gives one that was kept another name"},
+    {"forget_preset", "Forget a transfer function", SETTINGS, "removes one that was kept"},
+    {"take_preset", "Take a transfer function", SETTINGS, "takes the transfer function of a file"},
     {"probe_to", "Move the probe", PROBE, "the probe goes to a pixel of a pane, in its plane"},
     {"probe_onto", "Put the probe onto what is seen", PROBE, "the probe goes to the surface seen at a pixel of a pane"},
     {"probe_along", "Move the probe along what is seen", PROBE, "the probe follows what is seen, as a stroke does"},
@@ -85,6 +91,9 @@ constexpr ActionRow ROWS[] = {
     {"await_key", "Press a key for it", WINDOW, "the next key that is pressed is bound to a shortcut"},
     {"show_help", "Keys and mouse", WINDOW, "shows or hides the list of keys"},
     {"show_messages", "Messages", WINDOW, "shows or hides all that was said, and takes it as read"},
+    {"show_passes", "GPU passes", WINDOW, "shows or hides what the device spends on each step of a picture"},
+    {"save_passes", "Save GPU passes", WINDOW, "writes what the steps of the present picture took into a file"},
+    {"compare_passes", "Compare GPU passes", WINDOW, "compares with such a file, or one of shvr profile --json"},
     {"show_palette", "Find anything", WINDOW, "shows or hides a box that finds shortcuts, actions and settings"},
     {"prefer", "Change preferences", WINDOW, "sets what a person keeps for all scans; null takes what ships"},
     {"show_preferences", "Preferences", WINDOW, "shows or hides theme, sizes and keys"},
@@ -97,7 +106,7 @@ static_assert(std::size(ROWS) == std::variant_size_v<Action>);
 // ---- Arguments ------------------------------------------------------------------------------------------------------
 
 const NumberRange DEGREES{-36000.0, 36000.0}, PIXELS{-1e6, 1e6}, FACTOR{1e-6, 1e6}, SHARES{-100.0, 100.0};
-const NumberRange VOXELS{-1e12, 1e12};
+const NumberRange VOXELS{-1e12, 1e12}, DISTANCES{0.0, 1e15};
 
 void pane_field(Fields& f, size_t& pane)
 {
@@ -167,6 +176,44 @@ void fields(Fields& f, MoveClip& a)
 {
     f.flag("far", a.far, {});
     f.number("share", a.share, SHARES, {.is_required = true});
+}
+void fields(Fields& f, GoTo& a)
+{
+    f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
+}
+void fields(Fields& f, PlaceClips& a)
+{
+    f.number("near", a.near, DISTANCES, {});
+    f.number("far", a.far, DISTANCES, {});
+}
+void fields(Fields& f, KeepPreset& a)
+{
+    f.text("name", a.name, {.is_required = true});
+}
+void fields(Fields& f, RenamePreset& a)
+{
+    f.text("name", a.name, {.is_required = true});
+    f.text("to", a.to, {.is_required = true});
+}
+void fields(Fields& f, ForgetPreset& a)
+{
+    f.text("name", a.name, {.is_required = true});
+}
+void fields(Fields& f, TakePreset& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, ShowPasses& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, SavePasses& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, ComparePasses& a)
+{
+    f.path("path", a.path, {});
 }
 void fields(Fields& f, Set& a)
 {

@@ -150,6 +150,9 @@ ProbeLook Document::probe_look() const
     ProbeLook look{.center = touch.probe(),
                    .radius = probe_radius(),
                    .color = probe_color(session, session.probe.painted_group())};
+    look.ball_opacity = session.probe.opacity;
+    look.has_silhouette = session.probe.silhouette;
+    look.has_arrow = session.probe.arrow;
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
@@ -420,6 +423,7 @@ std::optional<double> Document::measured_radius(const glm::dvec3& voxel) const
 
 TraceMarks Document::trace_marks() const
 {
+    if (!session.view.meshes) return {};
     const glm::dvec3& spacing = volume().spacing;
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
     return shvr::trace_marks(annotator.document().trace,

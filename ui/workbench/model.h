@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,7 @@
 namespace shvr::ui {
 class Keymap;
 class RecentActions;
+struct PassRun;
 struct Preferences;
 }  // namespace shvr::ui
 
@@ -73,7 +75,8 @@ struct Model {
     const Preferences& preferences;
     const RecentActions* recent = nullptr;  ///< the last actions; null where nobody remembers them
     std::string_view version{};             ///< of the program
-    bool shows_help = false, shows_messages = false, shows_palette = false, is_full_screen = false;
+    bool shows_help = false, shows_messages = false, shows_passes = false, shows_palette = false,
+         is_full_screen = false;
     bool asks_what_to_open = false, shows_preferences = false;
     std::string_view awaits_key{};  ///< id of the shortcut that the next key is for; empty: none
 
@@ -84,6 +87,8 @@ struct Model {
     double relevance_age_ms = 0.0;  ///< of the patch that the servo uses; 0 without assistance
     double ui_frame_ms = 0.0;       ///< median of the last frames; the window's
     uint64_t device_bytes = 0, device_budget = 0;
+    std::map<std::string, uint64_t> bytes_by_name{};  ///< of what is on the device; only while the passes are shown
+    const PassRun* compared_passes = nullptr;         ///< null: compared with nothing
 
     const BrushSettings& brush() const { return session.probe.brush; }
     double paint_threshold() const { return brush().threshold.value_or(0.0); }

@@ -44,7 +44,8 @@ Workspace Touch::mouse_workspace() const
 Workspace Touch::device_workspace(const TouchSettings& settings)
 {
     const CameraAxes& axes = settings.axes;
-    return {.to_volume = glm::dmat3(axes.right, axes.up, -axes.forward) * (settings.view_height / WORKSPACE_M),
+    return {.to_volume =
+                glm::dmat3(axes.right, axes.up, -axes.forward) * (settings.scale * settings.view_height / WORKSPACE_M),
             .origin = settings.target};
 }
 

@@ -26,6 +26,7 @@ struct TouchSettings {
     CameraAxes axes;  ///< of the view: they place a device's workspace
     glm::dvec3 target{0.0};
     double view_height = 1.0;  ///< physical units, at the target
+    double scale = 1.0;        ///< of a device's moves; 1: its reach is the height of the view
 };
 
 class Touch {

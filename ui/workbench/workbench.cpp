@@ -27,11 +27,7 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options)
         options_.now_s = [] {
             return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
         };
-    try {
-        presets_ = transfer_presets();
-    } catch (const Error& error) {
-        say(error.what(), Weight::warning);
-    }
+    load_presets();
     load_preferences();
 }
 
@@ -261,7 +257,8 @@ TouchSettings Workbench::touch_settings() const
             .axes = axes_of(document_->camera),
             .target = document_->camera.target,
             .view_height =
-                pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target))};
+                pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target)),
+            .scale = document_->session.interaction.workspace_scale};
 }
 
 void Workbench::follow_touch()
@@ -334,6 +331,7 @@ Model Workbench::model() const
                 .version = options_.version,
                 .shows_help = shows_help_,
                 .shows_messages = shows_messages_,
+                .shows_passes = shows_passes_,
                 .shows_palette = shows_palette_,
                 .is_full_screen = is_full_screen_,
                 .asks_what_to_open = asks_what_to_open_,
@@ -382,6 +380,7 @@ Model Workbench::model() const
             .version = options_.version,
             .shows_help = shows_help_,
             .shows_messages = shows_messages_,
+            .shows_passes = shows_passes_,
             .shows_palette = shows_palette_,
             .is_full_screen = is_full_screen_,
             .asks_what_to_open = asks_what_to_open_,
@@ -392,7 +391,9 @@ Model Workbench::model() const
             .view_is_limited = renderer_.volume().state() == DeviceVolume::State::limited,
             .relevance_age_ms = document.touch.relevance_age_ms(),
             .device_bytes = renderer_.memory().device_bytes(),
-            .device_budget = renderer_.memory().device_budget()};
+            .device_budget = renderer_.memory().device_budget(),
+            .bytes_by_name = shows_passes_ ? renderer_.memory().bytes_by_name() : std::map<std::string, uint64_t>(),
+            .compared_passes = compared_passes_ ? &*compared_passes_ : nullptr};
 }
 
 }  // namespace shvr::ui

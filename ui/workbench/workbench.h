@@ -15,6 +15,7 @@
 #include "engine/jobs/jobs.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/document.h"
+#include "ui/workbench/lists/pass_log.h"
 #include "ui/workbench/lists/recent_actions.h"
 #include "ui/workbench/messages.h"
 #include "ui/workbench/preferences.h"
@@ -96,6 +97,8 @@ public:
     bool take_quit() { return std::exchange(quits_, false); }
     /// What the keyboard was asked to be given to, once; empty: nothing.
     std::string take_focus() { return std::exchange(focus_, {}); }
+    /// Whether lines show what the cutting planes leave: while they are moved, and a little longer.
+    bool shows_cut_box() const { return options_.now_s() < cut_shown_until_s_; }
     bool shows_full_screen() const { return is_full_screen_; }
     /// Voxels that the preview showed when the last stroke began, if it had one.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
@@ -125,8 +128,10 @@ private:
     void act(const ForgetCamera& action);
     void act(const RenameCamera& action);
     void act(const PivotAt& action);
+    void act(const GoTo& action);
     void act(const MoveCut& action);
     void act(const MoveClip& action);
+    void act(const PlaceClips& action);
     void act(const ResetCuts& action);
     void act(const FitView& action);
     void act(const ResetView& action);
@@ -135,6 +140,10 @@ private:
     void act(const Set& action);
     void act(const EndStep& action);
     void act(const AutoContrast& action);
+    void act(const KeepPreset& action);
+    void act(const RenamePreset& action);
+    void act(const ForgetPreset& action);
+    void act(const TakePreset& action);
     void act(const ProbeTo& action);
     void act(const ProbeOnto& action);
     void act(const ProbeAlong& action);
@@ -183,6 +192,9 @@ private:
     void act(const ShowHelp& action);
     void act(const AwaitKey& action);
     void act(const ShowMessages& action);
+    void act(const ShowPasses& action);
+    void act(const SavePasses& action);
+    void act(const ComparePasses& action);
     void act(const ShowPalette& action);
     void act(const Prefer& action);
     void act(const ShowPreferences& action);
@@ -198,6 +210,12 @@ private:
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     void save();
     std::filesystem::path screenshot_stem() const;
+
+    // Own transfer functions
+    std::filesystem::path preset_folder() const;
+    const TransferPreset& own_preset(const std::string& name) const;
+    std::filesystem::path free_preset_file(const std::string& name) const;
+    void load_presets();
 
     // Preferences
     void load_preferences();
@@ -280,9 +298,12 @@ private:
     glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to
     std::string journal_failure_;                 ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
-    bool shows_help_ = false, shows_messages_ = false, shows_palette_ = false, is_full_screen_ = false, quits_ = false;
+    bool shows_help_ = false, shows_messages_ = false, shows_passes_ = false, shows_palette_ = false,
+         is_full_screen_ = false, quits_ = false;
     bool asks_what_to_open_ = false, shows_preferences_ = false;
     std::string focus_;  ///< what the keyboard was asked to be given to
+    std::optional<PassRun> compared_passes_;
+    double cut_shown_until_s_ = 0.0;
     double opened_s_ = 0.0;
     uint64_t openings_ = 0;
     /// What a model refers to where nothing is open.

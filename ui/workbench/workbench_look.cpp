@@ -131,6 +131,30 @@ void Workbench::act(const RenameCamera& action)
     say("The view " + action.name + " is now called " + action.to);
 }
 
+void Workbench::act(const GoTo& action)
+{
+    Camera camera = document_->camera;
+    const glm::dvec3 way = action.voxel * document_->volume().spacing - camera.target;
+    camera.eye += way;
+    camera.target += way;
+    look_from(camera);
+    say(sentence("Looking at voxel ", std::floor(action.voxel.x), ", ", std::floor(action.voxel.y), ", ",
+                 std::floor(action.voxel.z)));
+}
+
+void Workbench::act(const PlaceClips& action)
+{
+    if (action.far > 0.0 && action.near >= action.far)
+        fail("the near clip plane is ", action.near, " from the eye; expected less than the far one's ", action.far);
+    Camera camera = document_->camera;
+    camera.near_distance = action.near;
+    camera.far_distance = action.far;
+    look_from(camera);
+    const std::string unit = " " + document_->volume().unit;
+    const auto named = [&](double distance) { return distance > 0.0 ? sentence(distance, unit) : "none"; };
+    say(sentence("Clip planes, from the eye: near ", named(action.near), ", far ", named(action.far)));
+}
+
 void Workbench::act(const MoveCut& action)
 {
     Session after = document_->session;

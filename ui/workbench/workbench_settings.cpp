@@ -1,7 +1,10 @@
 // Settings: how they change, what follows from it, and which of it becomes a step of the history.
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "engine/session/quality.h"
 #include "engine/session/session_patch.h"
 #include "ui/workbench/bindings/tools.h"
 #include "ui/workbench/workbench.h"
@@ -38,6 +41,35 @@ std::string sentence_about_group(const Session& session)
     return sentence("Group ", int(group), ": ", group_of(session.groups, group).name);
 }
 
+std::string sentence_about_solo(const Session& session)
+{
+    const std::optional<uint8_t> solo = session.view.solo;
+    if (!solo) return "All groups that are visible are drawn";
+    return *solo == 0 ? std::string("Only what no group holds is drawn")
+                      : sentence("Only group ", int(*solo), " is drawn: ", group_of(session.groups, *solo).name);
+}
+
+/// How far all points were moved, where that is all.
+std::optional<double> shift_between(const TransferFunction& was, const TransferFunction& is)
+{
+    const auto before = was.points(), after = is.points();
+    if (before.size() != after.size() || before.empty()) return std::nullopt;
+    const double shift = after[0].intensity - before[0].intensity;
+    for (size_t i = 0; i < before.size(); ++i) {
+        const bool is_same_look = after[i].color == before[i].color && after[i].opacity == before[i].opacity;
+        const double moved = after[i].intensity - before[i].intensity;
+        if (!is_same_look || std::abs(moved - shift) > 1e-6 * std::max(1.0, std::abs(shift))) return std::nullopt;
+    }
+    return shift;
+}
+
+std::string sentence_about(const TransferFunction& was, const TransferFunction& is)
+{
+    const std::optional<double> shift = shift_between(was, is);
+    if (shift) return sentence("Transfer function shifted by ", *shift);
+    return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
+}
+
 /// Changes for which there is more to say than what was set.
 std::string special_sentence(const Session& was, const Session& is)
 {
@@ -56,6 +88,25 @@ std::string special_sentence(const Session& was, const Session& is)
                            : "Iso-surface around the probe off";
     if (before.preview != after.preview)
         return after.preview ? "Preview of the brush on: what it would change is shown" : "Preview of the brush off";
+    if (before.arrow != after.arrow) return after.arrow ? "Arrow towards the probe on" : "Arrow towards the probe off";
+    if (before.silhouette != after.silhouette)
+        return after.silhouette ? "Silhouette of the probe on" : "Silhouette of the probe off";
+    if (was.view.volume != is.view.volume)
+        return is.view.volume ? "The volume is drawn" : "The volume is not drawn, except in slices";
+    if (was.view.meshes != is.view.meshes)
+        return is.view.meshes ? "Nodes, internodes and the probe's ball are drawn"
+                              : "Nodes, internodes and the probe's ball are not drawn";
+    if (was.view.cut_box != is.view.cut_box)
+        return is.view.cut_box ? "The edges of the cutting planes are drawn"
+                               : "The edges of the cutting planes are not drawn";
+    if (was.view.solo != is.view.solo) return sentence_about_solo(is);
+    if (was.interaction.workspace_scale != is.interaction.workspace_scale)
+        return sentence("Workspace scale ", std::round(100.0 * is.interaction.workspace_scale) / 100.0,
+                        ": so much farther the probe goes than at 1");
+    if (!(was.transfer_function == is.transfer_function))
+        return sentence_about(was.transfer_function, is.transfer_function);
+    if (const auto quality = quality_of(is.render); quality && was.render != is.render)
+        return sentence("Render quality: ", quality->name);
     if (was.light.shaded != is.light.shaded) return is.light.shaded ? "Shading on" : "Shading off";
     if (was.render.preintegration != is.render.preintegration)
         return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
@@ -113,6 +164,8 @@ void Workbench::settings_changed(const Session& before)
     } else if (before.groups != after.groups) {
         renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
     }
+    constexpr double CUT_GLOW_S = 1.5;
+    if (before.cut != after.cut) cut_shown_until_s_ = options_.now_s() + CUT_GLOW_S;
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
         if (document.drags_node) act(DragNode{false});

@@ -1,6 +1,7 @@
 #include "engine/annotation/trace/tracing.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -226,6 +227,8 @@ void TraceGraph::apply(const TraceChange& change, Direction direction)
                 internode_radii_.erase(record.group);
         },
         change);
+    static std::atomic<uint64_t> revisions{0};
+    revision_ = ++revisions;
 }
 
 bool operator==(const TraceGraph& left, const TraceGraph& right)

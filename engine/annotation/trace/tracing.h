@@ -100,6 +100,9 @@ public:
     /// Numbers, lengths and segments; kept up to date, so it costs little at any size.
     TraceSummary summary() const { return tally_.summary_of(*this); }
 
+    /// Another number after each record that was applied, also in copies; equal numbers mean equal traces.
+    uint64_t revision() const { return revision_; }
+
     const TraceSelection& selection() const { return selection_; }
     /// What is selected must exist (SHVR_CHECK).
     void select(TraceSelection selection);
@@ -128,6 +131,7 @@ private:
     std::map<uint32_t, std::vector<uint32_t>> internodes_of_;  ///< of nodes that have any
     std::map<uint8_t, double> internode_radii_;
     uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
+    uint64_t revision_ = 0;                        ///< 0: empty
     TraceSelection selection_;
     TraceIndex index_;
     TraceTally tally_;

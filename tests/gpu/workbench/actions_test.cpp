@@ -32,6 +32,8 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *OVERVIEW = R"({"op":"set","values":{"view":{"arrangement":"overview"}}})",
                      *BY_HAND = R"({"op":"set","values":{"light":{"occlusion":{"strength":0.5,"automatic":false}}}})",
                      *NEAR_3 = R"({"op":"keep_camera","name":"node 3"})",
+                     *KEEP = R"({"op":"keep_preset","name":"vessels"})",
+                     *COMPARE = R"({"op":"compare_passes","path":"FOLDER/run.json"})",
                      *CUT = R"({"op":"move_cut","axis":0,"share":0.25})", *BEGIN = R"({"op":"paint_here","on":true})",
                      *DRAG = R"({"op":"drag_node","on":true})", *UNDO = R"({"op":"undo"})", *SAVE = R"({"op":"save"})",
                      *TO_NODE = R"({"op":"step_node"})", *DESELECT = R"({"op":"deselect"})",
@@ -51,8 +53,10 @@ const Row ROWS[] = {
     {R"({"op":"forget_camera","name":"node 3"})", "cameras, saved", {NEAR_3}},
     {R"({"op":"rename_camera","name":"node 3","to":"leaf"})", "cameras, saved", {NEAR_3}},
     {R"({"op":"pivot_at","pixel":[48,40]})", "interaction, saved"},
+    {R"({"op":"go_to","voxel":[3,4,5]})", "camera"},
     {R"({"op":"move_cut","axis":1,"upper":true,"share":-0.25})", "cut, saved, undo"},
     {R"({"op":"move_clip","share":0.5})", "camera"},
+    {R"({"op":"place_clips","near":12,"far":80})", "camera"},
     {R"({"op":"reset_cuts"})", "camera, cut, saved, undo", {CUT, R"({"op":"move_clip","share":0.5})"}},
     {R"({"op":"fit_view"})", "camera"},
     {R"({"op":"reset_view"})", "camera", {R"({"op":"orbit","right_degrees":30})"}},
@@ -60,6 +64,10 @@ const Row ROWS[] = {
     {R"({"op":"update_occlusion"})", "", {BY_HAND}},
     {R"({"op":"set","values":{"light":{"ambient":0.45}}})", "light, saved, undo"},
     {R"({"op":"set","values":{"groups":{"3":{"name":"leaf trace","color":"#20b060"}}}})", "groups, saved, undo"},
+    {R"({"op":"set","values":{"unpainted":{"opacity":0.25}}})", "saved, undo, unpainted"},
+    {R"({"op":"set","values":{"groups":{"3":{"parent":2}}}})", "groups, saved, undo"},
+    {R"({"op":"set","values":{"view":{"solo":3}}})", "saved, view"},
+    {R"({"op":"set","values":{"render":{"quality":"draft"}}})", "render, saved"},
     {R"({"op":"set","values":{"blend":{"size":0.4}}})", "blend, saved, undo"},
     {R"({"op":"set","values":{"transfer_function":{"points":[{"intensity":90,"opacity":0},{"intensity":200,"opacity":1}]}}})",
      "saved, transfer_function, undo"},
@@ -72,6 +80,10 @@ const Row ROWS[] = {
     {R"({"op":"set","values":{"interaction":{"resolution":0.5}}})", "interaction, saved"},
     {R"({"op":"end_step"})", ""},
     {R"({"op":"auto_contrast"})", "saved, view", {DARK}},
+    {R"({"op":"keep_preset","name":"vessels"})", "presets"},
+    {R"({"op":"rename_preset","name":"vessels","to":"bundles of mine"})", "presets", {KEEP}},
+    {R"({"op":"forget_preset","name":"vessels"})", "presets", {KEEP}},
+    {R"({"op":"take_preset","path":"FOLDER/hot.json"})", "saved, transfer_function, undo"},
     {R"({"op":"probe_to","pixel":[20,20]})", "place"},
     {R"({"op":"probe_onto","pixel":[48,40]})", "place"},
     {R"({"op":"probe_along","pixel":[48,40]})", "place"},
@@ -139,6 +151,10 @@ const Row ROWS[] = {
     {R"({"op":"await_key","shortcut":"undo"})", "awaits_key"},
     {R"({"op":"show_help","on":true})", "help"},
     {R"({"op":"show_messages","on":true})", "messages"},
+    {R"({"op":"show_passes","on":true})", "passes"},
+    {R"({"op":"save_passes","path":"FOLDER/saved.json"})", "file saved.json"},
+    {R"({"op":"compare_passes","path":"FOLDER/run.json"})", "passes"},
+    {R"({"op":"compare_passes"})", "passes", {COMPARE}},
     {R"({"op":"show_palette","on":true})", "palette"},
     {R"({"op":"prefer","values":{"theme":"light","layout":{"panels":{"groups":{"place":"floating"}}}}})",
      "file preferences.json"},
@@ -161,6 +177,10 @@ struct Bench {
         std::string tiny = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n";
         for (int voxel = 0; voxel < 512; ++voxel) tiny += char(voxel % 251);
         folder.write("tiny.nrrd", tiny);
+        folder.write("run.json", R"({"passes":[{"name":"raycast","runs":2,"total_ms":3.5,"longest_ms":2}]})");
+        folder.write(
+            "hot.json",
+            R"({"note":"n","points":[{"at":0,"color":"#100000","opacity":0},{"at":1,"color":"#ff2010","opacity":1}]})");
         bench->open(write_tubes_session(folder.path), {});
         settle(*bench);
     }

@@ -42,7 +42,10 @@ const std::vector<std::string> CHANGES{"camera=top",
                                        "probe.group=9",
                                        "probe.voxel=[1,2,3.5]",
                                        "probe.density.offset=4",
-                                       "view.slices.black=-3"};
+                                       "view.slices.black=-3",
+                                       "view.solo=3",
+                                       "interaction.workspace_scale=2",
+                                       "probe.color=#102030"};
 
 }  // namespace
 

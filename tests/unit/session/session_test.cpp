@@ -71,6 +71,7 @@ const std::string EVERYTHING = R"({
   "transfer_function": {"points": [{"intensity": 900.25, "color": "#ffffff", "opacity": 1},
                                    {"intensity": -200, "color": "#d03020", "opacity": 0.125}]},
   "groups": {"1": {"name": "aorta", "color": "#c02020", "opacity": 0.9, "visible": false}, "255": {"parent": 1, "opacity": 0.5}},
+  "unpainted": {"visible": false, "opacity": 0.75},
   "light": {"shaded": false, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "shininess": 4, "direction": [1, 2, 3],
             "gradient_fade": 0.5,
             "occlusion": {"strength": 0.75, "radius": 9.5, "rays": 48, "full_sphere": true, "curve": 1.5,
@@ -80,12 +81,14 @@ const std::string EVERYTHING = R"({
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false,
              "preintegration": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
-           "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5},
-  "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3},
+           "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5,
+           "volume": false, "meshes": false, "cut_box": true, "solo": 7},
+  "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3, "workspace_scale": 2.5},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
             "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25,
-            "preview": true, "density": {"offset": 12.5, "falloff": "distance"}, "paints_group": false},
+            "preview": true, "density": {"offset": 12.5, "falloff": "distance"}, "paints_group": false,
+            "color": "#40c0a0", "opacity": 0.5, "silhouette": false, "arrow": false},
   "surfaces": [{"from": [1, 2, -3.5], "radius": 0.25, "color": "#d03020"},
                {"from": [0, 0, 0], "to": [10, 20, 30], "radii": [2, 1.5]},
                {"from": [5, 5, 5], "to": [6, 5, 5], "radius": 3}],
@@ -137,18 +140,29 @@ TEST_CASE("every key of a session is read")
     CHECK(session.transfer_function.points()[1] == ControlPoint{900.25, glm::dvec3(1), 1});
     CHECK(session.groups.at(1) == GroupSettings{"aorta", 0, color("#c02020"), 0.9, false});
     CHECK(session.groups.at(255) == GroupSettings{.name = "", .parent = 1, .color = {}, .opacity = 0.5});
+    CHECK(session.unpainted == Unpainted{false, 0.75});
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5, {0.75, 9.5, 48, true, 1.5, false}});
     CHECK(session.blend == DistanceBlend{0.75, 2.0, color("#204060")});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
     CHECK(session.render ==
           RenderSettings{{640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, 0.375});
-    CHECK(session.view ==
-          ViewSettings{Arrangement::slices, {StereoOutput::top_bottom, 0.0625, true}, {-20.0, 300.5, 0.25, 3.0}, 1.5});
-    CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3});
+    CHECK(session.view == ViewSettings{Arrangement::slices,
+                                       {StereoOutput::top_bottom, 0.0625, true},
+                                       {-20.0, 300.5, 0.25, 3.0},
+                                       1.5,
+                                       false,
+                                       false,
+                                       true,
+                                       uint8_t{7}});
+    CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3, 2.5});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
     const BrushSettings brush{
         Brush::speckle, RegionShape::box, 7, 120.5, 2.5, 26, DensityBrush{12.5, Falloff::distance}, false};
-    CHECK(session.probe == ProbeSettings{glm::dvec3(10, 20, 30.5), brush, -3, true, true, 0.25, true});
+    ProbeSettings probe{glm::dvec3(10, 20, 30.5), brush, -3, true, true, 0.25, true};
+    probe.color = color("#40c0a0");
+    probe.opacity = 0.5;
+    probe.silhouette = probe.arrow = false;
+    CHECK(session.probe == probe);
     CHECK((session.surfaces == std::vector<SurfaceLook>{{{1, 2, -3.5}, {1, 2, -3.5}, 0.25, 0.25, color("#d03020")},
                                                         {{0, 0, 0}, {10, 20, 30}, 2.0, 1.5, glm::dvec3(1)},
                                                         {{5, 5, 5}, {6, 5, 5}, 3.0, 3.0, glm::dvec3(1)}}));
@@ -292,7 +306,8 @@ TEST_CASE("what lies in a project is written relative to its folder shvr, so tha
 TEST_CASE("keys that are not known are refused by their full name, with those that are")
 {
     CHECK(refusal(with(R"("render": {"step": 1})")) ==
-          "s.json: unknown key render.step; expected one of: size, step_voxels, opacity_limit, background, sampling, "
+          "s.json: unknown key render.step; expected one of: size, quality, step_voxels, opacity_limit, background, "
+          "sampling, "
           "paging, detail, skip_empty_space, preintegration, saturation");
     struct Case {
         std::string keys, name;

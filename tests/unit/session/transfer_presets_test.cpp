@@ -2,9 +2,12 @@
 
 #include "engine/session/transfer_presets.h"
 
+#include <fstream>
+
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
+#include "tests/support/volume_files.h"
 
 using namespace shvr;
 
@@ -69,9 +72,57 @@ TEST_CASE("a broken preset, and a name that there is not, are told in a sentence
     CHECK(refusal(R"({"note": "x.", "points": []})") == "p.json: key points is []; expected at least two points");
     CHECK(refusal(R"({"note": "x.", "points": [{"at": 0.5, "color": "#ffffff", "opacity": 0},
                                                {"at": 0.4, "color": "#ffffff", "opacity": 0}]})")
-              .starts_with("p.json: key points.1.at is 0.4; expected a number from 0.5 to 10"));
+              .starts_with("p.json: key points.1.at is 0.4; expected a number from 0.5 to "));
     CHECK(refusal(R"({"note": "x.", "points": [{"at": 0, "color": "#ffffff", "opacity": 2}]})")
               .starts_with("p.json: key points.0.opacity is 2; expected"));
     CHECK_THROWS_WITH(transfer_preset_named("nothing"),
                       "transfer_function.preset is \"nothing\"; expected one of: bundles, haze, heat, layers, surface");
+}
+
+TEST_CASE("what a person keeps comes back as it was, in the volume that it was made for")
+{
+    const test::TemporaryFolder folder;
+    const TransferFunction kept(
+        {{950.0, glm::dvec3(0.0), 0.0}, {1700.0, glm::dvec3(1.0, 0.0, 0.0), 0.37}, {2500.0, glm::dvec3(1.0), 0.125}});
+    const TransferPreset preset = preset_of(kept, "my vessels", statistics());
+    std::ofstream(preset_file(folder.path, preset.name)) << text_of(preset);
+    std::vector<std::string> warnings;
+    const std::vector<TransferPreset> own = own_transfer_presets(folder.path, warnings);
+    REQUIRE(own.size() == 1);
+    CHECK(own[0].name == "my vessels");
+    CHECK(own[0].is_own);
+    CHECK(warnings.empty());
+    const TransferFunction again = transfer_function_of(own[0], statistics());
+    REQUIRE(again.points().size() == 3);  // it ends where it ended
+    for (size_t i = 0; i < 3; ++i) {
+        CHECK(again.points()[i].intensity == doctest::Approx(kept.points()[i].intensity).epsilon(1e-12));
+        CHECK(again.points()[i].opacity == kept.points()[i].opacity);
+        CHECK(again.points()[i].color == kept.points()[i].color);
+    }
+}
+
+TEST_CASE("a broken file of a person's is told and left out; a folder that is not there holds none")
+{
+    const test::TemporaryFolder folder;
+    folder.write("good.json", R"({"note": "n", "points": [{"at": 0, "color": "#000000", "opacity": 0},
+                                                 {"at": 1, "color": "#ffffff", "opacity": 1}]})");
+    folder.write("bad.json", R"({"note": "n", "points": []})");
+    std::vector<std::string> warnings;
+    const std::vector<TransferPreset> own = own_transfer_presets(folder.path, warnings);
+    REQUIRE(own.size() == 1);
+    CHECK(own[0].name == "good");
+    CHECK(own[0].extends);
+    REQUIRE(warnings.size() == 1);
+    CHECK(test::contains(warnings[0], "bad.json"));
+    CHECK(own_transfer_presets(folder.path / "missing", warnings).empty());
+    CHECK(warnings.size() == 1);
+}
+
+TEST_CASE("names that are none of files are refused")
+{
+    CHECK(preset_file("/a", "leaf traces, dark") == "/a/leaf traces, dark.json");
+    for (const std::string& name : {std::string(""), std::string("a/b"), std::string(".hidden"), std::string("a\nb"),
+                                    std::string("  "), std::string(101, 'a')})
+        CHECK_THROWS_AS(preset_file("/a", name), Error);
+    CHECK_THROWS_AS(preset_of(TransferFunction(), "a", statistics()), Error);
 }

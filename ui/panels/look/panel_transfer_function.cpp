@@ -1,21 +1,30 @@
+// The transfer function as a curve over the histogram. What the mouse does to it is in ui/workbench/curves.
+
 #include "ui/panels/panels.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>  // SetItemUsingMouseWheel
 
-#include "engine/base/image.h"
+#include "ui/panels/look/color_field.h"
+#include "ui/panels/look/panel_presets.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/curves/histogram_bars.h"
+#include "ui/workbench/curves/transfer_curve.h"
 #include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
 namespace {
 
-using Points = std::vector<ControlPoint>;
+using Points = TransferCurve::Points;
+using Grip = TransferCurve::Grip;
 
 constexpr float HEIGHT = 150.0f / 14.0f;  ///< of the curve, in font sizes
 constexpr float POINT_RADIUS = 0.36f;     ///< in font sizes
@@ -27,123 +36,87 @@ constexpr float STROKE = 0.11f;           ///< in font sizes
 constexpr ThemeColor BACKGROUND{ColorRole::chart}, BARS{ColorRole::chart_bars}, LINE{ColorRole::chart_line},
     PAINT_LINE{ColorRole::chart_paint}, FELT_LINE{ColorRole::chart_felt};
 
-/// What the mouse is dragging.
-enum class Grip { nothing, point, all_points, paint_threshold, haptic_threshold };
-
 /// The widget's state between frames. Everything else belongs to the session.
 struct WidgetState {
     Grip grip = Grip::nothing;
     size_t selected = 0;
-    double lower = 0.0, upper = 1.0;  ///< of the horizontal axis; fixed while dragging
-    double grabbed_at = 0.0;          ///< intensity under the mouse when it last moved all points
-    ImVec2 offset;                    ///< from the mouse to the centre of the grabbed item
+    CurveRange range;         ///< of the horizontal axis; fixed while dragging
+    double grabbed_at = 0.0;  ///< intensity under the mouse when it last moved all points
+    glm::vec2 offset{0.0f};   ///< from the mouse to the centre of the grabbed item
+    bool is_logarithmic = true;
+    VolumeStatistics bars_of;  ///< what the bars were made of
+    HistogramBars bars;
 };
 
-/// The widget's rectangle: intensities from left to right, the square root of the opacity upwards.
-struct Canvas {
-    ImVec2 begin, end;
-    double lower = 0.0, upper = 1.0;
-
-    float x_of(double intensity) const
-    {
-        const double share = std::clamp((intensity - lower) / (upper - lower), -1.0, 2.0);
-        return begin.x + float(share) * (end.x - begin.x);
-    }
-    float y_of(double opacity) const { return end.y - float(std::sqrt(opacity)) * (end.y - begin.y); }
-    double intensity_at(float x) const
-    {
-        const double share = double(x - begin.x) / double(end.x - begin.x);
-        return lower + std::clamp(share, 0.0, 1.0) * (upper - lower);
-    }
-    double opacity_at(float y) const
-    {
-        const double root = std::clamp(double(end.y - y) / double(end.y - begin.y), 0.0, 1.0);
-        return root * root;
-    }
-    ImVec2 place_of(const ControlPoint& point) const { return {x_of(point.intensity), y_of(point.opacity)}; }
-};
-
-/// sRGB, as Dear ImGui shows and edits colours.
-ImVec4 encoded(const glm::dvec3& linear, float alpha)
+ImVec2 point(const glm::vec2& at)
 {
-    const auto encode = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
-    return {encode(linear.x), encode(linear.y), encode(linear.z), alpha};
+    return {at.x, at.y};
 }
 
-Points points_of(const Model& model)
+void send(const TransferCurve& curve, const Model& model, Actions& actions)
 {
-    const auto points = model.session.transfer_function.points();
-    return {points.begin(), points.end()};
+    set(actions, model, [&](Session& s) { s.transfer_function = curve.function(); });
 }
 
-/// Clamps points first: a transfer function refuses values outside its limits.
 void send(Points points, const Model& model, Actions& actions)
 {
-    for (ControlPoint& point : points) {
-        point.intensity = std::clamp(point.intensity, -double(FLT_MAX), double(FLT_MAX));
-        point.opacity = std::clamp(point.opacity, 0.0, 1.0);
-        point.color = glm::clamp(point.color, glm::dvec3(0.0), glm::dvec3(1.0));
-    }
     set(actions, model, [&](Session& s) { s.transfer_function = TransferFunction(std::move(points)); });
 }
 
-/// The axis covers both the volume's and the function's intensities.
-void choose_axis(const Model& model, WidgetState& state)
+void follow_volume(const Model& model, WidgetState& state)
 {
-    const TransferFunction& function = model.session.transfer_function;
-    state.lower = std::min(model.statistics.range().lower, function.lower());
-    state.upper = std::max(model.statistics.range().upper, function.upper());
-    if (!(state.upper > state.lower)) state.upper = state.lower + std::max(1.0, std::abs(state.lower));
+    const VolumeStatistics& now = model.statistics;
+    const bool is_same = state.bars_of.histogram == now.histogram && state.bars_of.minimum == now.minimum &&
+                         state.bars_of.maximum == now.maximum;
+    if (is_same) return;
+    state.bars_of = now;
+    state.bars = histogram_bars(model.volume.type, now);
 }
 
 // ---- Drawing
 
-void draw_histogram(const Canvas& canvas, const VolumeStatistics& statistics, ImDrawList& list)
+void draw_histogram(const CurveAxes& axes, const WidgetState& state, ImDrawList& list)
 {
-    const auto& counts = statistics.histogram;
-    if (counts.empty()) return;
-    const double most = std::log1p(double(*std::max_element(counts.begin(), counts.end())));
-    const ValueRange range = statistics.range();
-    const double width = (range.upper - range.lower) / double(counts.size());
-    for (size_t bin = 0; bin < counts.size() && most > 0.0; ++bin) {
-        const float height = float(std::log1p(double(counts[bin])) / most) * (canvas.end.y - canvas.begin.y);
-        const double lower = range.lower + double(bin) * width;
-        const float left = canvas.x_of(lower), right = std::max(canvas.x_of(lower + width), left + 1.0f);
-        list.AddRectFilled({left, canvas.end.y - height}, {right, canvas.end.y}, BARS);
+    double most = 0.0;
+    for (const HistogramBar& bar : state.bars.bars) most = std::max(most, bar.voxels);
+    for (const HistogramBar& bar : state.bars.bars) {
+        const auto height = float(height_of_bar(bar.voxels, most, state.is_logarithmic)) * (axes.end.y - axes.begin.y);
+        const float left = axes.x_of(bar.lower), right = std::max(axes.x_of(bar.upper), left + 1.0f);
+        list.AddRectFilled({left, axes.end.y - height}, {right, axes.end.y}, BARS);
     }
 }
 
 /// The area below the curve, in the function's colours.
-void draw_area(const Canvas& canvas, const TransferFunction& function, ImDrawList& list)
+void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawList& list)
 {
-    for (float x = canvas.begin.x; x < canvas.end.x; x += COLUMN) {
-        const glm::dvec4 here = function.at(canvas.intensity_at(x + 0.5f * COLUMN));
+    for (float x = axes.begin.x; x < axes.end.x; x += COLUMN) {
+        const glm::dvec4 here = function.at(axes.intensity_at(x + 0.5f * COLUMN));
         if (here.a <= 0.0) continue;
-        list.AddRectFilled({x, canvas.y_of(here.a)}, {x + COLUMN, canvas.end.y},
+        list.AddRectFilled({x, axes.y_of(here.a)}, {x + COLUMN, axes.end.y},
                            ImGui::GetColorU32(encoded(glm::dvec3(here), 0.55f)));
     }
 }
 
 /// Segments are linear in opacity, and so curved on this axis.
-void draw_line(const Canvas& canvas, const Points& points, ImDrawList& list)
+void draw_line(const CurveAxes& axes, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
     for (size_t i = 0; i + 1 < points.size(); ++i) {
         for (int piece = 0; piece <= PIECES; ++piece) {
             const double share = double(piece) / PIECES;
-            list.PathLineTo({canvas.x_of(std::lerp(points[i].intensity, points[i + 1].intensity, share)),
-                             canvas.y_of(std::lerp(points[i].opacity, points[i + 1].opacity, share))});
+            list.PathLineTo({axes.x_of(std::lerp(points[i].intensity, points[i + 1].intensity, share)),
+                             axes.y_of(std::lerp(points[i].opacity, points[i + 1].opacity, share))});
         }
     }
     list.PathStroke(LINE, ImDrawFlags_None, STROKE * ImGui::GetFontSize());
 }
 
-void draw_points(const Canvas& canvas, const Points& points, size_t selected, ImDrawList& list)
+void draw_points(const CurveAxes& axes, const Points& points, size_t selected, ImDrawList& list)
 {
     const float radius = POINT_RADIUS * ImGui::GetFontSize(), stroke = STROKE * ImGui::GetFontSize();
     for (size_t i = 0; i < points.size(); ++i) {
-        const ImVec2 at = canvas.place_of(points[i]);
-        list.AddCircleFilled(at, radius, ImGui::GetColorU32(encoded(points[i].color, 1.0f)));
+        const ImVec2 at = point(axes.place_of(points[i]));
+        list.AddCircleFilled(at, radius, ImGui::GetColorU32(encoded(points[i].color)));
         list.AddCircle(at, radius, BACKGROUND, 0, 2.0f * stroke);
         list.AddCircle(at, radius, LINE, 0, stroke);
         if (i == selected)
@@ -152,190 +125,183 @@ void draw_points(const Canvas& canvas, const Points& points, size_t selected, Im
 }
 
 /// The label is beside the line, on the side with room; `row` 0 is the topmost.
-void draw_threshold(const Canvas& canvas, double intensity, const char* word, float row, ImU32 color, ImDrawList& list)
+void draw_threshold(const CurveAxes& axes, double intensity, const char* word, float row, ImU32 color, ImDrawList& list)
 {
-    const float x = canvas.x_of(intensity);
+    const float x = axes.x_of(intensity);
     const ImVec2 size = ImGui::CalcTextSize(word);
     const float gap = 0.25f * ImGui::GetFontSize();
-    const float left = x + gap + size.x < canvas.end.x ? x + gap : x - gap - size.x;
-    const float top = canvas.begin.y + gap + row * size.y;
-    list.AddLine({x, canvas.begin.y}, {x, canvas.end.y}, color, STROKE * ImGui::GetFontSize());
+    const float left = x + gap + size.x < axes.end.x ? x + gap : x - gap - size.x;
+    const float top = axes.begin.y + gap + row * size.y;
+    list.AddLine({x, axes.begin.y}, {x, axes.end.y}, color, STROKE * ImGui::GetFontSize());
     list.AddRectFilled({left - 2.0f, top}, {left + size.x + 2.0f, top + size.y}, shade_of(ColorRole::chart, 0.75f),
                        3.0f);
     list.AddText({left, top}, color, word);
 }
 
-void draw(const Canvas& canvas, const Model& model, size_t selected)
+/// How far density painting raises what is at the paint threshold.
+void draw_density_offset(const CurveAxes& axes, const Model& model, ImDrawList& list)
+{
+    const auto& density = model.brush().density;
+    if (!density) return;
+    const double from = model.paint_threshold();
+    const double raised = density->offset.value_or(std::max(0.0, model.session.transfer_function.lower() - from));
+    const float size = ImGui::GetFontSize(), y = axes.begin.y + 2.9f * size;
+    const float begin = axes.x_of(from), end = std::clamp(axes.x_of(from + raised), axes.begin.x, axes.end.x);
+    const char* const word = raised == 0.0 ? "raises nothing" : "raises to";
+    if (raised != 0.0) {
+        const float head = (end >= begin ? -0.45f : 0.45f) * size;
+        list.AddLine({begin, y}, {end, y}, PAINT_LINE, 1.6f * STROKE * size);
+        list.AddTriangleFilled({end, y}, {end + head, y - 0.3f * size}, {end + head, y + 0.3f * size}, PAINT_LINE);
+        list.AddLine({end, y}, {end, axes.end.y}, IM_COL32(240, 184, 90, 110), STROKE * size);
+    }
+    const float width = ImGui::CalcTextSize(word).x;
+    const float left = std::clamp(std::max(begin, end) + 0.3f * size, axes.begin.x, axes.end.x - width);
+    list.AddRectFilled({left - 2.0f, y - 0.5f * size}, {left + width + 2.0f, y + 0.5f * size},
+                       IM_COL32(26, 26, 26, 190), 3.0f);
+    list.AddText({left, y - 0.5f * size}, PAINT_LINE, word);
+}
+
+void draw(const CurveAxes& axes, const Model& model, const WidgetState& state)
 {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const Points points = points_of(model);
+    const TransferCurve curve(model.session.transfer_function);
     const float margin = MARGIN * ImGui::GetFontSize();
-    list.AddRectFilled({canvas.begin.x - margin, canvas.begin.y - margin},
-                       {canvas.end.x + margin, canvas.end.y + margin}, BACKGROUND, ImGui::GetStyle().FrameRounding);
-    list.PushClipRect(canvas.begin, canvas.end, true);
-    draw_histogram(canvas, model.statistics, list);
-    draw_area(canvas, model.session.transfer_function, list);
+    list.AddRectFilled({axes.begin.x - margin, axes.begin.y - margin}, {axes.end.x + margin, axes.end.y + margin},
+                       BACKGROUND, ImGui::GetStyle().FrameRounding);
+    list.PushClipRect(point(axes.begin), point(axes.end), true);
+    draw_histogram(axes, state, list);
+    draw_area(axes, model.session.transfer_function, list);
     list.PopClipRect();
-    draw_threshold(canvas, model.haptic_threshold(), "feel", 1.0f, FELT_LINE, list);
-    draw_threshold(canvas, model.paint_threshold(), "paint", 0.0f, PAINT_LINE, list);
-    draw_line(canvas, points, list);
-    draw_points(canvas, points, selected, list);
+    draw_threshold(axes, model.haptic_threshold(), "feel", 1.0f, FELT_LINE, list);
+    draw_threshold(axes, model.paint_threshold(), "paint", 0.0f, PAINT_LINE, list);
+    draw_density_offset(axes, model, list);
+    draw_line(axes, curve.points(), list);
+    draw_points(axes, curve.points(), state.selected, list);
 }
 
-// ---- Grabbing and dragging
+// ---- The mouse
 
-struct Found {
-    Grip grip = Grip::nothing;
-    size_t point = 0;
-};
-
-Found under_mouse(const Canvas& canvas, const Model& model, const ImVec2& mouse)
+void begin_drag(const CurveAxes& axes, const TransferCurve& curve, const TransferCurve::Found& found,
+                const glm::vec2& mouse, WidgetState& state)
 {
-    const float reach = REACH * ImGui::GetFontSize();
-    const auto points = model.session.transfer_function.points();
-    Found found;
-    float nearest = reach;
-    for (size_t i = 0; i < points.size(); ++i) {
-        const ImVec2 at = canvas.place_of(points[i]);
-        const float distance = std::hypot(at.x - mouse.x, at.y - mouse.y);
-        if (distance <= nearest) found = {Grip::point, i}, nearest = distance;
-    }
-    if (found.grip == Grip::point) return found;
-    const float to_paint = std::abs(canvas.x_of(model.paint_threshold()) - mouse.x);
-    const float to_felt = std::abs(canvas.x_of(model.haptic_threshold()) - mouse.x);
-    if (std::min(to_paint, to_felt) > 0.6f * reach) return found;
-    // If both lines coincide, the one whose label is hit.
-    const bool is_felt_row = mouse.y > canvas.begin.y + 1.25f * ImGui::GetFontSize();
-    const bool is_paint = to_paint == to_felt ? !is_felt_row : to_paint < to_felt;
-    return {is_paint ? Grip::paint_threshold : Grip::haptic_threshold, 0};
-}
-
-void add_point(const Canvas& canvas, const ImVec2& mouse, const Model& model, WidgetState& state, Actions& actions)
-{
-    Points points = points_of(model);
-    const double intensity = canvas.intensity_at(mouse.x);
-    const TransferFunction function(points);
-    ControlPoint added{.intensity = intensity, .opacity = canvas.opacity_at(mouse.y)};
-    // The function has no colour outside its points, so the end's colour continues.
-    added.color = glm::dvec3(function.at(std::clamp(intensity, function.lower(), function.upper())));
-    const auto after = std::upper_bound(points.begin(), points.end(), intensity,
-                                        [](double value, const ControlPoint& p) { return value < p.intensity; });
-    state.selected = size_t(after - points.begin());
-    points.insert(after, added);
-    send(std::move(points), model, actions);
-}
-
-void remove_point(size_t point, const Model& model, WidgetState& state, Actions& actions)
-{
-    Points points = points_of(model);
-    if (points.size() <= 2) return;
-    points.erase(points.begin() + std::ptrdiff_t(point));
-    state.selected = std::min(point, points.size() - 1);
-    send(std::move(points), model, actions);
-}
-
-/// Clamped between its neighbours, so that its index stays the same.
-double held_between_neighbors(const Points& points, size_t index, double intensity)
-{
-    const double lower = index > 0 ? points[index - 1].intensity : -double(FLT_MAX);
-    const double upper = index + 1 < points.size() ? points[index + 1].intensity : double(FLT_MAX);
-    return std::clamp(intensity, lower, upper);
-}
-
-void move_point(const Canvas& canvas, const ImVec2& mouse, const Model& model, size_t index, Actions& actions)
-{
-    Points points = points_of(model);
-    const ControlPoint was = points[index];
-    points[index].intensity = held_between_neighbors(points, index, canvas.intensity_at(mouse.x));
-    points[index].opacity = canvas.opacity_at(mouse.y);
-    if (!(points[index] == was)) send(std::move(points), model, actions);
-}
-
-/// Keeps part of the function within the volume's intensities.
-void move_all(const Model& model, double shift, Actions& actions)
-{
-    Points points = points_of(model);
-    const double least = model.statistics.range().lower - points.back().intensity;
-    const double most = model.statistics.range().upper - points.front().intensity;
-    const double held = std::clamp(shift, std::min(least, 0.0), std::max(most, 0.0));
-    if (held == 0.0) return;
-    for (ControlPoint& point : points) point.intensity += held;
-    send(std::move(points), model, actions);
-}
-
-void begin_drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetState& state)
-{
-    const Found found = under_mouse(canvas, model, mouse);
     state.grip = ImGui::GetIO().KeyCtrl ? Grip::all_points : found.grip;
-    state.grabbed_at = canvas.intensity_at(mouse.x);
-    state.offset = {};
+    state.grabbed_at = axes.intensity_at(mouse.x);
+    state.offset = glm::vec2(0.0f);
     if (state.grip != Grip::point) return;
-    const ImVec2 at = canvas.place_of(model.session.transfer_function.points()[found.point]);
     state.selected = found.point;
-    state.offset = {at.x - mouse.x, at.y - mouse.y};
+    state.offset = axes.place_of(curve.points()[found.point]) - mouse;
 }
 
-void drag(const Canvas& canvas, const Model& model, const ImVec2& mouse, WidgetState& state, Actions& actions)
+void drag(const CurveAxes& axes, TransferCurve& curve, const Model& model, const glm::vec2& mouse, WidgetState& state,
+          Actions& actions)
 {
-    const double now = canvas.intensity_at(mouse.x);
-    const double held = std::clamp(now, model.statistics.range().lower, model.statistics.range().upper);
+    const auto [lowest, highest] = model.statistics.range();
+    const double now = axes.intensity_at(mouse.x);
+    const double held = std::clamp(now, lowest, highest);
     const double threshold = is_float(model.volume.type) ? held : std::round(held);
-    BrushSettings brush = model.brush();
     switch (state.grip) {
         case Grip::nothing: return;
-        case Grip::point: return move_point(canvas, mouse, model, state.selected, actions);
-        case Grip::all_points: return move_all(model, now - std::exchange(state.grabbed_at, now), actions);
+        case Grip::point: curve.move(state.selected, now, axes.opacity_at(mouse.y)); return send(curve, model, actions);
+        case Grip::all_points:
+            curve.shift_all(now - std::exchange(state.grabbed_at, now), lowest, highest);
+            return send(curve, model, actions);
         case Grip::paint_threshold:
-            if (std::exchange(brush.threshold, threshold) != threshold)
-                set(actions, model, [&](Session& s) { s.probe.brush = brush; });
-            return;
+            return set(actions, model, [&](Session& s) { s.probe.brush.threshold = threshold; });
         case Grip::haptic_threshold:
-            if (model.haptic_threshold() != threshold)
-                set(actions, model, [&](Session& s) { s.probe.haptic_threshold = threshold; });
-            return;
+            return set(actions, model, [&](Session& s) { s.probe.haptic_threshold = threshold; });
     }
+}
+
+/// The wheel shifts all points, slowly with Shift. The panel does not scroll below the mouse.
+void use_wheel(TransferCurve& curve, const Model& model, const WidgetState& state, Actions& actions)
+{
+    ImGuiIO& io = ImGui::GetIO();
+    const float notches = io.MouseWheel + io.MouseWheelH;  // Shift turns one into the other
+    if (notches == 0.0f) return;
+    const auto [lowest, highest] = model.statistics.range();
+    const double shift = wheel_shift(double(notches), state.range, io.KeyShift, !is_float(model.volume.type));
+    if (curve.shift_all(shift, lowest, highest) != 0.0) send(curve, model, actions);
 }
 
 /// At most one action a frame.
-void use_mouse(const Canvas& canvas, const Model& model, WidgetState& state, Actions& actions)
+void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Actions& actions)
 {
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const ImVec2 held{mouse.x + state.offset.x, mouse.y + state.offset.y};
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    const glm::vec2 mouse(at.x, at.y);
+    TransferCurve curve(model.session.transfer_function);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) state.grip = Grip::nothing;
-    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f)) return drag(canvas, model, held, state, actions);
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f))
+        return drag(axes, curve, model, mouse + state.offset, state, actions);
     if (!ImGui::IsItemHovered()) return;
-    const Found found = under_mouse(canvas, model, mouse);
-    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::nothing)
-        add_point(canvas, mouse, model, state, actions);
-    else if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
-        begin_drag(canvas, model, mouse, state);
-    else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && found.grip == Grip::point)
-        remove_point(found.point, model, state, actions);
+    const float size = ImGui::GetFontSize();
+    const TransferCurve::Found found = curve.under(axes, mouse, {model.paint_threshold(), model.haptic_threshold()},
+                                                   {.pixels = REACH * size, .label = 1.25f * size});
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::nothing) {
+        state.selected = curve.add(axes.intensity_at(mouse.x), axes.opacity_at(mouse.y));
+        send(curve, model, actions);
+    } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        begin_drag(axes, curve, found, mouse, state);
+    } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && found.grip == Grip::point) {
+        state.selected = curve.remove(found.point);
+        send(curve, model, actions);
+    } else {
+        use_wheel(curve, model, state, actions);
+    }
 }
 
 // ---- The panel's parts
 
 void curve(const Model& model, WidgetState& state, Actions& actions)
 {
-    if (state.grip == Grip::nothing) choose_axis(model, state);
+    const auto [lowest, highest] = model.statistics.range();
+    if (state.grip == Grip::nothing) state.range = range_of_curve(model.session.transfer_function, lowest, highest);
     const float margin = MARGIN * ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 8.0f * margin), HEIGHT * ImGui::GetFontSize()};
-    const Canvas canvas{.begin = {corner.x + margin, corner.y + margin},
-                        .end = {corner.x + size.x - margin, corner.y + size.y - margin},
-                        .lower = state.lower,
-                        .upper = state.upper};
+    const CurveAxes axes{.begin = {corner.x + margin, corner.y + margin},
+                         .end = {corner.x + size.x - margin, corner.y + size.y - margin},
+                         .lower = state.range.lower,
+                         .upper = state.range.upper};
     ImGui::InvisibleButton("curve", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-    draw(canvas, model, state.selected);
-    use_mouse(canvas, model, state, actions);
+    ImGui::SetItemUsingMouseWheel();
+    draw(axes, model, state);
+    use_mouse(axes, model, state, actions);
+}
+
+std::string digits(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
 }
 
 /// The line below the curve.
-void shading_and_help(const Model& model, Actions& actions)
+void scale_and_help(WidgetState& state)
+{
+    ImGui::Checkbox("Logarithmic", &state.is_logarithmic);
+    std::string bins =
+        "Height of the histogram's bars: as the logarithm of the number of voxels, which shows what is "
+        "rare, or as that number.";
+    if (state.bars.step > 1.0)
+        bins += " The values in this volume are multiples of " + digits(state.bars.step) +
+                "; there are bars for these alone.";
+    hint(bins.c_str());
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
+    ImGui::TextDisabled("How to edit (?)");
+    hint(
+        "Left to right: the file's intensities, over how often they occur. Upwards: opacity, as its square root, so "
+        "that "
+        "small opacities can be seen and dragged.\n\n"
+        "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
+        "shifts all points, a tenth as far with Shift; Ctrl + drag does, too. The lines \"paint\" and \"feel\" are the "
+        "thresholds; drag them as well.");
+}
+
+void shading(const Model& model, Actions& actions)
 {
     Light light = model.session.light;
     if (ImGui::Checkbox("Shading", &light.shaded)) set(actions, model, [&](Session& s) { s.light = light; });
-    hint("Light from over your shoulder. Without it, colours are as chosen above.");
+    hint("Light on the volume's surfaces. Without it, colours are as chosen above.");
     const RenderSettings& render = model.session.render;
     bool sees_peaks = render.preintegration;
     ImGui::SameLine();
@@ -346,23 +312,29 @@ void shading_and_help(const Model& model, Actions& actions)
     hint(
         "No peak or edge of the curve is missed, however narrow (pre-integration). Slower; smooth curves do not need "
         "it.");
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
-    ImGui::TextDisabled("How to edit (?)");
+}
+
+/// The whole curve at once.
+void unpainted(const Model& model, Actions& actions)
+{
+    double opacity = model.session.unpainted.opacity;
+    if (slider("Volume", opacity, 0.0, 1.0, "%.2f opaque"))
+        set(actions, model, [&](Session& s) { s.unpainted.opacity = opacity; });
     hint(
-        "Left to right: the file's intensities, over how often they occur (logarithmic). Upwards: opacity, as its "
-        "square root, so that small opacities can be seen and dragged.\n\n"
-        "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. Ctrl + drag "
-        "moves all points. The lines \"paint\" and \"feel\" are the thresholds; drag them too.");
+        "Opacity of the whole volume but for what is painted: all of the curve is multiplied by it. Below 1 painted "
+        "groups and traces inside show through.");
 }
 
 /// Number fields of the point last touched.
 void edit_point(const Model& model, size_t index, Actions& actions)
 {
-    Points points = points_of(model);
+    const auto before = model.session.transfer_function.points();
+    Points points(before.begin(), before.end());
     ControlPoint& point = points[index];
     const float speed = float((model.statistics.range().upper - model.statistics.range().lower) / 500.0);
-    const double least = held_between_neighbors(points, index, -DBL_MAX);
-    const double most = held_between_neighbors(points, index, DBL_MAX);
+    const TransferCurve held(model.session.transfer_function);
+    const double least = held.held_between_neighbors(index, -DBL_MAX);
+    const double most = held.held_between_neighbors(index, DBL_MAX);
     const double clear = 0.0, solid = 1.0;
     const char* format = is_float(model.volume.type) ? "%.5g" : "%.1f";
     ImGui::PushItemWidth(-5.5f * ImGui::GetFontSize());
@@ -372,29 +344,9 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     changed |= ImGui::DragScalar("Opacity", ImGuiDataType_Double, &point.opacity, 0.002f, &clear, &solid, "%.4f",
                                  ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     hint("Of one voxel: 0 clear, 1 solid.");
-    ImVec4 color = encoded(point.color, 1.0f);
-    if (ImGui::ColorEdit3("Colour", &color.x)) {
-        point.color = {srgb_decode(double(color.x)), srgb_decode(double(color.y)), srgb_decode(double(color.z))};
-        changed = true;
-    }
+    changed |= color_field("Colour", point.color, ImGuiColorEditFlags_None);
     ImGui::PopItemWidth();
     if (changed) send(std::move(points), model, actions);
-}
-
-/// Replaces the whole function by a preset fitted to the volume.
-void preset_list(const Model& model, Actions& actions)
-{
-    ImGui::SetNextItemWidth(-1.0f);
-    if (!ImGui::BeginCombo("##presets", "Start from ...")) return;
-    if (ImGui::Selectable("the histogram"))
-        set(actions, model, [&](Session& s) { s.transfer_function = automatic_transfer_function(model.statistics); });
-    for (const TransferPreset& preset : model.presets) {
-        if (ImGui::Selectable(preset.name.c_str()))
-            set(actions, model,
-                [&](Session& s) { s.transfer_function = transfer_function_of(preset, model.statistics); });
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.note.c_str());
-    }
-    ImGui::EndCombo();
 }
 
 }  // namespace
@@ -404,17 +356,20 @@ void transfer_function_panel(const Model& model, Actions& actions)
     static WidgetState state;
     const TransferFunction& function = model.session.transfer_function;
     const size_t count = function.points().size();
-    if (!model.statistics.histogram.empty()) preset_list(model, actions);
+    preset_line(model, actions);
     if (count < 2) {
         ImGui::TextWrapped("There is no transfer function, so nothing is visible.");
-    } else {
-        state.selected = std::min(state.selected, count - 1);
-        const size_t edited = state.selected;  // an index into this frame's points
-        curve(model, state, actions);
-        shading_and_help(model, actions);
-        edit_point(model, edited, actions);
-        if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: no opacity is above 0.");
+        return;
     }
+    follow_volume(model, state);
+    state.selected = std::min(state.selected, count - 1);
+    const size_t edited = state.selected;  // an index into this frame's points
+    curve(model, state, actions);
+    scale_and_help(state);
+    shading(model, actions);
+    edit_point(model, edited, actions);
+    unpainted(model, actions);
+    if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: no opacity is above 0.");
 }
 
 }  // namespace shvr::ui

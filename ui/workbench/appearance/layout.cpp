@@ -14,15 +14,14 @@ constexpr PanelRow PANELS[] = {
     {.id = "groups", .title = "Colour groups", .hint = "What paint and traces belong to."},
     {.id = "probe", .title = "Brush and probe", .hint = "What a stroke paints, and what guidance feels."},
     {.id = "trace", .title = "Tracing", .hint = "Nodes, internodes and what is selected."},
+    {.id = "trace_list", .title = "Tracing list", .hint = "All segments and nodes, to go to.", .is_folded = true},
     {.id = "light", .title = "Light and depth", .hint = "Light, highlight and distance blending.", .is_folded = true},
     {.id = "occlusion", .title = "Ambient occlusion", .hint = "Soft shade in hollows.", .is_folded = true},
+    {.id = "cuts", .title = "Cutting planes", .hint = "What of the volume is shown, in numbers.", .is_folded = true},
+    {.id = "quality", .title = "Render quality", .hint = "Exactness against time.", .is_folded = true},
+    {.id = "aids", .title = "What is shown", .hint = "Volume, nodes, probe and background.", .is_folded = true},
     {.id = "views", .title = "Views", .hint = "Panes, slices and how fast the picture follows.", .is_folded = true},
     {.id = "history", .title = "History", .hint = "All steps, to go back to any of them.", .is_folded = true},
-    {.id = "passes",
-     .title = "GPU passes",
-     .hint = "Where the time of a picture goes.",
-     .place = PanelPlace::hidden,
-     .is_tool = true},
 };
 
 }  // namespace

@@ -29,7 +29,6 @@ struct PanelRow {
     const char* hint = "";   ///< what it is for
     PanelPlace place = PanelPlace::side;
     bool is_folded = false;
-    bool is_tool = false;  ///< for those who look into the program: in the menu Tools, not in View
 };
 /// From top to bottom.
 std::span<const PanelRow> panel_rows();

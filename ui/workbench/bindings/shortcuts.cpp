@@ -5,7 +5,7 @@
 
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
-#include "ui/workbench/lists/group_list.h"
+#include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/trace_ops.h"
 
@@ -94,6 +94,22 @@ Action arrange(const Model& model, double)
     return edited(model.session, [](Session& s) { s.view.arrangement = ARRANGEMENT; });
 }
 
+template <bool ViewSettings::*FLAG>
+Action toggle_view(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.view.*FLAG = !(s.view.*FLAG); });
+}
+
+template <int DIRECTION>
+Action scale_workspace(const Model& model, double amount)
+{
+    return edited(model.session, [&](Session& s) {
+        double& scale = s.interaction.workspace_scale;
+        scale =
+            std::clamp(scale * std::pow(PROBE_FACTOR, DIRECTION * amount), MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE);
+    });
+}
+
 template <bool ProbeSettings::*FLAG>
 Action toggle(const Model& model, double)
 {
@@ -155,8 +171,10 @@ Action move_clip(const Model&, double amount)
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {
+    // A size above 1 whitens everything behind the depth at which it reaches 1.
+    constexpr double MOST = VALUE == &DistanceBlend::size ? 1.0 : MAX_BLEND;
     return edited(model.session, [&](Session& s) {
-        const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MAX_BLEND);
+        const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MOST);
         s.blend.*VALUE = next < 1e-9 ? 0.0 : next;
     });
 }
@@ -264,6 +282,9 @@ constexpr Shortcut SHORTCUTS[] = {
         "preferences", WORK_KEYS, "Preferences...", Mode::tap,
         [](const Model& model, double) -> Action { return ShowPreferences{!model.shows_preferences}; }, "Ctrl+,"),
     both("step_back", WORK_KEYS, "Close, or back to turning", Mode::tap, step_back, "Escape"),
+    both(
+        "passes", WORK_KEYS, "GPU passes", Mode::tap,
+        [](const Model& model, double) -> Action { return ShowPasses{!model.shows_passes}; }, ""),
     both("quit", WORK_KEYS, "Quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
 
     both("slices", VIEWS_KEYS, "Slices", Mode::tap, arrange<Arrangement::slices>, "F6"),
@@ -317,6 +338,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both("tool_trace", TOOL_KEYS, "Trace with the mouse", Mode::tap, take<Tool::trace>, "Alt+4"),
     both("tool_select", TOOL_KEYS, "Select with the mouse", Mode::tap, take<Tool::select>, "Alt+5"),
     both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
+    both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
+    both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
+    both("cut_box", VIEWS_KEYS, "Edges of the cutting planes", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
 
     both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
     both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
@@ -383,6 +407,10 @@ constexpr Shortcut SHORTCUTS[] = {
          "L"),
     both("shell", PROBE_KEYS, "Iso-surface around the probe", Mode::tap, toggle<&ProbeSettings::shell>, "F4"),
     {"next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, {"Shift+Space", "Home"}},
+    {"arrow", PROBE_KEYS, "Arrow towards the probe", Mode::tap, toggle<&ProbeSettings::arrow>, {"Shift+F1", "F1"}},
+    both("silhouette", PROBE_KEYS, "Silhouette of the probe", Mode::tap, toggle<&ProbeSettings::silhouette>, ""),
+    both("larger_workspace", PROBE_KEYS, "Larger workspace", Mode::hold, scale_workspace<1>, "F7"),
+    both("smaller_workspace", PROBE_KEYS, "Smaller workspace", Mode::hold, scale_workspace<-1>, "Ctrl+F7"),
     both("larger_probe", PROBE_KEYS, "Larger probe", Mode::hold, scale_probe<1>, "PageUp"),
     both("smaller_probe", PROBE_KEYS, "Smaller probe", Mode::hold, scale_probe<-1>, "PageDown"),
 

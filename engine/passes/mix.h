@@ -1,0 +1,13 @@
+#pragma once
+// Mixes two pictures (shaders/mix.comp).
+
+#include "engine/graph/frame_graph.h"
+#include "shaders/mix.h"
+
+namespace shvr {
+
+/// Changes a part of `color` in place; `other` has the part's size. Both rgba32_float, linear light, premultiplied.
+/// Returns the new version of `color`.
+Resource mix(FrameGraph& graph, Resource other, Resource color, const gpu::MixParams& params);
+
+}  // namespace shvr

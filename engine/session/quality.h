@@ -1,0 +1,32 @@
+#pragma once
+// Four ways to weigh a picture's time against its errors, as data: what the window offers and `render.quality` sets.
+// Pure; any thread.
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "engine/look/settings.h"
+
+namespace shvr {
+
+struct Quality {
+    const char* name = "";
+    const char* note = "";  ///< what it is for, with its errors (MEASURED.md)
+    double step_voxels = 0.5;
+    double opacity_limit = 1.0;
+    Sampling sampling = Sampling::automatic;
+    double detail = 1.0;
+    bool skip_empty_space = true;
+    bool preintegration = false;
+};
+
+/// From the fastest to the most exact.
+std::span<const Quality> qualities();
+void take(RenderSettings& render, const Quality& quality);
+/// The one that has all of these settings; nothing where a person chose others.
+std::optional<Quality> quality_of(const RenderSettings& render);
+/// The keys of `render` that a quality sets.
+std::span<const std::string_view> keys_of_quality();
+
+}  // namespace shvr

@@ -1,0 +1,24 @@
+// Mixes each pixel with that of another picture, in linear light, premultiplied. Equal pixels keep their bits. One
+// pixel per thread.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "mix.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Push
+{
+    MixParams params;
+};
+layout(binding = 0, rgba32f) uniform readonly image3D other;
+layout(binding = 1, rgba32f) uniform image3D color;
+
+void main()
+{
+    const uvec2 at = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(at, params.size))) return;
+    const ivec3 texel = ivec3(params.target + at, 0);
+    const vec4 light = imageLoad(color, texel);
+    precise vec4 mixed = light + params.share * (imageLoad(other, ivec3(at, 0)) - light);
+    imageStore(color, texel, mixed);
+}

@@ -1,0 +1,90 @@
+// What is drawn beside the volume: the probe's look, aids to find it, nodes and internodes.
+
+#include <cmath>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/look/color_field.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/edit.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// With the key that does the same.
+void explain(const Model& model, const char* shortcut, const std::string& text)
+{
+    const std::string key = model.keymap.text_of(*shortcut_named(shortcut));
+    hint((key.empty() ? text : text + " Key: " + key).c_str());
+}
+
+bool flag(const Model& model, const char* name, bool& value, const char* shortcut, const char* text)
+{
+    const bool is_other = ImGui::Checkbox(name, &value);
+    explain(model, shortcut, text);
+    return is_other;
+}
+
+void shown(const Model& model, Actions& actions)
+{
+    ViewSettings view = model.session.view;
+    bool is_other = flag(model, "Volume", view.volume, "volume",
+                         "The volume in three dimensions, painted groups included. Slices show it in any case.");
+    ImGui::SameLine();
+    is_other |= flag(model, "Nodes, internodes and probe", view.meshes, "meshes",
+                     "Everything that is solid: the trace, surfaces, and the probe's ball.");
+    if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
+}
+
+void probe_look(const Model& model, Actions& actions)
+{
+    ProbeSettings probe = model.session.probe;
+    bool is_other =
+        flag(model, "Silhouette of the probe", probe.silhouette, "silhouette", "Its outline, over whatever hides it.");
+    ImGui::SameLine();
+    is_other |= flag(model, "Arrow", probe.arrow, "arrow", "Points to the probe where it is out of sight.");
+    const uint8_t group = probe.brush.group;
+    glm::dvec3 color = probe.color.value_or(group == 0 ? glm::dvec3(0.5) : group_of(model.session.groups, group).color);
+    if (color_field("Probe's colour", color)) {
+        probe.color = color;
+        is_other = true;
+    }
+    hint("The colour of the chosen group, unless you choose one.");
+    if (probe.color) {
+        ImGui::SameLine();
+        if (ImGui::SmallButton("The group's")) {
+            probe.color.reset();
+            is_other = true;
+        }
+    }
+    is_other |= slider("Probe's opacity", probe.opacity, 0.0, 1.0, "%.2f");
+    hint(
+        "Of the ball. Below 1 what lies behind it is seen; the picture around it then takes twice as long. 0: no "
+        "ball.");
+    if (is_other) set(actions, model, [&](Session& s) { s.probe = probe; });
+}
+
+void workspace(const Model& model, Actions& actions)
+{
+    double scale = model.session.interaction.workspace_scale;
+    if (slider("Workspace", scale, 0.05, 20.0, "%.2f times", ImGuiSliderFlags_Logarithmic))
+        set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
+    explain(
+        model, "larger_workspace",
+        "How far the probe goes when the hand moves a haptic device. At 1 the device's whole reach is the height of "
+        "the view; below, the hand is steadier, above, it goes farther. The mouse is not changed.");
+}
+
+}  // namespace
+
+void aids_panel(const Model& model, Actions& actions)
+{
+    shown(model, actions);
+    probe_look(model, actions);
+    workspace(model, actions);
+}
+
+}  // namespace shvr::ui

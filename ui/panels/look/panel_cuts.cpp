@@ -1,0 +1,131 @@
+// Cutting planes of the volume and clip planes of the camera, as numbers.
+
+#include <algorithm>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr const char* AXIS_NAMES[] = {"x", "y", "z"};
+
+/// One plane, in units of `scale` voxels; returns whether it was moved.
+bool plane(const char* id, double& voxels, double least, double most, double scale, const char* format)
+{
+    double value = voxels * scale;
+    const double lowest = least * scale, highest = most * scale;
+    ImGui::SetNextItemWidth(-1.0f);
+    const float speed = float(std::max((highest - lowest) / 300.0, 1e-9));
+    if (!ImGui::DragScalar(id, ImGuiDataType_Double, &value, speed, &lowest, &highest, format,
+                           ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    voxels = value / scale;
+    return true;
+}
+
+/// A row of the table: what is drawn along one axis.
+bool axis_row(int axis, CutBox& cut, double size, double scale, const char* unit, const char* format)
+{
+    ImGui::PushID(unit);
+    ImGui::PushID(axis);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(AXIS_NAMES[axis]);
+    ImGui::TableNextColumn();
+    bool is_other = plane("##from", cut.lower[axis], 0.0, cut.upper[axis], scale, format);
+    hint("Nothing before this is drawn. Drag sideways, or Ctrl + click to type.");
+    ImGui::TableNextColumn();
+    is_other |= plane("##to", cut.upper[axis], cut.lower[axis], size, scale, format);
+    hint("Nothing beyond this is drawn. Drag sideways, or Ctrl + click to type.");
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", unit);
+    ImGui::PopID();
+    ImGui::PopID();
+    return is_other;
+}
+
+void cutting_planes(const Model& model, Actions& actions)
+{
+    const glm::dvec3 size(model.volume.size);
+    CutBox cut = model.session.cut;
+    cut.upper = glm::min(cut.upper, size);
+    bool is_other = false;
+    if (ImGui::BeginTable("cuts", 4, ImGuiTableFlags_SizingStretchSame)) {
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize());
+        ImGui::TableSetupColumn("from");
+        ImGui::TableSetupColumn("to");
+        ImGui::TableSetupColumn("in", ImGuiTableColumnFlags_WidthFixed, 3.2f * ImGui::GetFontSize());
+        ImGui::TableHeadersRow();
+        for (int axis = 0; axis < 3; ++axis) is_other |= axis_row(axis, cut, size[axis], 1.0, "voxels", "%.1f");
+        if (model.volume.unit != "voxel")
+            for (int axis = 0; axis < 3; ++axis)
+                is_other |=
+                    axis_row(axis, cut, size[axis], model.volume.spacing[axis], spelled(model.volume.unit), "%.5g");
+        ImGui::EndTable();
+    }
+    // Planes that are where the volume ends stay beyond it, so that nothing is written that nobody has set.
+    for (int axis = 0; axis < 3; ++axis)
+        if (cut.upper[axis] == size[axis] && model.session.cut.upper[axis] >= size[axis])
+            cut.upper[axis] = model.session.cut.upper[axis];
+    if (is_other) set(actions, model, [&](Session& s) { s.cut = cut; });
+    const bool is_cut = !(model.session.cut == CutBox{});
+    ImGui::BeginDisabled(!is_cut);
+    if (ImGui::Button("Show everything")) set(actions, model, [](Session& s) { s.cut = {}; });
+    ImGui::EndDisabled();
+    hint("All six cutting planes back to the volume's faces.");
+    ImGui::SameLine();
+    bool has_box = model.session.view.cut_box;
+    if (ImGui::Checkbox("Edges in the picture", &has_box))
+        set(actions, model, [&](Session& s) { s.view.cut_box = has_box; });
+    hint(
+        "Lines along the edges of what the planes leave, in the colours of the axes. They are shown while a plane "
+        "moves "
+        "in any case.");
+}
+
+/// A distance from the eye; 0 is no plane.
+bool clip(const char* name, double& distance, double reach, const char* none, const char* format, const char* help)
+{
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    const double least = 0.0, most = 100.0 * reach;
+    const bool is_other = ImGui::DragScalar(name, ImGuiDataType_Double, &distance, float(reach / 300.0), &least, &most,
+                                            distance > 0.0 ? format : none, ImGuiSliderFlags_AlwaysClamp);
+    hint(help);
+    return is_other;
+}
+
+void clip_planes(const Model& model, Actions& actions)
+{
+    double near = model.camera.near_distance, far = model.camera.far_distance;
+    const double reach = glm::distance(model.camera.eye, model.camera.target);
+    const std::string format = std::string("%.5g ") + spelled(model.volume.unit);
+    bool is_other = clip("Near clip", near, reach, "none", format.c_str(),
+                         "Nothing nearer to the eye than this is drawn. Drag sideways, or Ctrl + click to type; 0: no "
+                         "plane.");
+    if (is_other && far > 0.0) near = std::min(near, 0.999 * far);
+    const bool is_far_other = clip("Far clip", far, reach, "none", format.c_str(),
+                                   "Nothing farther from the eye than this is drawn. 0: no plane.");
+    if (is_far_other && far > 0.0) far = std::max(far, near * 1.001 + 1e-9 * reach);
+    if (is_other || is_far_other) actions.push_back(PlaceClips{near, far});
+    ImGui::BeginDisabled(near == 0.0 && far == 0.0);
+    if (ImGui::Button("No clip planes")) actions.push_back(PlaceClips{});
+    ImGui::EndDisabled();
+}
+
+}  // namespace
+
+void cuts_panel(const Model& model, Actions& actions)
+{
+    cutting_planes(model, actions);
+    ImGui::Separator();
+    clip_planes(model, actions);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,133 @@
+#include "ui/panels/look/panel_presets.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/edit.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// What is typed or asked about, between frames.
+struct NameState {
+    std::string name;     ///< typed
+    std::string renamed;  ///< the preset that gets it; empty: the present curve is kept under it
+};
+NameState asked;
+
+constexpr const char* ASK_NAME = "Name of the transfer function";
+
+void ask_for_preset_name(const std::string& renamed)
+{
+    asked = {renamed, renamed};
+}
+
+void take(const TransferPreset& preset, const Model& model, Actions& actions)
+{
+    set(actions, model, [&](Session& s) { s.transfer_function = transfer_function_of(preset, model.statistics); });
+}
+
+/// A right click on one that a person keeps.
+bool own_menu(const TransferPreset& preset, Actions& actions)
+{
+    bool asks = false;
+    if (!ImGui::BeginPopupContextItem(("own " + preset.name).c_str())) return false;
+    if (ImGui::MenuItem("Rename...")) {
+        ask_for_preset_name(preset.name);
+        asks = true;
+    }
+    if (ImGui::MenuItem("Keep the present curve under this name")) actions.push_back(KeepPreset{preset.name});
+    if (ImGui::MenuItem("Remove")) actions.push_back(ForgetPreset{preset.name});
+    ImGui::EndPopup();
+    return asks;
+}
+
+/// Returns whether a name is asked for.
+bool list(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginCombo("##presets", "Start from ...", ImGuiComboFlags_HeightLarge)) return false;
+    bool asks = false, has_own = false;
+    if (ImGui::Selectable("the histogram"))
+        set(actions, model, [&](Session& s) { s.transfer_function = automatic_transfer_function(model.statistics); });
+    for (const TransferPreset& preset : model.presets) {
+        if (preset.is_own && !std::exchange(has_own, true)) {
+            ImGui::Separator();
+            ImGui::TextDisabled("Your own (right click: rename, remove)");
+        }
+        ImGui::PushID(&preset);
+        if (ImGui::Selectable(preset.name.c_str())) take(preset, model, actions);
+        if (preset.is_own)
+            asks |= own_menu(preset, actions);
+        else
+            hint(preset.note.c_str());
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+    return asks;
+}
+
+/// What speaks against the typed name; empty: nothing.
+std::string why_not_named(const Model& model)
+{
+    const auto is_it = [](const TransferPreset& preset) { return preset.name == asked.name; };
+    const auto there = std::ranges::find_if(model.presets, is_it);
+    if (asked.name.empty()) return "type a name";
+    if (there == model.presets.end()) return {};
+    if (!there->is_own) return "a transfer function that ships has this name";
+    return asked.renamed.empty() ? "" : "one that is kept has this name";
+}
+
+void name_dialog(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginPopupModal(ASK_NAME, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(18.0f * ImGui::GetFontSize());
+    const bool is_entered = ImGui::InputText("##name", &asked.name, ImGuiInputTextFlags_EnterReturnsTrue);
+    const std::string why = why_not_named(model);
+    const auto is_own = [](const TransferPreset& preset) { return preset.is_own && preset.name == asked.name; };
+    const bool replaces = asked.renamed.empty() && std::ranges::any_of(model.presets, is_own);
+    ImGui::TextDisabled("%s", !why.empty() ? why.c_str()
+                              : replaces   ? "The one that is kept under this name is replaced."
+                                           : "It is kept for all scans, scaled to their intensities.");
+    ImGui::BeginDisabled(!why.empty());
+    const bool is_confirmed = ImGui::Button(asked.renamed.empty() ? "Keep" : "Rename") || (is_entered && why.empty());
+    ImGui::EndDisabled();
+    if (is_confirmed) {
+        if (asked.renamed.empty())
+            actions.push_back(KeepPreset{asked.name});
+        else
+            actions.push_back(RenamePreset{asked.renamed, asked.name});
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+}  // namespace
+
+void preset_line(const Model& model, Actions& actions)
+{
+    const float width = ImGui::CalcTextSize("Keep...").x + 2.0f * ImGui::GetStyle().FramePadding.x;
+    ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
+    bool asks = list(model, actions);
+    ImGui::SameLine();
+    const std::string why = why_not(model, KeepPreset{});
+    ImGui::BeginDisabled(!why.empty());
+    if (ImGui::Button("Keep...")) {
+        ask_for_preset_name({});
+        asks = true;
+    }
+    ImGui::EndDisabled();
+    hint(why.empty() ? "Keeps this curve under a name, for all scans." : why.c_str());
+    if (asks) ImGui::OpenPopup(ASK_NAME);
+    name_dialog(model, actions);
+}
+
+}  // namespace shvr::ui

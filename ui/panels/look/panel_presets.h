@@ -1,0 +1,11 @@
+#pragma once
+// The line above the curve: whole transfer functions to begin from, and those that a person keeps.
+
+#include "ui/workbench/action.h"
+#include "ui/workbench/model.h"
+
+namespace shvr::ui {
+
+void preset_line(const Model& model, Actions& actions);
+
+}  // namespace shvr::ui

@@ -1,0 +1,104 @@
+// What a picture costs and how exact it is.
+
+#include <algorithm>
+#include <string>
+
+#include <imgui/imgui.h>
+
+#include "engine/session/quality.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/edit.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Steps of pre-integration are at most 1.
+constexpr double MAX_PREINTEGRATED_STEP = 1.0;
+
+void choices(const Model& model, Actions& actions)
+{
+    const std::optional<Quality> present = quality_of(model.session.render);
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    if (!ImGui::BeginCombo("Quality", present ? present->name : "your own")) {
+        hint(present ? present->note : "Settings that are none of the four: draft, interactive, good, reference.");
+        return;
+    }
+    for (const Quality& quality : qualities()) {
+        if (ImGui::Selectable(quality.name, present && std::string(present->name) == quality.name))
+            set(actions, model, [&](Session& s) { take(s.render, quality); });
+        hint(quality.note);
+    }
+    ImGui::EndCombo();
+}
+
+bool sampling(RenderSettings& render)
+{
+    int chosen = int(render.sampling);
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    const bool is_other = ImGui::Combo("Sampling", &chosen, "as the device does well\0exact\0by the texture unit\0");
+    hint(
+        "How voxels are interpolated. Texture units are fast on GPUs and round positions to 1/256 of a voxel. A change "
+        "loads the volume again.");
+    render.sampling = Sampling(chosen);
+    return is_other;
+}
+
+bool paging(RenderSettings& render)
+{
+    int chosen = int(render.paging);
+    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    const bool is_other = ImGui::Combo("Paging", &chosen, "where it is needed\0always\0never\0");
+    hint(
+        "Whether parts of the volume come and go in the device's memory as they are seen. Never: a volume that does "
+        "not "
+        "fit is refused. A change loads the volume again.");
+    render.paging = Paging(chosen);
+    return is_other;
+}
+
+bool numbers(RenderSettings& render)
+{
+    bool is_other = slider("Step", render.step_voxels, 0.05, 4.0, "%.3g voxels", ImGuiSliderFlags_Logarithmic);
+    hint(
+        "Distance between samples along a ray. Half of it takes twice as long. Above 1 narrow peaks cannot be looked "
+        "for.");
+    if (render.step_voxels > MAX_PREINTEGRATED_STEP) render.preintegration = false;
+    is_other |= slider("Opaque from", render.opacity_limit, 0.5, 1.0, "%.4f");
+    hint("A ray stops once its opacity reaches this; 1: never before its end.");
+    is_other |= slider("Detail", render.detail, 0.0, 8.0, "%.2g voxels a pixel");
+    hint(
+        "Of volumes in several levels: a level is fine enough if its voxels are no larger than this. 0: always the "
+        "finest. Other volumes do not change.");
+    return is_other;
+}
+
+void budget(const Model& model)
+{
+    constexpr double MEBIBYTE = 1024.0 * 1024.0;
+    ImGui::TextDisabled("GPU memory: %.0f of %.0f MiB", double(model.device_bytes) / MEBIBYTE,
+                        double(model.device_budget) / MEBIBYTE);
+    hint("In use, and the most that is used. It is set when the program starts: shvr view --budget-device BYTES.");
+}
+
+}  // namespace
+
+void quality_panel(const Model& model, Actions& actions)
+{
+    choices(model, actions);
+    RenderSettings render = model.session.render;
+    bool is_other = numbers(render);
+    is_other |= sampling(render);
+    is_other |= paging(render);
+    is_other |= ImGui::Checkbox("Leap over empty space", &render.skip_empty_space);
+    hint("The picture is the same; without it, it takes longer. For measurements.");
+    ImGui::BeginDisabled(render.step_voxels > MAX_PREINTEGRATED_STEP);
+    is_other |= ImGui::Checkbox("Narrow peaks", &render.preintegration);
+    ImGui::EndDisabled();
+    hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
+    if (is_other) set(actions, model, [&](Session& s) { s.render = render; });
+    budget(model);
+}
+
+}  // namespace shvr::ui

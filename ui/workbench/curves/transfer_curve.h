@@ -1,0 +1,80 @@
+#pragma once
+// The transfer function as a curve that a hand edits: where things are on a rectangle, what lies under the mouse, and
+// what becomes of the points. Pure; any thread.
+//
+// Left to right are intensities; upwards is opacity, as its square root, so that small opacities can be seen and
+// dragged.
+
+#include <optional>
+#include <vector>
+
+#include "engine/look/transfer_function.h"
+
+namespace shvr::ui {
+
+/// Intensities and opacities in pixels, y down.
+struct CurveAxes {
+    glm::vec2 begin{0.0f}, end{1.0f};  ///< upper left and lower right corner
+    double lower = 0.0, upper = 1.0;   ///< intensities at the left and at the right
+
+    float x_of(double intensity) const;
+    float y_of(double opacity) const;
+    double intensity_at(float x) const;
+    double opacity_at(float y) const;
+    glm::vec2 place_of(const ControlPoint& point) const;
+};
+
+/// The intensities that a widget shows: the volume's and the function's.
+struct CurveRange {
+    double lower = 0.0, upper = 1.0;
+};
+CurveRange range_of_curve(const TransferFunction& function, double lowest, double highest);
+
+class TransferCurve {
+public:
+    using Points = std::vector<ControlPoint>;
+    enum class Grip { nothing, point, all_points, paint_threshold, haptic_threshold };
+    struct Found {
+        Grip grip = Grip::nothing;
+        size_t point = 0;
+        bool operator==(const Found&) const = default;
+    };
+    /// Vertical lines beside the points.
+    struct Lines {
+        double paint_threshold = 0.0, haptic_threshold = 0.0;
+    };
+    /// The mouse grabs points within `reach` pixels; of lines at one place, above `label` pixels from the top the
+    /// paint threshold.
+    struct Reach {
+        float pixels = 9.0f, label = 17.0f;
+    };
+
+    explicit TransferCurve(const TransferFunction& function)
+        : points_(function.points().begin(), function.points().end())
+    {}
+    const Points& points() const { return points_; }
+    /// The edited function; values are clamped to what a transfer function takes.
+    TransferFunction function() const;
+
+    /// What lies under the mouse: points go before lines, the nearest first.
+    Found under(const CurveAxes& axes, const glm::vec2& mouse, const Lines& lines, const Reach& reach) const;
+
+    /// Adds a point with the function's colour there. Returns its index.
+    size_t add(double intensity, double opacity);
+    /// Two points stay. Returns the index of the point that is selected from then on.
+    size_t remove(size_t point);
+    /// A point stays between its neighbours, so that its index stays the same.
+    void move(size_t point, double intensity, double opacity);
+    double held_between_neighbors(size_t point, double intensity) const;
+    /// Part of the function stays within the volume's intensities. Returns how far it went.
+    double shift_all(double by, double lowest, double highest);
+
+private:
+    Points points_;
+};
+
+/// How far all points go for a notch of the wheel, of the intensities shown; slowly, a tenth of it. Whole numbers where
+/// voxels are, and at least one.
+double wheel_shift(double notches, const CurveRange& range, bool is_slow, bool is_whole);
+
+}  // namespace shvr::ui
