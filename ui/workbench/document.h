@@ -111,6 +111,7 @@ private:
              const View::Options& view_options, const std::vector<std::string>& overridden);
     void load_work(Renderer& renderer, std::shared_ptr<Hold> hold);
     void take_kept_settings();
+    void choose_for_volume();
     void name_trace();
     std::optional<Notice> write_session();
     bool edits_are_saved() const;

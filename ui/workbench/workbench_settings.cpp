@@ -67,6 +67,7 @@ std::string special_sentence(const Session& was, const Session& is)
 
 void Workbench::act(const Set& action)
 {
+    if (action.patch.empty()) return log_instead({Set{"{}"}});  // a key for what is so already
     Session after = patched(document_->session, action.patch);
     if (!after.transfer_preset.empty())
         after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
