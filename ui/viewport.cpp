@@ -98,11 +98,12 @@ void Viewport::press(const ButtonEvent& event, double time_s, const Model& model
     const bool is_map = kind_of_pane(model) == Pane::Kind::map, is_slice = kind_of_pane(model) == Pane::Kind::slice;
     const bool turns = model.tool() == Tool::turn, shift = event.mods & GLFW_MOD_SHIFT;
     button_ = event.button;
+    const bool was_here = !was_elsewhere_ && event.at == last_;
     last_ = pressed_ = event.at;
     was_elsewhere_ = false;
     if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
-        // Where the pointer is now: it may have come from elsewhere since the probe followed it last.
-        if (!is_map) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
+        // The pointer may have come here unnoticed since the probe followed it last.
+        if (!is_map && !was_here) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
         actions.emplace_back(Paint{true});
     } else if (event.button == GLFW_MOUSE_BUTTON_RIGHT) {

@@ -195,7 +195,7 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
 double automatic_node_radius(const VolumeInfo& info);
 
 /// Intensities that slices draw black and white where nobody chose them: all but the darkest 0.5 % and the brightest
-/// 0.1 % of the voxels lie between them, to a bin of the histogram. The whole range where there is no histogram.
+/// 0.35 % of the voxels lie between them, to a bin of the histogram. The whole range where there is no histogram.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
 /// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the one

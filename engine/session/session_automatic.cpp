@@ -76,7 +76,7 @@ double automatic_node_radius(const VolumeInfo& info)
 
 ValueRange automatic_contrast(const VolumeStatistics& statistics)
 {
-    constexpr double DARK_SHARE = 0.005, BRIGHT_SHARE = 0.001;
+    constexpr double DARK_SHARE = 0.005, BRIGHT_SHARE = 0.0035;
     const auto [lower, upper] = statistics.range();
     const std::vector<int64_t>& histogram = statistics.histogram;
     if (!(lower < upper) || histogram.size() < 4) return {lower, upper};

@@ -134,6 +134,7 @@ struct PushProbe {  ///< away from the viewer of a pane, in voxels
 };
 struct PlaceProbe {  ///< a stroke that is open goes there with it
     glm::dvec3 voxel{0.0};
+    bool jumps = false;  ///< and paints nothing in between
 };
 /// Limits of the probe's radius in the window, in voxels along x. Sessions and scripts may use other radii.
 inline constexpr double SMALLEST_RADIUS_VOXELS = 0.5, LARGEST_RADIUS_VOXELS = 60.0;

@@ -284,6 +284,7 @@ void fields(Fields& f, PushProbe& a)
 void fields(Fields& f, PlaceProbe& a)
 {
     f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
+    f.flag("jumps", a.jumps, {});
 }
 void fields(Fields& f, ScaleProbe& a)
 {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
@@ -33,12 +32,6 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return std::nullopt;
     return read_text(path, LARGEST_SESSION);
-}
-
-std::pair<double, double> contrast_of(const VolumeStatistics& statistics)
-{
-    const ValueRange contrast = automatic_contrast(statistics);
-    return {contrast.lower, contrast.upper};
 }
 
 void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source, const VolumeStatistics& statistics,
@@ -98,9 +91,6 @@ void Document::choose_thresholds(Session& of) const
     ProbeSettings& probe = of.probe;
     if (!probe.brush.threshold) probe.brush.threshold = dab_of(of, volume(), statistics).threshold;
     if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
-    if (!probe.node_radius_voxels) probe.node_radius_voxels = automatic_node_radius(volume());
-    SliceSettings& slices = of.view.slices;
-    if (!slices.black && !slices.white) std::tie(slices.black, slices.white) = contrast_of(statistics);
 }
 
 void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
@@ -117,6 +107,7 @@ void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
     for (Notice& notice : notices) messages.push_back(std::move(notice.text));
     set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
     take_kept_settings();
+    choose_for_volume(session);
     annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
@@ -131,6 +122,17 @@ void Document::take_kept_settings()
     ProbeSettings& probe = session.probe;
     choose_thresholds(session);
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
+}
+
+/// What neither the file nor the journal says. Later than both, so that it counts as no change of either.
+void Document::choose_for_volume(Session& of) const
+{
+    if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
+    SliceSettings& slices = of.view.slices;
+    if (slices.black || slices.white) return;
+    const ValueRange contrast = automatic_contrast(statistics);
+    slices.black = contrast.lower;
+    slices.white = contrast.upper;
 }
 
 void Document::keep_settings()

@@ -59,8 +59,9 @@ struct Document {
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
     const BrushSettings& brush() const { return session.probe.brush; }
-    /// Thresholds that are not given are chosen for the volume.
+    /// Thresholds that are not given are chosen for the volume; likewise the size of nodes and the slices' contrast.
     void choose_thresholds(Session& of) const;
+    void choose_for_volume(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
     /// A stroke of the brush as it would paint now, without a path; at the probe's position.

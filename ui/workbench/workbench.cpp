@@ -46,9 +46,19 @@ void Workbench::perform(const Action& action)
     if (!document_ && !ui::why_not(model(), action).empty()) fail("Nothing is open");
     if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
     recent_.begin(action);
+    logged_instead_.clear();
     std::visit([&](const auto& each) { act(each); }, action);
     recent_.note_done();
-    if (log_) log_(line_of(action));
+    if (!log_) return;
+    if (logged_instead_.empty()) logged_instead_.push_back(line_of(action));
+    for (const std::string& line : logged_instead_) log_(line);
+}
+
+/// What is seen at a pixel depends on what has been painted and loaded by then; where it was does not.
+void Workbench::log_instead(std::initializer_list<Action> actions)
+{
+    if (!log_) return;
+    for (const Action& action : actions) logged_instead_.push_back(line_of(action));
 }
 
 bool Workbench::apply(const Action& action)

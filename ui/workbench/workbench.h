@@ -247,10 +247,12 @@ private:
     // Annotation
     void trace(const TraceOp& op);
     TraceOp with_radius(TraceOp op) const;
+    void select_segment();
     void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);
     std::string keys_of(const char* shortcut) const;
     void move_probe(const glm::dvec3& point, bool jumps);
     void lift();
+    void log_instead(std::initializer_list<Action> actions);
     void extend_stroke();
     void stroke_ended();
     void show_changes(const Command& command);
@@ -280,6 +282,7 @@ private:
     RecentActions recent_;
     Jobs jobs_;
     Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, reading_turn_, photographing_;
+    std::vector<std::string> logged_instead_;  ///< of the action under way: what replays it whatever is seen by then
     std::optional<Pointer> pointer_;
     std::string clipboard_;
     Reading reading_;

@@ -33,8 +33,9 @@ void Workbench::lift()
 
 void Workbench::act(const ProbeTo& action)
 {
+    const glm::dvec3 point = in_plane_of(document_->touch.probe(), pane(action.pane), action.pixel);
     if (action.jumps) lift();
-    move_probe(in_plane_of(document_->touch.probe(), pane(action.pane), action.pixel), false);
+    move_probe(point, false);
 }
 
 std::optional<glm::dvec3> Workbench::seen_at(const Pane& seen, const glm::dvec2& pixel) const
@@ -78,7 +79,6 @@ void Workbench::act(const ProbeOnto& action)
 
 void Workbench::act(const ProbeAlong& action)
 {
-    if (action.jumps) lift();
     const Pane& seen = pane(action.pane);
     const glm::dvec3 probe = document_->touch.probe(), level = in_plane_of(probe, seen, action.pixel);
     const bool is_stroke = document_->annotator.stroke_is_open() && !action.jumps;
@@ -86,7 +86,9 @@ void Workbench::act(const ProbeAlong& action)
                                                 ? seen_near(seen, action.pixel, depth_of(seen.shot.camera, level),
                                                             document_->probe_radius() + glm::distance(level, probe))
                                                 : seen_at(seen, action.pixel);
+    if (action.jumps) lift();
     move_probe(point.value_or(level), false);
+    if (!document_->touch.servo()) log_instead({PlaceProbe{document_->probe_voxel(), action.jumps}});
 }
 
 void Workbench::act(const PushProbe& action)
@@ -98,6 +100,7 @@ void Workbench::act(const PushProbe& action)
 
 void Workbench::act(const PlaceProbe& action)
 {
+    if (action.jumps) lift();
     move_probe(action.voxel * document_->volume().spacing, true);
 }
 

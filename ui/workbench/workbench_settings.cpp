@@ -118,11 +118,13 @@ std::string special_sentence(const Session& was, const Session& is)
 
 void Workbench::act(const Set& action)
 {
+    if (action.patch.empty()) return log_instead({Set{"{}"}});  // a key for what is so already
     Session after = patched(document_->session, action.patch);
     if (!after.transfer_preset.empty())
         after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
                                                        document_->statistics);
     document_->choose_thresholds(after);
+    document_->choose_for_volume(after);
     const Session before = document_->session;
     take_session(std::move(after));
     if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;

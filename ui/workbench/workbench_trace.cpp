@@ -58,13 +58,14 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
     return what + " has another radius";
 }
 
-/// The neighbours of the selected node, if it has two: then deleting it cuts the trace.
+/// The neighbours of the selected node, if it has two that are not linked: then deleting it cuts the trace.
 std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
 {
     const std::optional<uint32_t> node = trace.selection().node();
     if (!node || trace.internodes_of(*node).size() != 2) return std::nullopt;
     const auto internodes = trace.internodes_of(*node);
-    return std::pair(trace.internode(internodes[0]).other(*node), trace.internode(internodes[1]).other(*node));
+    const std::pair ends(trace.internode(internodes[0]).other(*node), trace.internode(internodes[1]).other(*node));
+    return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
 }  // namespace
@@ -121,8 +122,14 @@ void Workbench::act(const MendCut&)
 {
     if (!document_->is_cut()) fail("the last deletion cut nothing in two; expected two nodes to link again");
     const auto [from, to] = *document_->cut_ends;
+    const TraceSelection before = document_->annotator.document().trace.selection();
     document_->annotator.work().select_trace({{from}, {}});
-    trace(LinkOp{.near = {}, .node = to});
+    try {
+        trace(LinkOp{.near = {}, .node = to});
+    } catch (...) {
+        document_->annotator.work().select_trace(before);
+        throw;
+    }
     document_->cut_ends.reset();
 }
 
@@ -133,6 +140,7 @@ void Workbench::act(const NodeAt& action)
     const glm::dvec3 voxel = *point / document_->volume().spacing;
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
     move_probe(*point, false);
+    log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }
 
 void Workbench::act(const SelectAt& action)
@@ -145,7 +153,7 @@ void Workbench::act(const SelectAt& action)
     if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {
         this->trace(SelectOp{
             .near = {}, .number = hit.node ? hit.node : hit.internode, .is_internode = !hit.node, .within_voxels = {}});
-        if (action.whole_segment) this->trace(SelectSegmentOp{});
+        if (action.whole_segment) select_segment();
         return;
     }
     const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
@@ -156,6 +164,16 @@ void Workbench::act(const SelectAt& action)
     if (group == 0) return;
     if (group == document.brush().group) return say(sentence("Group ", int(group), " is the active group already"));
     act(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
+}
+
+/// A node where segments meet, or that has none, stays selected alone.
+void Workbench::select_segment()
+{
+    try {
+        trace(SelectSegmentOp{});
+    } catch (const Error& error) {
+        say(error.what(), Weight::warning);
+    }
 }
 
 /// By what is drawn of the volume before it: rods of the trace itself hide nothing.

@@ -133,7 +133,11 @@ TEST_CASE_FIXTURE(OnDevice,
     on.perform(MendCut{});
     CHECK(on.trace().internode_between(0, 2).has_value());
     CHECK(on.bench.why_not(MendCut{}) != "");
-    // The end of a line is not cut.
+    // The end of a line is not cut, nor a line whose ends are linked.
+    on.perform(NodeOp{.at = {16.0, 8.0, 30.0}, .radius_voxels = {}, .group = {}});
+    on.perform(LinkOp{.near = {}, .node = 2});
+    on.perform(DeleteOp{});
+    CHECK(on.trace().selection().empty());
     on.perform(SelectOp{.near = {}, .number = 2, .within_voxels = {}});
     on.perform(DeleteOp{});
     CHECK(on.trace().selection().empty());
@@ -252,6 +256,18 @@ TEST_CASE_FIXTURE(OnDevice, "the view turns about what was chosen, which stays w
     before = place(*on.bench.model().picked_pivot);
     on.perform(Orbit{-20.0, 15.0});
     CHECK(glm::distance(place(*on.bench.model().picked_pivot), before) < 1e-6);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a key for what is so already changes nothing, and is no error")
+{
+    Plates on(renderer());
+    std::vector<std::string> log;
+    on.bench.log_to([&](const std::string& line) { log.push_back(line); });
+    const uint64_t messages = on.bench.messages().count();
+    on.perform(shortcut_named("single_view")->action(on.bench.model(), 1.0));
+    CHECK(on.bench.messages().count() == messages);
+    REQUIRE(log.size() == 1);
+    CHECK_NOTHROW(on.perform(read_action(log[0], "log")));
 }
 
 TEST_CASE_FIXTURE(OnDevice, "slices of a scan begin with a contrast in which they are seen")

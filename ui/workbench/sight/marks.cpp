@@ -162,8 +162,9 @@ private:
     void measurement(const glm::dvec3& from_voxel, const glm::dvec3& to_voxel, bool is_open)
     {
         const Measurement ends{from_voxel, to_voxel};
-        const auto from = pixel_of(from_voxel * model_.volume.spacing), to = pixel_of(to_voxel * model_.volume.spacing);
-        if (!from || !to) return;
+        const glm::dvec3 begin = from_voxel * model_.volume.spacing, end_point = to_voxel * model_.volume.spacing;
+        const auto from = pixel_of(begin), to = pixel_of(end_point);
+        if (!from || !to || (is_slice() && !is_near_plane(begin, end_point))) return;
         if (is_open)
             dashed(*from, *to, MEASURED);
         else
@@ -171,6 +172,12 @@ private:
         for (const glm::dvec2& end : {*from, *to}) ring(end, 3.5 * units_, MEASURED);
         label(0.5 * (*from + *to), {0.5, 1.2},
               length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
+    }
+    /// It passes through the plane of the slice, or within a voxel of it.
+    bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
+    {
+        const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
+        return from * to <= 0.0 || std::min(std::abs(from), std::abs(to)) <= voxel_along();
     }
     void measurements()
     {
@@ -220,9 +227,9 @@ private:
         if (bar.pixels < 8.0 * units_) return;
         const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
         const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), tick(0.0, 4.0 * units_);
-        line(begin, end, LIGHT, 2.0);
-        line(begin - tick, begin + tick, LIGHT, 2.0);
-        line(end - tick, end + tick, LIGHT, 2.0);
+        line(begin, end, LIGHT, 3.0);
+        line(begin - tick, begin + tick, LIGHT, 3.0);
+        line(end - tick, end + tick, LIGHT, 3.0);
         label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " in the middle's depth" : ""));
     }
 
