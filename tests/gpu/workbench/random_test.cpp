@@ -34,7 +34,7 @@ public:
             case 7: return set("blend.size", digits(real(0, 1)));
             case 8:
                 return set("probe.brush", std::vector<std::string>{"fill", "flood", "speckle"}[size_t(whole(0, 2))]);
-            case 9: return set("probe.tool", TOOLS[size_t(whole(0, int(std::size(TOOLS)) - 1))].name);
+            case 9: return set("probe.tool", std::string(TOOLS[size_t(whole(0, int(std::size(TOOLS)) - 1))].name));
             case 10: return set("probe.group", sentence(whole(0, 6)));
             case 11: return set("probe.preview", whole(0, 1) == 0 ? "true" : "false");
             case 12: return ScaleProbe{real(0.7, 1.4)};
