@@ -78,12 +78,14 @@ Document::Document(Renderer& renderer, OpenedSession opened, const std::filesyst
     touch.place(session.probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
 }
 
-/// Nobody who opens a scan paints or adds a node by the first drag, whatever was done last; --set may still choose.
+/// Nobody who opens a scan changes it by the first drag, whatever was painted last; and older sessions state the tool
+/// that paints where the right button painted. --set may still choose.
 void Document::begin_with_turning()
 {
     const bool is_chosen =
         std::ranges::any_of(overridden_, [](const std::string& setting) { return setting.starts_with("probe.tool="); });
-    if (!is_chosen) session.probe.tool = Tool::turn;
+    Tool& tool = session.probe.tool;
+    if (!is_chosen && (tool == Tool::paint || tool == Tool::erase)) tool = Tool::turn;
 }
 
 void Document::choose_thresholds(Session& of) const
