@@ -70,7 +70,7 @@ void segment_row(const SegmentRow& row, const Model& model, Actions& actions)
 {
     ImGui::PushID(int(row.internode));
     ImGui::TableNextRow();
-    const std::string name = std::to_string(row.first) + " \u2013 " + std::to_string(row.last) + "##segment";
+    const std::string name = std::to_string(row.first) + " to " + std::to_string(row.last) + "##segment";
     const Actions selects = select_segment(row);
     first_cell(name, is_selected(row, model.trace.selection()), row.group, model, selects, actions);
     const ColorGroup look = group_of(model.session.groups, row.group);
@@ -117,16 +117,16 @@ void take_order()
     trace_lists.is_descending = specs->Specs[0].SortDirection == ImGuiSortDirection_Descending;
 }
 
-void set_up_columns(bool shows_nodes, const std::string& unit)
+void set_up_columns(bool shows_nodes)
 {
     const auto fixed = [](const std::string& name, float width, ImGuiTableColumnFlags flags = 0) {
         ImGui::TableSetupColumn(name.c_str(), ImGuiTableColumnFlags_WidthFixed | flags, width * ImGui::GetFontSize());
     };
     ImGui::TableSetupScrollFreeze(0, 1);
-    ImGui::TableSetupColumn(shows_nodes ? "Node" : "Nodes at ends", ImGuiTableColumnFlags_WidthStretch);
-    fixed("Group", 3.0f);
-    fixed(shows_nodes ? "Internodes" : "Nodes", shows_nodes ? 4.8f : 3.0f);
-    fixed((shows_nodes ? "Radius, " : "Length, ") + unit, 5.5f,
+    ImGui::TableSetupColumn(shows_nodes ? "Node" : "Ends", ImGuiTableColumnFlags_WidthStretch);
+    fixed("Group", 3.8f);
+    fixed(shows_nodes ? "Internodes" : "Nodes", shows_nodes ? 5.2f : 3.8f);
+    fixed(shows_nodes ? "Radius" : "Length", 4.6f,
           ImGuiTableColumnFlags_PreferSortDescending | ImGuiTableColumnFlags_DefaultSort);
     fixed("", 2.0f, ImGuiTableColumnFlags_NoSort);
     ImGui::TableHeadersRow();
@@ -141,7 +141,7 @@ void trace_table(const Model& model, Actions& actions)
     ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg;
     if (!shows_nodes) flags |= ImGuiTableFlags_Sortable;
     if (!ImGui::BeginTable(shows_nodes ? "nodes" : "segments", 5, flags, {0.0f, height})) return;
-    set_up_columns(shows_nodes, spelled(model.volume.unit));
+    set_up_columns(shows_nodes);
     if (!shows_nodes) take_order();
     ImGuiListClipper clipper;
     clipper.Begin(int(rows), line);
@@ -169,6 +169,9 @@ void trace_list_panel(const Model& model, Actions& actions)
     hint("Chains of internodes between two branches or ends.");
     ImGui::SameLine();
     if (ImGui::RadioButton("Nodes", trace_lists.shows_nodes)) trace_lists.shows_nodes = true;
+    ImGui::SameLine();
+    ImGui::TextDisabled("in %s", model.volume.unit == "voxel" ? "voxels" : spelled(model.volume.unit));
+    hint("Unit of lengths and radii.");
     trace_table(model, actions);
 }
 
