@@ -12,8 +12,8 @@
 #include "engine/base/error.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/edit.h"
 #include "ui/workbench/bindings/keymap.h"
+#include "ui/workbench/edit.h"
 #include "ui/workbench/lists/bug_report.h"
 #include "ui/workbench/preferences.h"
 
@@ -289,7 +289,7 @@ void menu_bar(const Model& model, Actions& actions)
     }
     open_dialog(model, actions);
     save_as_dialog(actions);
-    task_dialogs(actions);
+    task_dialogs(model, actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
@@ -309,12 +309,12 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
-    const std::string right = !model.is_open ? std::string()
-                                             : place_of(model.probe_voxel) + "    |    " +
-                                                   (model.is_saved ? "saved" : "not saved") + "    |    " +
-                                                   (!model.view_is_complete ? "refining"
-                                                    : model.view_is_limited ? "coarser than the screen: device budget"
-                                                                            : "sharp");
+    const std::string right = !model.is_open
+                                  ? std::string()
+                                  : place_of(model.probe_voxel) + "    |    " + saved_in_words(model) + "    |    " +
+                                        (!model.view_is_complete ? "refining"
+                                         : model.view_is_limited ? "coarser than the screen: device budget"
+                                                                 : "sharp");
     said(model, right, actions);
     align_right(right);
     ImGui::End();

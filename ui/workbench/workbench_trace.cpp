@@ -27,6 +27,16 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
     return "Trace: " + done->label;
 }
 
+/// Whether the selected node does, though near enough to be allowed.
+bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
+{
+    const std::optional<uint32_t> node = trace.selection().node();
+    if (!node) return false;
+    const glm::dvec3 voxel = trace.node(*node).position / volume.spacing;
+    return glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) ||
+           glm::any(glm::greaterThan(voxel, glm::dvec3(volume.size)));
+}
+
 }  // namespace
 
 void Workbench::trace(const TraceOp& op)
@@ -44,7 +54,11 @@ void Workbench::trace(const TraceOp& op)
     const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
     document_->drags_node = false;
     if (done) show_changes(*done);
-    say(said_of(op, effect.selection.has_value(), done, trace));
+    const std::string said = said_of(op, effect.selection.has_value(), done, trace);
+    const bool places = std::holds_alternative<NodeOp>(op) || std::holds_alternative<MoveOp>(op);
+    if (done && places && lies_outside(trace, document_->volume()))
+        return say(said + "; it lies outside the volume", Weight::warning);
+    say(said);
 }
 
 void Workbench::act(const DragNode& action)

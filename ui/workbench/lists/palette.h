@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/workbench/model.h"
 #include "ui/workbench/bindings/shortcuts.h"
+#include "ui/workbench/model.h"
 
 namespace shvr::ui {
 
