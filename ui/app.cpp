@@ -43,8 +43,9 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
         bench_->log_to([this](const std::string& line) { *log_ << line << std::endl; });
     }
+    // What cannot be opened is said over the start page.
     if (!options.input.empty())
-        bench_->open(options.input, options.settings);
+        bench_->begin_open(options.input, options.settings);
     else
         bench_->say("Open a volume, a session or a project folder, or drop one onto the window");
 }
@@ -128,15 +129,13 @@ bool App::closes()
 {
     if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) window_.close();
     if (!window_.should_close()) return false;
-    if (!bench_->is_open()) return true;
-    try {
-        bench_->save_before_leaving();
-        return true;
-    } catch (const DeviceLost&) {
-        throw;
-    } catch (const std::exception& error) {
-        return !refuses_to_close(error.what());
+    std::string why;
+    switch (bench_->leave(why)) {
+        case Workbench::Leave::now: return true;
+        case Workbench::Leave::later: return false;  // until then all can be used
+        case Workbench::Leave::refused: return !refuses_to_close(why);
     }
+    return false;
 }
 
 /// Paint is never discarded. If the journal has all of it, the window closes when the user asks for it a second time,
@@ -172,6 +171,7 @@ double App::next_reason_to_draw_s() const
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
     if (something_moves()) return 0.0;
+    if (bench_->shows_jobs()) return report_.last_begun_s() + SHARPEN_S;
     const bool sharpens_or_tells =
         bench_->is_open() && (bench_->document().screen.revision() != drawn_revision_ ||
                               bench_->document().touch.servo() || bench_->takes_large_screenshot());

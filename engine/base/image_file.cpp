@@ -8,6 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -115,8 +116,20 @@ bool succeeds(png_structp png, const Call& call)
 class PngStream {
 public:
     using Take = std::function<void(Bytes)>;
-    PngStream(int64_t width, int64_t height, std::string_view name, Take take) : name_(name), take_(std::move(take))
+    PngStream(int64_t width, int64_t height, std::string_view name, Take take, const PictureTexts& texts = {})
+        : name_(name), take_(std::move(take))
     {
+        std::vector<png_text> chunks;
+        for (const auto& [keyword, text] : texts) {
+            if (text.size() > MAX_PICTURE_TEXT)
+                fail(name_, ": its text '", keyword, "' has ", text.size(), " bytes; expected at most ",
+                     MAX_PICTURE_TEXT);
+            png_text& chunk = chunks.emplace_back();
+            chunk.compression = PNG_ITXT_COMPRESSION_zTXt;
+            chunk.key = const_cast<char*>(keyword.c_str());  // libpng copies it
+            chunk.text = const_cast<char*>(text.c_str());
+            chunk.itxt_length = text.size();
+        }
         png_.write = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, note_error, nullptr);
         png_.info = png_.write ? png_create_info_struct(png_.write) : nullptr;
         if (!png_.info) refuse();
@@ -125,6 +138,7 @@ public:
             png_set_IHDR(png_.write, png_.info, png_uint_32(width), png_uint_32(height), 8, PNG_COLOR_TYPE_RGB_ALPHA,
                          PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
             png_set_sRGB(png_.write, png_.info, PNG_sRGB_INTENT_PERCEPTUAL);
+            if (!chunks.empty()) png_set_text(png_.write, png_.info, chunks.data(), int(chunks.size()));
             png_write_info(png_.write, png_.info);
         }));
     }
@@ -184,11 +198,12 @@ private:
 
 class PngWriter final : public ImageWriter {
 public:
-    PngWriter(const std::filesystem::path& path, int64_t width, int64_t height)
+    PngWriter(const std::filesystem::path& path, int64_t width, int64_t height, const PictureTexts& texts = {})
         : width_(width),
           rows_left_(height),
           file_(path),
-          png_(width, height, path.string(), [this](Bytes bytes) { file_.append(bytes); })
+          png_(
+              width, height, path.string(), [this](Bytes bytes) { file_.append(bytes); }, texts)
     {}
     void add_row(const uint8_t* row)
     {
@@ -293,12 +308,84 @@ Image8 read_png(const std::filesystem::path& path)
     return decode_png(read_file(path, LARGEST_PNG_FILE), path.string());
 }
 
-void write_png(const std::filesystem::path& path, const Image8& image)
+namespace {
+
+/// Reads the chunks before the pixels.
+class PngTexts {
+public:
+    PngTexts(std::istream& file, std::string_view name) : name_(name), file_(file)
+    {
+        handles_.read = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, note_error, nullptr);
+        handles_.info = handles_.read ? png_create_info_struct(handles_.read) : nullptr;
+        if (!handles_.info) refuse();
+        png_set_read_fn(handles_.read, this, hand_out);
+        png_set_user_limits(handles_.read, png_uint_32(MAX_IMAGE_SIDE), png_uint_32(MAX_IMAGE_SIDE));
+        png_set_chunk_malloc_max(handles_.read, MAX_PICTURE_TEXT + 4096);
+        // A damaged text is an error, not a text that is left out.
+        png_set_benign_errors(handles_.read, 0);
+        png_set_crc_action(handles_.read, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+        if (!succeeds(handles_.read, [&] { png_read_info(handles_.read, handles_.info); })) refuse();
+    }
+    PngTexts(const PngTexts&) = delete;
+    PngTexts& operator=(const PngTexts&) = delete;
+
+    std::optional<std::string> text(std::string_view keyword) const
+    {
+        png_textp texts = nullptr;
+        const int count = png_get_text(handles_.read, handles_.info, &texts, nullptr);
+        for (int i = 0; i < count; ++i) {
+            const png_text& each = texts[i];
+            if (keyword != each.key) continue;
+            return std::string(each.text, each.compression > 0 ? each.itxt_length : each.text_length);
+        }
+        return std::nullopt;
+    }
+
+private:
+    static void hand_out(png_structp png, png_bytep data, size_t bytes)
+    {
+        auto* const texts = static_cast<PngTexts*>(png_get_io_ptr(png));
+        if (!texts->file_.read(reinterpret_cast<char*>(data), std::streamsize(bytes)))
+            png_error(png, "it ends in the midst of a chunk");
+    }
+    [[noreturn]] static void note_error(png_structp png, png_const_charp message)
+    {
+        auto* const texts = static_cast<PngTexts*>(png_get_error_ptr(png));
+        std::strncpy(texts->message_.data(), message, texts->message_.size() - 1);
+        png_longjmp(png, 1);
+    }
+    [[noreturn]] void refuse() const { fail(name_, ": its texts cannot be read: ", message_.data()); }
+
+    std::string name_;
+    std::istream& file_;
+    std::array<char, 128> message_{"memory is exhausted"};
+    struct Handles {
+        png_structp read = nullptr;
+        png_infop info = nullptr;
+        ~Handles() { png_destroy_read_struct(&read, &info, nullptr); }
+    } handles_;
+};
+
+}  // namespace
+
+std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword)
+{
+    if (!is_file(path)) return std::nullopt;
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, SIGNATURE_BYTES> signature{};
+    const bool is_png = file.read(signature.data(), signature.size()) &&
+                        png_sig_cmp(reinterpret_cast<png_const_bytep>(signature.data()), 0, signature.size()) == 0;
+    if (!is_png) return std::nullopt;
+    file.seekg(0);
+    return PngTexts(file, path.string()).text(keyword);
+}
+
+void write_png(const std::filesystem::path& path, const Image8& image, const PictureTexts& texts)
 {
     check_size(image.width, image.height, path.string());
     const size_t row_bytes = 4 * size_t(image.width), bytes = row_bytes * size_t(image.height);
     SHVR_CHECK(image.rgba.size() == bytes, image.rgba.size(), " != ", bytes);
-    PngWriter writer(path, image.width, image.height);
+    PngWriter writer(path, image.width, image.height, texts);
     for (size_t at = 0; at < bytes; at += row_bytes) writer.add_row(&image.rgba[at]);
     writer.commit();
 }
@@ -311,14 +398,15 @@ void write_pfm(const std::filesystem::path& path, const ImageF& image)
     writer.commit();
 }
 
-std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height)
+std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
+                                          const PictureTexts& texts)
 {
     const auto is_side = [](int64_t pixels) { return pixels >= 1 && pixels <= MAX_IMAGE_SIDE; };
     if (!is_side(width) || !is_side(height))
         fail(path.string(), ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_SIDE,
              " along each side");
     if (lower_case(path.extension().string()) == ".pfm") return std::make_unique<PfmWriter>(path, width, height);
-    return std::make_unique<PngWriter>(path, width, height);
+    return std::make_unique<PngWriter>(path, width, height, texts);
 }
 
 }  // namespace shvr

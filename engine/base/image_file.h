@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/base/image.h"
@@ -23,8 +26,15 @@ inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels
 /// off near black, 2 in the middle).
 Image8 read_png(const std::filesystem::path& path);
+/// Texts in a picture file, each by its keyword (1 to 79 Latin letters and single spaces), in UTF-8; written compressed
+/// (iTXt) before the pixels. Of at most MAX_PICTURE_TEXT bytes each.
+using PictureTexts = std::vector<std::pair<std::string, std::string>>;
+inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
+/// The first text of that keyword (iTXt or zTXt or tEXt) that lies before the pixels; nothing where there is none, or
+/// the file is no PNG file. Reads no pixels. Fails where the text is larger than MAX_PICTURE_TEXT, or damaged.
+std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword);
 /// Replaces an existing file atomically; leaves it untouched on failure (atomic_file.h).
-void write_png(const std::filesystem::path& path, const Image8& image);
+void write_png(const std::filesystem::path& path, const Image8& image, const PictureTexts& texts = {});
 
 /// A picture file that is written row by row, in memory of a few rows. It appears under its name with `commit`;
 /// without it, the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
@@ -42,8 +52,10 @@ public:
 protected:
     ImageWriter() = default;
 };
-/// As `write_pfm` where the name ends in .pfm, as `write_png` otherwise; both as `to_image8` for light.
-std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height);
+/// As `write_pfm` where the name ends in .pfm, and then without texts, as `write_png` otherwise; both as `to_image8`
+/// for light.
+std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
+                                          const PictureTexts& texts = {});
 
 /// Portable float map, "PF": the picture's RGB unchanged, in linear light premultiplied by alpha; alpha is left out.
 /// Replaces an existing file like `write_png`.

@@ -49,6 +49,14 @@ public:
     const VolumeInfo& info() const { return info_; }
     const IntensityWindow& window() const { return window_; }
 
+    // ---- Loading in slices, where that was asked for: until all is loaded nothing else may be called
+
+    /// Takes what has been read, for about `seconds`; never waits for a disk. True: all is loaded. Fails as the
+    /// constructor of one that loads at once.
+    virtual bool load_on(double seconds) = 0;
+    /// The share that is loaded.
+    virtual double loaded() const = 0;
+
     // ---- The view
 
     /// Sets the view. Costs nothing if it is unchanged. Returns finest_level().

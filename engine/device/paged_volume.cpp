@@ -79,7 +79,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level now, so that there is something to show at once, and requests the next ones.
+/// Loads the coarsest level now, or begins to, so that there is something to show at once, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, slots_.count());
@@ -94,10 +94,32 @@ void PagedVolume::pin_coarse_levels()
                     coarse_.push_back({level, {x, y, z}});
                 }
         if (level < levels_ - 1) continue;
+        if (options_.in_slices) {
+            coarsest_ = coarsest_left_ = coarse_.size();
+            store_.want(coarse_);
+            continue;
+        }
         for (const BrickKey& key : coarse_)
             if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
         atlas_.flush();
     }
+}
+
+bool PagedVolume::load_on(double /*seconds*/)
+{
+    if (coarsest_left_ == 0) return true;
+    const std::vector<BrickStore::Finished> finished = store_.take(BrickAtlas::BATCH);
+    for (const BrickStore::Finished& brick : finished) {
+        if (brick.texels) place(brick.key, *brick.texels, true);
+        --coarsest_left_;
+    }
+    if (!finished.empty()) atlas_.flush();
+    return coarsest_left_ == 0;
+}
+
+double PagedVolume::loaded() const
+{
+    return coarsest_ == 0 ? 1.0 : 1.0 - double(coarsest_left_) / double(coarsest_);
 }
 
 // ---- The view -------------------------------------------------------------------------------------------------------

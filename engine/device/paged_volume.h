@@ -33,10 +33,14 @@ public:
         int threads = 1;            ///< loader threads
         uint64_t host_bytes = 0;    ///< of bricks kept on the host
         uint64_t device_bytes = 0;  ///< of the atlas and its tables
+        bool in_slices = false;     ///< the coarsest level is not read at once, but taken by `load_on`
     };
     /// Reads the coarsest level. Fails where the budget holds too few bricks to work with.
     PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                 const IntensityWindow& window, const Options& options);
+
+    bool load_on(double seconds) override;
+    double loaded() const override;
 
     /// Fails where so much device memory holds too few bricks of such a volume, its coarsest level among them.
     static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes);
@@ -136,7 +140,8 @@ private:
     std::vector<int> around_reach_;
     uint64_t around_revision_ = 0;  ///< the value of reached_revision_ that around_ was made for
     uint64_t places_revision_ = 1, reached_revision_ = 1;
-    std::vector<BrickKey> coarse_;  ///< bricks that are always on the device
+    std::vector<BrickKey> coarse_;             ///< bricks that are always on the device
+    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< bricks that `load_on` takes, and those still to come
     std::vector<BrickKey> leap_jobs_;
 
     BrickStore store_;  ///< last, so that its loaders stop before what they read is destroyed

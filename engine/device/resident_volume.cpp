@@ -2,8 +2,14 @@
 #include "engine/volume/grid.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstring>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 namespace shvr {
@@ -67,6 +73,80 @@ private:
 
 }  // namespace
 
+/// Encodes bricks in the order of their index, beside the thread that uploads them: batches go through a short queue.
+class ResidentVolume::Builder {
+public:
+    struct Brick {
+        glm::uvec3 place{0};
+        BrickTexels texels;
+    };
+    using Batch = std::vector<Brick>;
+
+    Builder(std::shared_ptr<const VolumeSource> source, const IntensityWindow& window, int threads)
+        : source_(std::move(source))
+    {
+        thread_ = std::jthread([this, window, threads] { build(window, threads); });
+    }
+    ~Builder()
+    {
+        {
+            const std::scoped_lock lock(mutex_);
+            is_stopped_ = true;
+        }
+        changed_.notify_all();
+    }
+    Builder(const Builder&) = delete;
+
+    /// The next batch; empty where none is ready. Throws what reading threw.
+    Batch take()
+    {
+        const std::scoped_lock lock(mutex_);
+        if (ready_.empty()) {
+            if (failure_) std::rethrow_exception(failure_);
+            return {};
+        }
+        Batch batch = std::move(ready_.front());
+        ready_.pop_front();
+        changed_.notify_all();
+        return batch;
+    }
+
+private:
+    static constexpr size_t MAX_READY = 4;  // batches: 20 MiB
+    struct Abandoned {};
+
+    void build(const IntensityWindow& window, int threads)
+    {
+        Batch batch;
+        try {
+            build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
+                batch.push_back({glm::uvec3(brick), texels});
+                if (batch.size() == BRICKS_IN_UPLOAD) hand_on(std::exchange(batch, {}));
+            });
+            if (!batch.empty()) hand_on(std::move(batch));
+        } catch (const Abandoned&) {
+        } catch (...) {
+            const std::scoped_lock lock(mutex_);
+            failure_ = std::current_exception();
+        }
+    }
+    void hand_on(Batch batch)
+    {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return is_stopped_ || ready_.size() < MAX_READY; });
+        if (is_stopped_) throw Abandoned();
+        ready_.push_back(std::move(batch));
+    }
+
+    std::shared_ptr<const VolumeSource> source_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Batch> ready_;
+    std::exception_ptr failure_;
+    bool is_stopped_ = false;
+    std::jthread thread_;  ///< last: it ends before what it uses
+};
+
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                                const IntensityWindow& window, bool filtered, int threads, const Progress& progress)
     : DeviceVolume(source->info(), window),
@@ -76,43 +156,99 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
       filtered_(filtered),
       brick_counts_(brick_counts(info().size))
 {
+    create_images();
+    const uint64_t bricks = brick_count();
+    Uploader uploader(executor, memory, bricks, filtered ? 1 : 2);
+    build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
+        slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
+        uploader.add(glm::uvec3(brick), slots_.back(), texels);
+        ranges_.push_back(texels.range);
+        if (!uploader.full()) return;
+        uploader.flush(atlas_, cell_ranges_);
+        tell(progress, double(slots_.size()) / double(bricks));
+    });
+    uploader.flush(atlas_, cell_ranges_);
+    upload_page_table();
+}
+
+ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
+                               const IntensityWindow& window, bool filtered, int threads, InSlices)
+    : DeviceVolume(source->info(), window),
+      executor_(executor),
+      memory_(memory),
+      source_(std::move(source)),
+      filtered_(filtered),
+      brick_counts_(brick_counts(info().size))
+{
+    create_images();
+    builder_ = std::make_unique<Builder>(source_, window, threads);
+}
+
+ResidentVolume::~ResidentVolume() = default;
+
+void ResidentVolume::create_images()
+{
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
-    const gpu::DeviceTraits& traits = memory.device().traits();
+    const gpu::DeviceTraits& traits = memory_.device().traits();
     const uint64_t bricks = brick_count();
     // Slot 0 stays unused: in the page table it stands for a missing brick.
     atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
     const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
-    const uint32_t codes_per_texel = filtered ? 1 : 2;
+    const uint32_t codes_per_texel = filtered_ ? 1 : 2;
     const auto create = [&](const char* name, const ResourceDesc& desc) {
-        return memory.create(name, desc, gpu::Placement::device, "the volume");
+        return memory_.create(name, desc, gpu::Placement::device, "the volume");
     };
-    atlas_ = create("atlas", image_desc(filtered ? Format::r16_unorm : Format::r32_uint,
+    atlas_ = create("atlas", image_desc(filtered_ ? Format::r16_unorm : Format::r32_uint,
                                         codes / glm::uvec3(codes_per_texel, 1, 1)));
     page_table_ = create("page table", buffer_desc(bricks * sizeof(uint32_t)));
     cell_ranges_ = create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
     leap_ = create("leap grid", image_desc(Format::r32_uint, cell_counts_));
     for (gpu::Storage& scratch : leap_scratch_)
         scratch = create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
+}
 
-    Uploader uploader(executor, memory, bricks, codes_per_texel);
-    std::vector<uint32_t> slots;  // bricks arrive in the order of their index
-    build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
-        slots.push_back(slot_at(uint32_t(slots.size()) + 1, atlas_slots_));
-        uploader.add(glm::uvec3(brick), slots.back(), texels);
-        ranges_.push_back(texels.range);
-        if (!uploader.full()) return;
-        uploader.flush(atlas_, cell_ranges_);
-        tell(progress, double(slots.size()) / double(bricks));
-    });
-    uploader.flush(atlas_, cell_ranges_);
-
-    gpu::Storage staging = memory.create("staging", page_table_.desc(), gpu::Placement::upload);
-    std::memcpy(staging.mapped().data(), slots.data(), staging.mapped().size());
+void ResidentVolume::upload_page_table()
+{
+    gpu::Storage staging = memory_.create("staging", page_table_.desc(), gpu::Placement::upload);
+    std::memcpy(staging.mapped().data(), slots_.data(), staging.mapped().size());
+    slots_ = {};
     FrameGraph graph;
     static_cast<void>(graph.copy(graph.import("staging", staging.import()),
                                  graph.import("page table", page_table_.import()), {{0, 0, page_table_.desc().bytes}},
                                  "upload page table"));
-    executor.run(graph, {.timestamps = false});
+    executor_.run(graph, {.timestamps = false});
+}
+
+/// A batch is one upload.
+bool ResidentVolume::load_on(double seconds)
+{
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                     std::chrono::duration<double>(std::max(seconds, 0.0)));
+    std::optional<Uploader> uploader;
+    while (builder_) {
+        const Builder::Batch batch = builder_->take();
+        if (batch.empty()) return false;
+        if (!uploader) uploader.emplace(executor_, memory_, brick_count(), filtered_ ? 1 : 2);
+        for (const Builder::Brick& brick : batch) {
+            slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
+            uploader->add(brick.place, slots_.back(), brick.texels);
+            ranges_.push_back(brick.texels.range);
+        }
+        uploader->flush(atlas_, cell_ranges_);
+        if (slots_.size() == brick_count()) {
+            upload_page_table();
+            builder_.reset();
+        } else if (Clock::now() >= end) {
+            return false;
+        }
+    }
+    return true;
+}
+
+double ResidentVolume::loaded() const
+{
+    return builder_ ? double(slots_.size()) / double(brick_count()) : 1.0;
 }
 
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info)

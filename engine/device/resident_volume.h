@@ -15,6 +15,13 @@ public:
     /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, bool filtered, int threads, const Progress& progress = {});
+    /// Begins to, for `load_on`: bricks are read and encoded on threads of their own.
+    struct InSlices {};
+    ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
+                   const IntensityWindow& window, bool filtered, int threads, InSlices);
+    ~ResidentVolume() override;
+    bool load_on(double seconds) override;
+    double loaded() const override;
 
     /// Device memory that such a volume takes, cells and leap grid included.
     static uint64_t bytes_for(const VolumeInfo& info);
@@ -63,6 +70,9 @@ public:
     std::optional<Counts> counts() const override { return std::nullopt; }
 
 private:
+    class Builder;
+    void create_images();
+    void upload_page_table();
     struct Renewal {
         gpu::Storage staging;
         gpu::Submission copy;
@@ -81,7 +91,9 @@ private:
     uint64_t places_revision_ = 1;
     Visibility visibility_;
     EmptySpace empty_space_;
-    std::vector<Renewal> renewals_;  ///< the device may still be copying from these
+    std::vector<Renewal> renewals_;     ///< the device may still be copying from these
+    std::vector<uint32_t> slots_;       ///< of the bricks that are loaded, until all are
+    std::unique_ptr<Builder> builder_;  ///< while it is loaded in slices
 };
 
 }  // namespace shvr

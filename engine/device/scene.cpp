@@ -132,7 +132,8 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       surfaces_(memory),
       tables_(memory)
 {
-    load(0);
+    load(options_.reserved_bytes);
+    options_.in_slices = false;  // where it is loaded once more, for want of room, that is done at once
 }
 
 /// `reserved_bytes`: of device memory, for what is shown beside the volume.
@@ -145,15 +146,20 @@ void Scene::load(uint64_t reserved_bytes)
     mask_.emplace(executor_, memory_, is_paged);
     if (!is_paged) {
         offsets_ = std::make_shared<OffsetSource>(source_);
-        volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
-                                                   options_.progress);
+        if (options_.in_slices)
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+                                                       ResidentVolume::InSlices{});
+        else
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+                                                       options_.progress);
         return;
     }
     const PagedVolume::Options paged{
         .filtered = filtered,
         .threads = options_.threads,
         .host_bytes = options_.host_bytes / HOST_SHARES,
-        .device_bytes = atlas_bytes(memory_, source_->info(), options_.with_occlusion, reserved_bytes)};
+        .device_bytes = atlas_bytes(memory_, source_->info(), options_.with_occlusion, reserved_bytes),
+        .in_slices = options_.in_slices};
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
     volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
@@ -176,6 +182,23 @@ void Scene::make_room(uint64_t bytes)
         load(0);  // the scene stays, without what it has no room for
         throw;
     }
+}
+
+uint64_t Scene::bytes_to_show(const Document& document)
+{
+    const size_t painted = document.mask.painted_bricks().size();
+    return (painted == 0 ? 0 : DeviceMask::bytes_for(painted)) + trace_bytes(document.trace);
+}
+
+uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
+{
+    return std::min(MAX_ATLAS_BYTES, device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS));
+}
+
+bool Scene::pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
+{
+    if (options.paging != Paging::automatic) return options.paging == Paging::always;
+    return source.levels() > 1 || ResidentVolume::bytes_for(source.info()) > memory.device_budget();
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
@@ -205,7 +228,7 @@ void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const O
 void Scene::show(const Document& document)
 {
     const std::vector<int64_t> painted = document.mask.painted_bricks();
-    const uint64_t bytes = (painted.empty() ? 0 : DeviceMask::bytes_for(painted.size())) + trace_bytes(document.trace);
+    const uint64_t bytes = bytes_to_show(document);
     if (bytes > 0) make_room(bytes);
     if (!painted.empty()) update_mask(document.mask, painted);
     std::vector<VoxelBox> raised;

@@ -33,13 +33,24 @@ public:
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
-            0;                ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
-        Progress progress{};  ///< of loading, now and where show() loads again
+            0;                   ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
+        Progress progress{};     ///< of loading, now and where show() loads again
+        bool in_slices = false;  ///< the constructor only begins: nothing but load_on() may be called until it is done
+        uint64_t reserved_bytes = 0;  ///< of device memory, for what will be shown beside the volume (bytes_to_show)
     };
     /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails if the source
     /// cannot be read, the budget is too small or the device cannot do what `options` ask for.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
+    /// Loads on, for about `seconds` and without waiting for a disk. True: all is loaded.
+    bool load_on(double seconds) { return volume_->load_on(seconds); }
+    double loaded() const { return volume_->loaded(); }
+    /// Device memory that showing a document takes, an upper bound.
+    static uint64_t bytes_to_show(const Document& document);
+    /// The most that the atlas of paged bricks takes of a budget.
+    static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
+    /// Whether such a scene would be paged, even if nothing else were on the device.
+    static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be resident and fits beside everything on the device now. Fails where the device
     /// cannot do what `options` ask for.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);

@@ -93,7 +93,9 @@ private:
 Jobs::Jobs() : Jobs(Options{}) {}
 
 Jobs::Jobs(Options options)
-    : wake_(std::move(options.wake)), seconds_(options.seconds ? std::move(options.seconds) : steady_seconds)
+    : wake_(std::move(options.wake)),
+      seconds_(options.seconds ? std::move(options.seconds) : steady_seconds),
+      next_(options.first)
 {}
 
 Jobs::~Jobs()

@@ -30,7 +30,7 @@ namespace shvr {
 
 class Jobs {
 public:
-    using Number = uint64_t;  ///< from 1 on, in the order of `start`
+    using Number = uint64_t;  ///< ascending, in the order of `start`
     using Completion = std::function<void()>;
     /// Runs on the worker, tells the reporter often, and so throws `Stopped` once it is cancelled. The completion may
     /// be empty.
@@ -39,6 +39,7 @@ public:
     struct Options {
         std::function<void()> wake{};       ///< called on the worker when a job has ended: to wake a loop that sleeps
         std::function<double()> seconds{};  ///< since any moment, from any thread; empty: a steady clock
+        Number first = 1;                   ///< so that numbers of several workers differ
     };
     Jobs();
     explicit Jobs(Options options);

@@ -65,12 +65,14 @@ WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std:
 }
 
 Annotator::Annotator(Renderer& renderer)
-    : renderer_(renderer), work_(renderer.volume().info().size, renderer.volume().info().type)
+    : Annotator(renderer, std::make_unique<Work>(renderer.volume().info().size, renderer.volume().info().type))
 {}
+
+Annotator::Annotator(Renderer& renderer, std::unique_ptr<Work> work) : renderer_(renderer), work_(std::move(work)) {}
 
 std::vector<Notice> Annotator::open(const WorkFiles& files, const Work::Opening& opening)
 {
-    std::vector<Notice> notices = work_.open(files, opening);
+    std::vector<Notice> notices = work_->open(files, opening);
     renderer_.scene().show(document());
     ++revision_;
     return notices;
@@ -79,7 +81,7 @@ std::vector<Notice> Annotator::open(const WorkFiles& files, const Work::Opening&
 std::vector<Notice> Annotator::choose(Belief belief)
 {
     SHVR_CHECK(!stroke_);
-    Work::Choice choice = work_.choose(belief);
+    Work::Choice choice = work_->choose(belief);
     if (choice.command) show(*choice.command);
     return std::move(choice.notices);
 }
@@ -173,7 +175,7 @@ int64_t Annotator::paint(const PaintOp& op)
     Records records = records_of(op, answered);
     StrokeTally tally(op);
     tally.add(document().mask, answered.selection, records.groups, records.offsets);
-    const Command* const command = work_.perform({label_of(op), changes_of(std::move(records))});
+    const Command* const command = work_->perform({label_of(op), changes_of(std::move(records))});
     if (command) show(touched_by(document(), command->changes));
     last_stroke_ = tally.result();
     return last_stroke_.voxels();
@@ -254,9 +256,9 @@ std::optional<VoxelBox> Annotator::paint_answer()
     }
     const Touched touched = touched_by(document(), changes);
     if (std::exchange(stroke.is_recorded, true))
-        work_.extend(std::move(changes));
+        work_->extend(std::move(changes));
     else
-        work_.perform({label_of(stroke.brush), std::move(changes)});
+        work_->perform({label_of(stroke.brush), std::move(changes)});
     stroke.result = stroke.tally.result();
     VoxelBox box = answers.front().region.box;
     for (const RegionAnswer& answer : answers) box = united(box, answer.region.box);
@@ -275,8 +277,13 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
 
 const Command* Annotator::edit_trace(std::string label, std::vector<TraceChange> changes)
 {
+    return perform(std::move(label), as_changes(std::move(changes)));
+}
+
+const Command* Annotator::perform(std::string label, std::vector<Change> changes)
+{
     SHVR_CHECK(!stroke_);
-    const Command* command = work_.perform({std::move(label), as_changes(std::move(changes))});
+    const Command* command = work_->perform({std::move(label), std::move(changes)});
     if (command) show(*command);
     return command;
 }
@@ -284,26 +291,26 @@ const Command* Annotator::edit_trace(std::string label, std::vector<TraceChange>
 const Command* Annotator::change_settings(std::string label, const SettingValues& values)
 {
     SHVR_CHECK(!stroke_);
-    return work_.change_settings(std::move(label), values);
+    return work_->change_settings(std::move(label), values);
 }
 
 const Command* Annotator::undo()
 {
-    const Command* command = stroke_ ? nullptr : work_.undo();
+    const Command* command = stroke_ ? nullptr : work_->undo();
     if (command) show(*command);
     return command;
 }
 
 const Command* Annotator::redo()
 {
-    const Command* command = stroke_ ? nullptr : work_.redo();
+    const Command* command = stroke_ ? nullptr : work_->redo();
     if (command) show(*command);
     return command;
 }
 
 const Command* Annotator::revert()
 {
-    const Command* command = stroke_ ? nullptr : work_.revert();
+    const Command* command = stroke_ ? nullptr : work_->revert();
     if (command) show(*command);
     return command;
 }

@@ -9,6 +9,7 @@
 // A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
 // answers, as one command however many answers that takes. One thread, the renderer's.
 
+#include <memory>
 #include <optional>
 
 #include "engine/annotation/stroke_result.h"
@@ -35,13 +36,15 @@ class Annotator {
 public:
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
+    /// Goes on with work that is open, perhaps on another thread until now. The caller lets the scene show it.
+    Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. Use the functions below to change annotations, so that the
     /// device shows the change.
-    Work& work() { return work_; }
-    const Work& work() const { return work_; }
-    const Document& document() const { return work_.document(); }
-    const History& history() const { return work_.history(); }
+    Work& work() { return *work_; }
+    const Work& work() const { return *work_; }
+    const Document& document() const { return work_->document(); }
+    const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }
     /// Counts the changes of groups and offsets.
     uint64_t revision() const { return revision_; }
@@ -86,6 +89,9 @@ public:
     /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
     /// until the history changes; null where `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
+
+    /// Applies changes that fit as one command; not while a stroke is running. Null where there are none.
+    const Command* perform(std::string label, std::vector<Change> changes);
 
     /// As Work::change_settings; not while a stroke is running. The session is the caller's.
     const Command* change_settings(std::string label, const SettingValues& values);
@@ -133,7 +139,7 @@ private:
     std::optional<Stroke> stroke_;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;
-    Work work_;
+    std::unique_ptr<Work> work_;
 };
 
 }  // namespace shvr

@@ -6,8 +6,8 @@
 namespace shvr {
 
 PictureFile::PictureFile(const std::filesystem::path& path, Renderer& renderer, const Session& session,
-                         const Camera& camera, const RenderOptions& options)
-    : writer_(image_writer(path, session.render.size.x, session.render.size.y)),
+                         const Camera& camera, const RenderOptions& options, const PictureTexts& texts)
+    : writer_(image_writer(path, session.render.size.x, session.render.size.y, texts)),
       job_(renderer, session, camera, options, [this](ImageF rows) { write(std::move(rows)); })
 {}
 

@@ -14,9 +14,9 @@ namespace shvr {
 
 class PictureFile {
 public:
-    /// `path`: .png, or .pfm for linear light. Fails where it cannot be written.
+    /// `path`: .png, or .pfm for linear light. `texts`: kept in a .png file. Fails where it cannot be written.
     PictureFile(const std::filesystem::path& path, Renderer& renderer, const Session& session, const Camera& camera,
-                const RenderOptions& options);
+                const RenderOptions& options, const PictureTexts& texts = {});
 
     bool is_drawn() const { return job_.is_done(); }
     /// The other thread is busy: a step that completes the next band would wait for it, and commit() would.

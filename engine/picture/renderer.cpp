@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/picture/picture_job.h"
+#include "engine/volume/pyramid_source.h"
 
 namespace shvr {
 
@@ -57,6 +58,34 @@ void Renderer::load(std::shared_ptr<const VolumeSource> source, const VolumeStat
     options.progress = progress;
     if (!Scene::fits_now(memory(), *source, options)) scene_.reset();
     scene_ = std::make_unique<Scene>(executor(), memory(), std::move(source), statistics, options);
+}
+
+std::unique_ptr<Scene> Renderer::begin_loading(std::shared_ptr<const VolumeSource> source,
+                                               const VolumeStatistics& statistics, const RenderSettings& settings,
+                                               bool with_occlusion, const Document& document)
+{
+    Scene::Options options = scene_options(settings, with_occlusion);
+    options.in_slices = true;
+    options.reserved_bytes = Scene::bytes_to_show(document);
+    return std::make_unique<Scene>(on_device_->executor, on_device_->memory, std::move(source), statistics, options);
+}
+
+bool Renderer::fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion)
+{
+    return Scene::fits_now(on_device_->memory, source, scene_options(settings, with_occlusion));
+}
+
+std::shared_ptr<const VolumeSource> Renderer::with_levels(std::shared_ptr<const VolumeSource> source,
+                                                          const RenderSettings& settings, bool with_occlusion,
+                                                          const Progress& progress) const
+{
+    if (!Scene::pages_alone(on_device_->memory, *source, scene_options(settings, with_occlusion))) return source;
+    return shvr::with_levels(std::move(source), host_budget_, progress);
+}
+
+SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const
+{
+    return estimate_scene(source, settings.paging, with_occlusion, on_device_->memory.device_budget(), host_budget_);
 }
 
 Scene& Renderer::scene() const

@@ -6,8 +6,10 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "engine/base/image.h"
+#include "engine/device/scene_estimate.h"
 #include "engine/picture/frame.h"
 
 namespace shvr {
@@ -65,6 +67,21 @@ public:
     /// in memory together; otherwise it was destroyed first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
+    /// The same in slices, for a loop that goes on meanwhile: begins with a scene beside the present one, where
+    /// fits_beside() holds, or after take_scene(); once its load_on() is done it is shown. `document`: what it will
+    /// show. A source should have its levels (with_levels), or they are made here.
+    std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
+                                         const RenderSettings& settings, bool with_occlusion, const Document& document);
+    bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
+    /// The source, with coarser levels where it would be paged and has too few: reads it once. Any thread.
+    std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source,
+                                                    const RenderSettings& settings, bool with_occlusion,
+                                                    const Progress& progress = {}) const;
+    /// What loading it would take, with nothing else loaded. Reads no voxels. Any thread.
+    SceneEstimate estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const;
+    /// Takes the scene away, or puts one in its place, and returns the one there was; null: none.
+    std::unique_ptr<Scene> take_scene() { return std::move(scene_); }
+    std::unique_ptr<Scene> show(std::unique_ptr<Scene> scene) { return std::exchange(scene_, std::move(scene)); }
     /// Fails where the sizes alone tell that load() would; reads no voxels.
     void check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
     bool has_scene() const { return scene_ != nullptr; }

@@ -11,6 +11,7 @@
 #include "engine/look/session_color.h"
 #include "engine/projects/import_files.h"
 #include "engine/session/label_looks.h"
+#include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/transfer_presets.h"
 #include "engine/volume/content_hash.h"
@@ -101,6 +102,16 @@ std::unique_ptr<VolumeSource> open_source(const Session& session)
 
 namespace {
 
+void expect_volume_of_picture(const fs::path& picture, const Session& session)
+{
+    std::error_code ignored;
+    if (session.procedural || fs::exists(session.volume_path, ignored) || leads_into_archive(session.volume_path))
+        return;
+    fail(picture.string(), ": is a picture of ", session.volume_path.string(),
+         ", which is not there; expected it where it was, as seen from the picture: put both back, or say where it is "
+         "with --set volume.path=...");
+}
+
 std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
                                                            const std::vector<std::string>& settings)
 {
@@ -108,7 +119,10 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     const fs::path file = session_file.empty() ? path : session_file;
     UnmeasuredSession opened;
     std::error_code ignored;
-    JsonDocument document = session_file.empty() ? document_for_volume(path)
+    const std::optional<PictureSession> picture =
+        session_file.empty() ? session_in_picture(path) : std::optional<PictureSession>();
+    JsonDocument document = picture                ? session_document(picture->text, path.string())
+                            : session_file.empty() ? document_for_volume(path)
                             : fs::exists(fs::symlink_status(file, ignored))
                                 ? session_document(read_text(file, LARGEST_SESSION_FILE), file.string())
                                 : document_for_project(file, opened.losses);
@@ -116,8 +130,13 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     Session& session = opened.session;
     session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
+    if (picture) expect_volume_of_picture(path, session);
+    if (picture && !picture->project.empty()) {
+        opened.pictured = picture->project;
+        session.journal_path = journal_beside(picture->project);
+    }
     opened.source = open_source(session);
-    if (session_file.empty()) {
+    if (session_file.empty() && !picture) {
         if (std::string sentence = archived_project(path); !sentence.empty()) opened.losses.push_back(sentence);
     }
     // A project with a valid record already has its statistics.
@@ -139,7 +158,8 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
 {
     auto [document, unmeasured] = open_unmeasured(path, settings);
     if (options.before_reading) options.before_reading(unmeasured.session, *unmeasured.source);
-    OpenedSession opened{std::move(unmeasured.session), std::move(unmeasured.source), {}, {}, unmeasured.losses};
+    OpenedSession opened{
+        std::move(unmeasured.session), std::move(unmeasured.source), {}, {}, unmeasured.losses, unmeasured.pictured};
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed, options.measure);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();

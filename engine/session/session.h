@@ -140,13 +140,15 @@ struct Session {
 /// it: its path, and a transfer function from its statistics, which `warnings` reports).
 /// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
 /// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
-/// automatic one as a volume file. Session files hold at most 16 MiB.
+/// automatic one as a volume file. Session files hold at most 16 MiB. A picture that this program made holds the
+/// session it was made of (picture_session.h).
 struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
     std::vector<std::string> losses;    ///< what is not there although it was saved
+    std::filesystem::path pictured{};   ///< of a picture: the session or project it was made of; empty: no picture
 };
 struct OpeningOptions {
     MeasureOptions measure{};
@@ -161,6 +163,7 @@ struct UnmeasuredSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     std::vector<std::string> losses;  ///< as in OpenedSession
+    std::filesystem::path pictured{};
 };
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});

@@ -159,6 +159,12 @@ int planned_levels(const VolumeSource& source, uint64_t host_budget_bytes)
     return levels == 0 ? source.levels() : levels;
 }
 
+uint64_t bytes_of_levels(const VolumeSource& source)
+{
+    const Plan plan = plan_of(source);
+    return plan.levels == 0 ? 0 : plan.bytes;
+}
+
 std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
                                                 const Progress& progress)
 {

@@ -19,4 +19,7 @@ std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSour
 /// How many levels with_levels() would give it. Fails where that would, from sizes alone.
 int planned_levels(const VolumeSource& source, uint64_t host_budget_bytes);
 
+/// Host memory of what with_levels() would make; 0 where that is nothing.
+uint64_t bytes_of_levels(const VolumeSource& source);
+
 }  // namespace shvr

@@ -42,6 +42,41 @@ class Render(CliTest):
         self.check("render", session, "-o", self.folder / "b.png")
         self.assertEqual(counted.read_bytes(), (self.folder / "b.png").read_bytes())
 
+    def test_a_picture_with_its_session_is_made_again_bit_for_bit(self):
+        session = self.write_session()
+        plain, _ = self.render(session, "plain.png", "--size", "41x29", "--camera", "left", "--set", "light.ambient=0.3",
+                               "--set", "probe.shown=true")
+        kept, _ = self.render(session, "kept.png", "--size", "41x29", "--camera", "left", "--set", "light.ambient=0.3",
+                              "--set", "probe.shown=true", "--with-session")
+        self.assertGreater(len(kept.read_bytes()), len(plain.read_bytes()))
+        again, _ = self.render(kept, "again.png")
+        self.assertEqual(again.read_bytes(), plain.read_bytes())
+        once_more, _ = self.render(kept, "once-more.png", "--with-session")
+        self.assertEqual(once_more.read_bytes(), kept.read_bytes())
+        # It goes along with its volume.
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        for path in self.folder.iterdir():
+            if path.is_file():
+                (elsewhere / path.name).write_bytes(path.read_bytes())
+        moved, _ = self.render(elsewhere / "kept.png", "moved.png")
+        self.assertEqual(moved.read_bytes(), plain.read_bytes())
+
+    def test_pictures_without_a_session_or_a_volume_are_refused(self):
+        session = self.write_session()
+        plain, _ = self.render(session, "plain.png")
+        self.check_refused("render", plain, "-o", self.folder / "again.png",
+                           says=["plain.png: is a picture without a session in it"])
+        (self.folder / "scan.raw").write_bytes(bytes(range(64)))
+        scan = self.write_session("scan.json", volume={"path": "scan.raw", "raw": "4x4x4:uint8:little:0"})
+        kept, _ = self.render(scan, "kept.png", "--with-session")
+        self.render(kept, "again.png")
+        alone = self.folder / "alone"
+        alone.mkdir()
+        (alone / "kept.png").write_bytes(kept.read_bytes())
+        self.check_refused("render", alone / "kept.png", "-o", self.folder / "again.png",
+                           says=["kept.png: is a picture of", "scan.raw, which is not there"])
+
     def test_settings_are_keys_of_the_session(self):
         session = self.write_session()
         coarse, coarse_result = self.render(session, "a.png")

@@ -220,6 +220,16 @@ glm::dvec3 parse_spacing(const std::string& text)
     return spacing;
 }
 
+namespace {
+
+void take_settings(Session& session, const Work& left, const std::vector<std::string>& overridden)
+{
+    set_lasting_settings(session, without_overridden(left.settings(), overridden));
+    set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
+}
+
+}  // namespace
+
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening)
 {
     std::unique_ptr<Renderer> renderer;
@@ -234,8 +244,12 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
         static_cast<void>(work.begin("measuring " + path));
     };
     OpenedSession session = open_session(path, common.settings, options);
-    Opened opened{std::move(session.session), std::move(session.source), std::move(session.warnings),
-                  std::move(renderer), nullptr};
+    Opened opened{std::move(session.session),
+                  std::move(session.source),
+                  std::move(session.warnings),
+                  std::move(renderer),
+                  nullptr,
+                  {}};
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
     warn_of_losses(session.losses);
@@ -244,12 +258,17 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
                           shows_occlusion(opened.session.light), work.begin("loading " + path));
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     opening.belief = common.belief;
-    const WorkFiles files = work_files(opened.session, opened.source->info(), common.settings);
-    warn(opened.annotator->open(with_kept_settings(files, opened.session, common.settings), opening), common);
+    const bool is_picture = !session.pictured.empty();
+    const VolumeInfo& volume = opened.source->info();
+    opened.project = is_picture ? session.pictured : session_file_of(path);
+    // A picture has settings of its own, whatever has become of the project's.
+    const WorkFiles files = is_picture ? work_files(opened.session, volume)
+                                       : with_kept_settings(work_files(opened.session, volume, common.settings),
+                                                            opened.session, common.settings);
+    warn(opened.annotator->open(files, opening), common);
     const Work& left = opened.annotator->work();
     left.expect_choice();
-    set_lasting_settings(opened.session, without_overridden(left.settings(), common.settings));
-    set_kept_settings(opened.session, without_overridden(left.kept_settings(), common.settings));
+    if (!is_picture) take_settings(opened.session, left, common.settings);
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
     return opened;

@@ -70,6 +70,7 @@ struct Opened {
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
+    std::filesystem::path project;  ///< its session's file; empty for a bare volume
 };
 /// Refuses what is too large for the budgets before it reads voxels.
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true});

@@ -5,6 +5,7 @@
 #include "engine/base/file.h"
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
+#include "engine/session/picture_session.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -15,6 +16,7 @@ struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
     bool allows_incomplete = false;
+    bool with_session = false;
 };
 
 /// Why a picture is incomplete.
@@ -74,7 +76,10 @@ void run_render(RenderCommandOptions options)
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Progress progress = work.begin("drawing " + options.output);
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
-                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json, .progress = progress});
+                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json, .progress = progress},
+                     options.with_session
+                         ? texts_of_picture(opened.session, camera, options.output, opened.project, true)
+                         : PictureTexts());
     const Picture picture = draw(file, options, work);
     check_validation(opened);
     warn(picture.warnings, options.common);
@@ -103,7 +108,10 @@ void add_render(CLI::App& program)
 {
     auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command = program.add_subcommand("render", "Makes a picture");
-    command->add_option("INPUT", options->input, "Session (.json), project folder or volume")->required();
+    command
+        ->add_option("INPUT", options->input,
+                     "Session (.json), project folder, volume, or a picture that was made here")
+        ->required();
     command
         ->add_option("-o,--output", options->output,
                      "Picture to write: .png, or .pfm for linear light in 32-bit floats")
@@ -113,6 +121,8 @@ void add_render(CLI::App& program)
     command->add_option(
         "--tf", options->transfer_function,
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
+    command->add_flag("--with-session", options->with_session,
+                      "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
     command->add_flag("--allow-incomplete", options->allows_incomplete,
                       "Write a picture that lacks something, with a warning, instead of failing");
     add_belief_option(*command, options->common);

@@ -380,7 +380,7 @@ void menu_bar(const Model& model, Actions& actions)
     }
     open_dialog(model, actions);
     save_as_dialog(actions);
-    task_dialogs(actions);
+    task_dialogs(model, actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
@@ -403,7 +403,7 @@ void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)
                      ImGuiWindowFlags_NoNav);
     const std::string right = !model.is_open ? std::string()
                                              : hidden_in_words(model) + reading_of(model) + "    |    " +
-                                                   (model.is_saved ? "saved" : "not saved") + "    |    " +
+                                                   saved_in_words(model) + "    |    " +
                                                    (!model.view_is_complete ? "refining"
                                                     : model.view_is_limited ? "coarser than the screen: device budget"
                                                                             : "sharp");

@@ -13,16 +13,35 @@ namespace {
 
 constexpr const char* QUESTION = "Saved annotation was changed by another program";
 
-/// In the upper left corner of the graphics window, as wide as it needs to be.
-void read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+
+/// What was recovered or set aside, until it is dismissed.
+void recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    ImGui::SetNextWindowPos({begin.x, begin.y});
+    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.12f, 0.26f, 0.36f, 0.96f));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::Begin("Recovered", nullptr, BANNER);
+    if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});
+    ImGui::PushTextWrapPos(0.0f);
+    for (const std::string& text : model.recovered) ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+/// In the upper left corner of the graphics window, as wide as it needs to be. Returns its height.
+float read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
     ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::Begin("Read only", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+    ImGui::Begin("Read only", nullptr, BANNER);
     if (ImGui::Button("Work on a copy")) actions.push_back(WorkOnCopy{});
     ImGui::SameLine();
     if (ImGui::Button("Try again")) actions.push_back(Open{model.session_path});
@@ -30,9 +49,11 @@ void read_only_banner(const Model& model, const glm::vec2& begin, float width, A
     ImGui::Text("Read only: open for writing in %.*s. Nothing that is changed here is saved.", int(model.holder.size()),
                 model.holder.data());
     ImGui::PopTextWrapPos();
+    const float height = ImGui::GetWindowHeight();
     ImGui::End();
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
+    return height;
 }
 
 void question_of_belief(const Model& model, Actions& actions)
@@ -59,7 +80,9 @@ void question_of_belief(const Model& model, Actions& actions)
 
 void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
-    if (!model.holder.empty()) read_only_banner(model, begin, width, actions);
+    float top = begin.y;
+    if (!model.holder.empty()) top += read_only_banner(model, begin, width, actions);
+    if (!model.recovered.empty()) recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
 }
 

@@ -64,7 +64,12 @@ void ask_for_name(const Model& model);
 void save_as_dialog(Actions& actions);
 /// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.
 void task_menu(const Model& model);
-void task_dialogs(Actions& actions);
+/// Shows the dialog that makes a project of that volume, from the next frame on.
+void ask_to_import(const std::filesystem::path& volume);
+/// Items of the menu File for opening with options and for correcting the spacing; and their dialogs.
+void load_menu(const Model& model);
+void load_dialogs(const Model& model, Actions& actions);
+void task_dialogs(const Model& model, Actions& actions);
 /// What goes on beside the work, at the lower left of the graphics window.
 void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions);
 /// What is there while nothing is open.

@@ -195,7 +195,25 @@ struct CopySession {
 /// Beside the work: what is open stays until the next is there.
 struct Open {
     std::filesystem::path path;
+    std::string settings{};  ///< for this time, as --set takes them: "volume.channel=red", one a line
 };
+/// Reads what a file is, without its voxels, for the dialog that opens it: Model::candidate.
+struct LookAtFile {
+    std::filesystem::path path;  ///< empty: none any more
+    std::string settings{};      ///< as in Open
+};
+/// What was dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and transfer
+/// functions into what is open, as steps that undo takes back. What a file is, its contents say.
+struct TakeFile {
+    std::filesystem::path path;
+};
+/// The volume's spacing was wrong: saves the work, and opens it with this one. Positions stay at their voxels.
+struct CorrectSpacing {
+    glm::dvec3 spacing{1.0};
+    std::string unit;
+};
+/// What was said of recovered work has been read.
+struct DismissNotices {};
 /// Exporting, importing, labelling and comparing are tasks (engine/tasks), each a job beside the work.
 struct CancelJob {
     uint64_t number = 0;
@@ -286,9 +304,9 @@ using Action = std::variant<
     MeasureAt, ClearMeasurements, CopyMeasurements,
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
-    Screenshot, Open, ForgetRecent, ChooseBelief, WorkOnCopy, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp,
-    ShowMessages, ShowPasses, SavePasses, ComparePasses, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen,
-    Quit>;
+    Screenshot, Open, LookAtFile, TakeFile, CorrectSpacing, DismissNotices, ForgetRecent, ChooseBelief, WorkOnCopy,
+    AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPasses, SavePasses, ComparePasses,
+    ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -9,7 +9,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr const char* IS_PAINTING = "a stroke is being painted";
+constexpr const char *IS_PAINTING = "a stroke is being painted", *IS_SAVING = "the work is being saved";
 
 /// What holds for every change of annotation.
 std::string why_not_edited(const Model& model)
@@ -223,7 +223,18 @@ std::string why(const Model& model, const RevertOp&)
 
 std::string why(const Model& model, const SaveAs&)
 {
-    return why_not_edited(model);
+    return model.is_saving ? IS_SAVING : why_not_edited(model);
+}
+
+std::string why(const Model& model, const CorrectSpacing&)
+{
+    return model.session.procedural ? "the volume is computed, and its spacing is the session's"
+                                    : why_not_edited(model);
+}
+
+std::string why(const Model& model, const DismissNotices&)
+{
+    return model.recovered.empty() ? "there is nothing to be dismissed" : "";
 }
 
 std::string why(const Model& model, const CancelJob& action)
@@ -250,8 +261,9 @@ template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
 constexpr bool NEEDS_DOCUMENT =
-    !IS_ONE_OF<Kind, Open, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys, BindKeys, Resize,
-               AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
+    !IS_ONE_OF<Kind, Open, LookAtFile, TakeFile, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys,
+               BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn,
+               ShowFullScreen, Quit>;
 
 }  // namespace
 

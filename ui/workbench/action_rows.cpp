@@ -80,7 +80,12 @@ constexpr ActionRow ROWS[] = {
     {"evaluate", "Compare with the truth", WORK, "says how well an annotation agrees with another"},
     {"cancel_job", "Cancel", WORK, "ends a job that runs or waits"},
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
-    {"open", "Open", WORK, "opens a volume, a session or a project folder"},
+    {"open", "Open", WORK, "opens a volume, a session, a project folder or a picture"},
+    {"look_at_file", "Look at a file", WORK, "reads what a file is, without its voxels, and what loading it takes"},
+    {"take_file", "Take a file", WORK, "opens a file, or takes its annotation or transfer function, by its contents"},
+    {"correct_spacing", "Correct the spacing", WORK,
+     "saves, and opens with another spacing; nodes stay at their voxels"},
+    {"dismiss_notices", "Dismiss", WORK, "what was recovered or set aside at opening has been read"},
     {"forget_recent", "Forget", WORK, "takes a path from the list of what was opened last; the file stays"},
     {"choose_belief", "Files or journal", WORK, "says whether changed files or the journal are right"},
     {"work_on_copy", "Work on a copy", WORK, "saves all that is shown under new names, and opens that"},
@@ -106,7 +111,7 @@ static_assert(std::size(ROWS) == std::variant_size_v<Action>);
 // ---- Arguments ------------------------------------------------------------------------------------------------------
 
 const NumberRange DEGREES{-36000.0, 36000.0}, PIXELS{-1e6, 1e6}, FACTOR{1e-6, 1e6}, SHARES{-100.0, 100.0};
-const NumberRange VOXELS{-1e12, 1e12}, DISTANCES{0.0, 1e15};
+const NumberRange VOXELS{-1e12, 1e12}, DISTANCES{0.0, 1e15}, SPACINGS{1e-12, 1e12};
 
 void pane_field(Fields& f, size_t& pane)
 {
@@ -317,6 +322,21 @@ void fields(Fields& f, Screenshot& a)
 void fields(Fields& f, Open& a)
 {
     f.path("path", a.path, {.is_required = true});
+    f.text("settings", a.settings, {"as --set takes them, one a line"});
+}
+void fields(Fields& f, LookAtFile& a)
+{
+    f.path("path", a.path, {});
+    f.text("settings", a.settings, {"as --set takes them, one a line"});
+}
+void fields(Fields& f, TakeFile& a)
+{
+    f.path("path", a.path, {.is_required = true});
+}
+void fields(Fields& f, CorrectSpacing& a)
+{
+    f.vector("spacing", a.spacing, SPACINGS, {.is_required = true});
+    f.text("unit", a.unit, {"of the spacing; empty: as it is"});
 }
 void fields(Fields& f, ForgetRecent& a)
 {

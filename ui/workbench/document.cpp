@@ -26,6 +26,8 @@ std::filesystem::path session_path_of(const std::filesystem::path& input)
     return beside.replace_extension(".session.json");
 }
 
+}  // namespace
+
 std::optional<std::string> text_of_session(const std::filesystem::path& path)
 {
     constexpr int64_t LARGEST_SESSION = int64_t{16} << 20;
@@ -34,48 +36,61 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
     return read_text(path, LARGEST_SESSION);
 }
 
-void load(Renderer& renderer, const std::shared_ptr<const VolumeSource>& source, const VolumeStatistics& statistics,
-          const Session& session)
+Document::Read Document::read(OpenedSession opened, const std::filesystem::path& input,
+                              const std::vector<std::string>& overridden, Work::Opening opening)
 {
-    renderer.load(source, statistics, session.render, shows_occlusion(session.light));
+    Session& session = opened.session;
+    const VolumeInfo& volume = opened.source->info();
+    const std::filesystem::path path = session_path_of(input);
+    if (session.mask_path.empty()) session.mask_path = std::filesystem::path(path).replace_extension(".mask");
+    if (session.journal_path.empty()) session.journal_path = journal_beside(path);
+    ProbeSettings& probe = session.probe;
+    probe.brush.threshold = dab_of(session, volume, opened.statistics).threshold;
+    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    Read read{.opened = {}, .session_path = path, .overridden = overridden, .work = nullptr};
+    read.session_text = text_of_session(path);
+    const WorkFiles files = with_kept_settings(work_files(session, volume, overridden), session, overridden);
+    const auto open_work = [&](const Work::Opening& how) {
+        read.work = std::make_unique<Work>(volume.size, volume.type);
+        read.notices = read.work->open(files, how);
+    };
+    try {
+        open_work(opening);
+    } catch (const JournalTaken& taken) {
+        const std::optional<Holder> other = holder_of(files.journal);
+        read.holder = other ? in_words(*other) : taken.what();
+        opening.only_look = true;
+        opening.hold.reset();
+        open_work(opening);
+    }
+    read.opened = std::move(opened);
+    return read;
 }
 
-}  // namespace
-
-std::unique_ptr<Document> Document::open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                                         const View::Options& view_options, const std::vector<std::string>& overridden,
-                                         std::shared_ptr<Hold> hold)
-{
-    load(renderer, opened.source, opened.statistics, opened.session);
-    std::unique_ptr<Document> document(
-        new Document(renderer, std::move(opened), session_path_of(input), view_options, overridden));
-    document->load_work(renderer, std::move(hold));
-    document->begin_with_turning();
-    document->note_saved();
-    return document;
-}
-
-Document::Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
-                   const View::Options& view_options, const std::vector<std::string>& overridden)
-    : session_path(path),
-      session(std::move(opened.session)),
-      source(std::move(opened.source)),
-      statistics(opened.statistics),
+Document::Document(Renderer& renderer, Read read, const View::Options& view_options)
+    : session_path(std::move(read.session_path)),
+      session(std::move(read.opened.session)),
+      source(std::move(read.opened.source)),
+      statistics(read.opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
-      annotator(renderer),
+      annotator(renderer, std::move(read.work)),
       screen(renderer, view_options),
       touch(renderer),
-      overridden_(overridden)
+      messages(std::move(read.notices)),
+      holder(std::move(read.holder)),
+      overridden_(std::move(read.overridden)),
+      session_text_(std::move(read.session_text))
 {
-    if (session.mask_path.empty()) {
-        session.mask_path = session_path;
-        session.mask_path.replace_extension(".mask");
-    }
-    if (session.journal_path.empty()) session.journal_path = journal_beside(session_path);
-    session_text_ = text_of_session(session_path);
     surfaces = std::exchange(session.surfaces, {});
-    choose_thresholds(session);
     touch.place(session.probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
+    set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
+    take_kept_settings();
+    choose_for_volume(session);
+    begin_with_turning();
+    annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
+    renderer.scene().show(annotator.document());
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+    note_saved();
 }
 
 /// Nobody who opens a scan changes it by the first drag, whatever was painted last; and older sessions state the tool
@@ -93,25 +108,6 @@ void Document::choose_thresholds(Session& of) const
     ProbeSettings& probe = of.probe;
     if (!probe.brush.threshold) probe.brush.threshold = dab_of(of, volume(), statistics).threshold;
     if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
-}
-
-void Document::load_work(Renderer& renderer, std::shared_ptr<Hold> hold)
-{
-    const WorkFiles files = with_kept_settings(work_files(session, volume(), overridden_), session, overridden_);
-    std::vector<Notice> notices;
-    try {
-        notices = annotator.open(files, {.hold = std::move(hold), .program = "shvr view"});
-    } catch (const JournalTaken& taken) {
-        const std::optional<Holder> other = holder_of(files.journal);
-        holder = other ? in_words(*other) : taken.what();
-        notices = annotator.open(files, {.only_look = true});
-    }
-    for (Notice& notice : notices) messages.push_back(std::move(notice.text));
-    set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
-    take_kept_settings();
-    choose_for_volume(session);
-    annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
-    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
 
 /// The view and the probe come back as they were left, even where nobody could save them.
@@ -142,9 +138,14 @@ void Document::keep_settings()
     if (!only_looks()) annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
 }
 
+void Document::load_again(Renderer& renderer)
+{
+    renderer.load(source, statistics, session.render, shows_occlusion(session.light));
+    show_again(renderer);
+}
+
 void Document::show_again(Renderer& renderer)
 {
-    load(renderer, source, statistics, session);
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }
@@ -215,36 +216,6 @@ void Document::note_saved()
     saved_probe_voxel_ = probe_voxel();
 }
 
-/// What another program wrote there since is kept, and the notice tells where.
-std::optional<Notice> Document::write_session()
-{
-    std::optional<Notice> notice;
-    const std::string text = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
-    if (const std::optional<std::string> there = text_of_session(session_path); there && there != session_text_) {
-        const std::filesystem::path old = set_aside(session_path);
-        notice = {
-            sentence(session_path.string(), ": was written by another program since it was opened; it is kept as ",
-                     old.string(), ", and what is saved is this window's"),
-            true};
-    }
-    write_file_atomically(session_path, std::as_bytes(std::span(text)));
-    session_text_ = text;
-    return notice;
-}
-
-void Document::keep_view()
-{
-    if (only_looks() || !annotator.work().disputes().empty()) return;
-    const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
-    std::error_code ignored;
-    if (is_kept || !overridden_.empty() || !is_saved() || !std::filesystem::is_regular_file(session_path, ignored))
-        return;
-    try {
-        write_session();
-    } catch (const Error&) {  // a camera position is not worth an error message
-    }
-}
-
 bool Document::record_settings()
 {
     if (only_looks()) return false;
@@ -257,118 +228,6 @@ void Document::take_settings()
     set_lasting_settings(session, annotator.work().settings());
     annotator.renderer().scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_edit();
-}
-
-std::vector<Notice> Document::save()
-{
-    if (only_looks())
-        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
-                                    holder, "; expected it to be closed there, or a copy to work on"));
-    if (session.density_path.empty() && annotator.document().density.voxels() > 0)
-        session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
-    name_trace();
-    annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
-    keep_settings();
-    std::optional<Notice> session_notice;
-    std::vector<Notice> notices =
-        annotator.work()
-            .save(label_looks(session.groups, annotator.document().mask), [&] { session_notice = write_session(); })
-            .notices;
-    if (session_notice) notices.push_back(std::move(*session_notice));
-    note_saved();
-    return notices;
-}
-
-void Document::save_settings()
-{
-    if (edits_are_saved() || !overridden_.empty()) return;
-    static_cast<void>(write_session());
-    note_saved();
-}
-
-namespace {
-
-std::filesystem::path beside(const std::filesystem::path& session_file, const char* extension)
-{
-    return std::filesystem::path(session_file).replace_extension(extension);
-}
-
-/// The session under another name, with files of that name.
-Session renamed(Session session, const std::filesystem::path& path)
-{
-    session.mask_path = beside(path, ".mask");
-    session.trace_path = beside(path, ".graphml");
-    session.density_path = beside(path, ".offset");
-    session.journal_path = journal_beside(path);
-    return session;
-}
-
-/// Fails where it is no name of a session, or taken.
-std::filesystem::path new_session_path(const std::filesystem::path& path)
-{
-    if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
-    for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
-        if (is_there(beside(path, extension)))
-            fail(beside(path, extension).string(), ": exists already; expected a name that is free");
-    return std::filesystem::absolute(path).lexically_normal();
-}
-
-std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
-{
-    const std::string stem = beside(session_file, "").string() + "-copy";
-    for (int number = 1;; ++number) {
-        const std::filesystem::path path = number == 1 ? stem + ".json" : sentence(stem, number, ".json");
-        const auto is_taken = [&](const char* extension) { return is_there(beside(path, extension)); };
-        if (std::ranges::none_of(std::array{".json", ".mask", ".graphml", ".offset", ".journal"}, is_taken))
-            return path;
-    }
-}
-
-}  // namespace
-
-std::filesystem::path Document::save_copy(const std::filesystem::path& path) const
-{
-    const std::filesystem::path copy = path.empty() ? free_copy_path(session_path) : new_session_path(path);
-    const Session copied = renamed(saved_session(), copy);
-    annotator.work().save_copy(work_files(copied, volume()), label_looks(session.groups, annotator.document().mask));
-    const std::string text = to_text(copied, std::filesystem::absolute(copy).parent_path());
-    write_file_atomically(copy, std::as_bytes(std::span(text)));
-    return copy;
-}
-
-std::vector<Notice> Document::save_as(const std::filesystem::path& path)
-{
-    const std::filesystem::path next = new_session_path(path);
-    keep_settings();
-    const Session moved = renamed(saved_session(), next);
-    const std::string text = to_text(moved, next.parent_path());
-    std::vector<Notice> notices =
-        annotator.work()
-            .save_as(work_files(moved, volume()), label_looks(session.groups, annotator.document().mask), next,
-                     [&] { write_file_atomically(next, std::as_bytes(std::span(text))); })
-            .notices;
-    session = renamed(std::move(session), next);
-    session_path = next;
-    session_text_ = text;
-    overridden_.clear();  // what was set for this time only is in the new file
-    note_saved();
-    return notices;
-}
-
-/// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left
-/// unchanged.
-void Document::name_trace()
-{
-    if (annotator.work().trace_is_saved()) return;
-    if (session.trace_path.empty()) {
-        session.trace_path = session_path;
-        session.trace_path.replace_extension(".graphml");
-    } else if (session.trace_path.extension() != ".graphml") {
-        const std::filesystem::path stem = std::filesystem::path(session.trace_path).replace_extension();
-        session.trace_path = stem.string() + ".graphml";
-        for (int number = 2; std::filesystem::exists(session.trace_path); ++number)
-            session.trace_path = sentence(stem.string(), "-", number, ".graphml");
-    }
 }
 
 PaintOp Document::stroke() const

@@ -1,5 +1,6 @@
 #pragma once
-// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread.
+// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread;
+// reading one and writing its files are work for another.
 //
 // Whether it is saved is computed, not stored: the session as it would be saved is compared with the one last read or
 // written. The comparison ignores the camera and the probe's position, since looking around changes them.
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "engine/annotation/trace/trace_command.h"
+#include "engine/jobs/progress_reporter.h"
 #include "engine/live/previewer.h"
 #include "engine/live/probe_meter.h"
 #include "engine/live/screen.h"
@@ -22,14 +24,23 @@
 namespace shvr::ui {
 
 struct Document {
-    /// Loads the volume onto the device, then the saved work. `overridden`: "key=value" settings in which the session
-    /// differs from its file. Fails if either cannot be loaded; then the device holds no volume. The mouse moves the
-    /// probe. `hold`: of the document that this one replaces, which may be the same. Where another process writes the
-    /// work, it is only looked at.
-    static std::unique_ptr<Document> open(Renderer& renderer, OpenedSession opened, const std::filesystem::path& input,
-                                          const View::Options& view_options,
-                                          const std::vector<std::string>& overridden = {},
-                                          std::shared_ptr<Hold> hold = nullptr);
+    /// All that is read before a document can be shown. Made on any thread.
+    struct Read {
+        OpenedSession opened;
+        std::filesystem::path session_path;
+        std::vector<std::string> overridden;
+        std::unique_ptr<Work> work;
+        std::vector<Notice> notices{};
+        std::string holder{};
+        std::optional<std::string> session_text{};
+    };
+    /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
+    /// file. `hold`: of the document that this one replaces, which may be the same. Where another process writes the
+    /// work, it is only looked at. Fails where it cannot be read. Any thread.
+    static Read read(OpenedSession opened, const std::filesystem::path& input,
+                     const std::vector<std::string>& overridden, Work::Opening opening);
+    /// Shows it in the renderer's scene, which is of its volume. Fails as Scene::show does. The mouse moves the probe.
+    Document(Renderer& renderer, Read read, const View::Options& view_options);
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
@@ -43,7 +54,7 @@ struct Document {
     Screen screen;
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every turn
-    std::vector<std::string> messages;  ///< notes from opening the work
+    std::vector<Notice> messages;       ///< notes from opening the work
     std::string holder;                 ///< the other process that writes the work, in words; empty: this one may
     bool drags_node = false;            ///< the selected node follows the probe
 
@@ -53,7 +64,9 @@ struct Document {
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes between which the last deletion cut the trace
 
-    /// Loads everything onto the device again after it held another document. Fails as load and create do.
+    /// Loads everything onto the device again, as its settings now say. Fails as load and create do.
+    void load_again(Renderer& renderer);
+    /// Shows it in the renderer's scene, a new one of its volume.
     void show_again(Renderer& renderer);
 
     const VolumeInfo& volume() const { return source->info(); }
@@ -80,6 +93,7 @@ struct Document {
     /// The session as it would be saved: with the current camera and the probe's position.
     Session saved_session() const;
     /// Closing would lose no work and no setting, except perhaps the camera and the probe's position.
+    bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
     /// Nothing can be painted or saved: another process writes the work.
@@ -94,29 +108,30 @@ struct Document {
     bool record_settings();
     /// Takes the settings of the work, after undo and redo.
     void take_settings();
-    /// Writes the mask, the offsets and the trace, then the session; each file appears whole or not at all. What others
-    /// wrote there in the meantime is kept under other names, which the notices tell.
-    std::vector<Notice> save();
-    /// The session alone.
-    void save_settings();
+    /// A save beside the work: files as they are to be when it began. Each appears whole or not at all: the mask, the
+    /// offsets and the trace, then the session. What others wrote there in the meantime is kept under other names.
+    class Saving;
+    enum class Parts { all, session };
+    /// Fails where nothing can be saved; writes nothing. `end_save` must follow, whatever became of it.
+    std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
+    /// Returns the notices.
+    std::vector<Notice> end_save(Saving& saving);
+    /// Only the camera and the probe's position changed, and the session has a file: saving them is worth no word. So
+    /// just looking at a volume creates no file.
+    bool has_view_to_keep() const;
+    /// Only settings that have a file are to be saved.
+    bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
     /// Writes mask, offsets, trace and session into new files, and goes on with those there are. `path`: of the
     /// session; empty: beside this one. Returns the path of the new session. Fails where a file of that name exists.
     std::filesystem::path save_copy(const std::filesystem::path& path = {}) const;
     /// Goes on under another name, with the whole history; the files so far stay as they are. Fails where a file of
     /// that name exists; then nothing has changed.
     std::vector<Notice> save_as(const std::filesystem::path& path);
-    /// Writes the session if only the camera and the probe's position changed and it already has a file. So just
-    /// looking at a volume creates no file. A file that cannot be written stays as it is.
-    void keep_view();
 
 private:
-    Document(Renderer& renderer, OpenedSession opened, const std::filesystem::path& path,
-             const View::Options& view_options, const std::vector<std::string>& overridden);
-    void load_work(Renderer& renderer, std::shared_ptr<Hold> hold);
     void take_kept_settings();
     void begin_with_turning();
     void name_trace();
-    std::optional<Notice> write_session();
     bool edits_are_saved() const;
     Session edits() const;
     void note_saved();
@@ -127,6 +142,32 @@ private:
     Camera saved_camera_;
     glm::dvec3 saved_probe_voxel_{0.0};
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
+};
+
+/// Nothing where there is no file.
+std::optional<std::string> text_of_session(const std::filesystem::path& path);
+
+class Document::Saving {
+public:
+    Saving(const Saving&) = delete;
+    /// On any thread, once. Fails where a file cannot be written.
+    void write(ProgressReporter& reporter);
+    bool is_written() const { return is_written_; }
+
+private:
+    friend struct Document;
+    Saving() = default;
+    void write_session();
+
+    std::unique_ptr<Work::Saving> work_;  ///< null: the session alone
+    std::filesystem::path session_path_;
+    std::string text_;                       ///< of the session
+    std::optional<std::string> text_there_;  ///< as this process last read or wrote it
+    Session edits_;
+    Camera camera_;
+    glm::dvec3 probe_voxel_{0.0};
+    std::optional<Notice> notice_;
+    bool has_session_ = false, is_written_ = false;
 };
 
 }  // namespace shvr::ui

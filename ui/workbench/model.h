@@ -28,6 +28,20 @@ struct Preferences;
 
 namespace shvr::ui {
 
+/// A file that somebody thinks of opening (LookAtFile).
+struct Candidate {
+    std::filesystem::path path;
+    std::string settings;  ///< with which it was looked at
+    bool is_being_read = true;
+    std::string failure;      ///< why it cannot be opened so; empty: it can, as far as that is known
+    std::string kind;         ///< "Volume", "Session", "Project", "Picture of a session"
+    bool is_project = false;  ///< nothing is to be imported
+    VolumeInfo volume{};      ///< what follows is known only without a failure
+    int levels = 1;
+    std::string memory{};  ///< what it will take of host and device
+    std::vector<std::string> warnings{};
+};
+
 struct Model {
     bool is_open = false;  ///< false: what follows is of an empty session
     const Session& session;
@@ -66,6 +80,14 @@ struct Model {
     const History* history = nullptr;   ///< null where nothing is open
     size_t undoable = 0, redoable = 0;  ///< a setting that is not a step of the history yet counts as undoable
     bool is_saved = true;
+    bool is_saving = false;                    ///< files are being written; what is done meanwhile is not in them
+    bool has_session_file = false;             ///< false: a bare scan that was never saved
+    std::span<const std::string> recovered{};  ///< what was recovered or set aside at opening, until it is dismissed
+    std::string_view opening{};                ///< what is being opened; empty: nothing
+    const Candidate* candidate = nullptr;      ///< null: none
+    /// Why the last Open failed, and what it was to open; empty: it did not.
+    std::string_view open_failure{};
+    const std::filesystem::path* failed_path = nullptr;
     std::string_view holder{};  ///< who writes the project, if that is another process: then this window only looks
     const std::filesystem::path& session_path;
     std::span<const Dispute> disputes{};  ///< saved files that others have changed; empty: nothing to choose
@@ -96,5 +118,13 @@ struct Model {
     Tool tool() const { return session.probe.tool; }
     const std::string& status() const { return messages.last(); }
 };
+
+/// What the status bar says of files: a scan that nothing was ever saved of is no project that is "saved".
+inline const char* saved_in_words(const Model& model)
+{
+    if (model.is_saving) return "saving";
+    if (!model.is_saved) return "not saved";
+    return model.has_session_file ? "saved" : "no project yet";
+}
 
 }  // namespace shvr::ui

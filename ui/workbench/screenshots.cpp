@@ -17,14 +17,15 @@ std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) 
 }
 
 void Screenshots::take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session,
-                             const Camera& camera, const RenderOptions& options)
+                             const Camera& camera, const RenderOptions& options, const Texts& texts)
 {
     large_.reset();
     large_path_ = free_path(stem);
-    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options);
+    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options, texts(large_path_));
 }
 
-Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still)
+Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still,
+                                       const Texts& texts)
 {
     if (is_writing()) {
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
@@ -32,7 +33,7 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
     }
     if (!screen.complete()) return {};
     if (std::exchange(is_wanted_, false)) {
-        write(screen.read_back(), stem);
+        write(screen.read_back(), stem, texts);
         return {};
     }
     return large_ && is_still ? advance_large() : Turn{};
@@ -55,11 +56,12 @@ Screenshots::Turn Screenshots::advance_large()
     return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
 }
 
-void Screenshots::write(Image8 image, const std::filesystem::path& stem)
+void Screenshots::write(Image8 image, const std::filesystem::path& stem, const Texts& texts)
 {
-    written_ = std::async(std::launch::async, [image = std::move(image), path = free_path(stem)] {
+    const std::filesystem::path path = free_path(stem);
+    written_ = std::async(std::launch::async, [image = std::move(image), path, kept = texts(path)] {
         try {
-            write_png(path, image);
+            write_png(path, image, kept);
             return "Screenshot: " + path.string();
         } catch (const Error& error) {
             return std::string(error.what());

@@ -19,9 +19,11 @@ class Screenshots {
 public:
     /// Requests a picture of the view as shown.
     void take() { is_wanted_ = true; }
+    /// What a picture of that name keeps in its file.
+    using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
     /// `stem` as for `advance`. Fails where the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
-                    const RenderOptions& options);
+                    const RenderOptions& options, const Texts& texts);
     /// Abandons a large picture, since its volume changes or goes away.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
@@ -33,13 +35,13 @@ public:
     };
     /// Call every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nothing else waits for the device.
     /// Fails if a picture cannot be made; then it is abandoned.
-    Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still);
+    Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts);
     /// Waits until the last one is written.
     void wait() const;
 
 private:
     std::filesystem::path free_path(const std::filesystem::path& stem) const;
-    void write(Image8 image, const std::filesystem::path& stem);
+    void write(Image8 image, const std::filesystem::path& stem, const Texts& texts);
     Turn advance_large();
 
     bool is_wanted_ = false;

@@ -43,7 +43,8 @@ void Workbench::say(std::string text, Weight weight)
 
 void Workbench::perform(const Action& action)
 {
-    if (!document_ && !ui::why_not(model(), action).empty()) fail("Nothing is open");
+    if (!document_ && !ui::why_not(model(), action).empty())
+        fail(opening_ ? sentence(opening_name(), " is being opened") : std::string("Nothing is open"));
     if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
     recent_.begin(action);
     logged_instead_.clear();
@@ -121,87 +122,6 @@ void Workbench::act(const Quit&)
     quits_ = true;
 }
 
-// ---- Documents ------------------------------------------------------------------------------------------------------
-
-void Workbench::open(const std::filesystem::path& path, const std::vector<std::string>& settings)
-{
-    open(open_session(path, settings), path, settings);
-}
-
-/// The device holds one volume at a time. The previous document is kept until the next one is open, and comes back if
-/// that fails.
-void Workbench::open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings)
-{
-    const double begun_s = options_.now_s();
-    if (document_) document_->annotator.work().settle();  // it may be opened once more
-    const std::vector<std::string> losses = opened.losses;
-    screenshots_.drop_large();
-    if (document_) document_->screen.clear();
-    look_again();
-    try {
-        document_ = Document::open(renderer_, std::move(opened), path, options_.view, settings,
-                                   document_ ? document_->annotator.work().hold() : nullptr);
-    } catch (const Error& error) {
-        if (!document_) throw;
-        bring_back(error.what());
-    }
-    opened_s_ = begun_s;
-    Preferences preferences = preferences_;
-    preferences.note_opened(path);
-    prefer(std::move(preferences));
-    ++openings_;
-    read_voxel_.reset();
-    settings_to_record_ = was_set_in_this_turn_ = false;
-    to_keep_since_s_.reset();
-    session_before_hand_.reset();
-    journal_failure_.clear();
-    std::string device_said;
-    if (std::unique_ptr<HapticDevice> device = find_device(device_said)) use_device(std::move(device), "haptic device");
-    std::string status = "Opened " + path.string();
-    if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
-    for (const std::string& loss : losses) status += "; " + loss;
-    for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
-    for (const std::string& message : document_->messages) status += "; " + message;
-    if (!device_said.empty()) status += "; " + device_said;
-    const bool is_as_left = losses.empty() && document_->messages.empty() && !document_->only_looks();
-    say(status, is_as_left ? Weight::done : Weight::warning);
-}
-
-/// Reopens the previous scan after the next one failed to open. Always throws, with a message saying why and what is
-/// open.
-void Workbench::bring_back(const std::string& why)
-{
-    const std::string before = document_->session_path.string();
-    try {
-        document_->show_again(renderer_);
-    } catch (const Error& error) {
-        document_.reset();
-        fail(why, "; ", before, " cannot be shown again either: ", error.what(), "; it is saved");
-    }
-    fail(why, "; ", before, " stays open");
-}
-
-void Workbench::use_device(std::unique_ptr<HapticDevice> device, const std::string& name)
-{
-    document_->touch.use(std::move(device), name);
-}
-
-/// If the device cannot be used, reports that; the mouse is used instead.
-std::unique_ptr<HapticDevice> Workbench::find_device(std::string& said) const
-{
-    if (!options_.has_servo) return nullptr;
-    try {
-        const std::filesystem::path profiles = asset_folder("devices");
-        return profiles.empty() ? nullptr : open_hid_device(load_hid_profiles(profiles), options_.allow_force);
-    } catch (const Error& error) {
-        said = error.what();
-        return nullptr;
-    }
-}
-
-std::filesystem::path Workbench::screenshot_stem() const
-{
-    return std::filesystem::path(document_->session_path).replace_extension();
 }
 
 // ---- Turns ----------------------------------------------------------------------------------------------------------
@@ -235,7 +155,7 @@ void Workbench::set_pixels(const glm::uvec2& pixels)
 
 bool Workbench::has_work() const
 {
-    if (!jobs_.is_idle()) return true;
+    if (!jobs_.is_idle() || !savers_.is_idle() || opening_ || is_saving()) return true;
     return document_ &&
            (!document_->screen.complete() || document_->annotator.stroke_is_running() || document_->touch.servo() ||
             is_stirring() || screenshots_.is_writing() || screenshots_.has_large() ||
@@ -245,7 +165,9 @@ bool Workbench::has_work() const
 void Workbench::advance()
 {
     follow_jobs();
+    follow_opening();
     if (!document_) return;
+    attempt(saving_, [this] { follow_save(); });
     attempt(touching_, [this] { follow_touch(); });
     attempt(recording_, [this] { follow_settings(); });
     attempt(keeping_, [this] { follow_view(); });
@@ -288,7 +210,10 @@ void Workbench::follow_stroke()
     journal_failure_ = failure;
     if (!annotator.stroke_is_running()) return;
     extend_stroke();
-    static_cast<void>(annotator.advance());
+    const bool has_painted = annotator.advance().has_value();
+    const uint64_t before =
+        std::exchange(stroke_uploads_, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
+    if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
     if (!annotator.stroke_is_running()) stroke_ended();
 }
 
@@ -315,7 +240,8 @@ void Workbench::follow_screenshots()
         screenshots_.drop_large();  // paint would show in some of its parts only
         say("The large screenshot was cancelled by painting", Weight::warning);
     }
-    const Screenshots::Turn turn = screenshots_.advance(document_->screen, screenshot_stem(), is_still_);
+    const Screenshots::Turn turn =
+        screenshots_.advance(document_->screen, screenshot_stem(), is_still_, texts_of_picture(pixels_));
     if (!turn.said.empty()) say(turn.said);
     if (!turn.progress.empty()) messages_.amend(options_.now_s(), turn.progress);
 }
@@ -332,8 +258,12 @@ Model Workbench::model() const
                 .panes = nothing_->panes,
                 .presets = presets_,
                 .trace = nothing_->trace,
+                .opening = opening_name(),
+                .candidate = candidate_.get(),
+                .open_failure = open_failure_,
+                .failed_path = &failed_path_,
                 .session_path = nothing_->path,
-                .jobs = jobs_.states(),
+                .jobs = job_states(),
                 .messages = messages_,
                 .keymap = keymap_,
                 .preferences = preferences_,
@@ -379,10 +309,17 @@ Model Workbench::model() const
             .undoable = document.annotator.history().undoable() + settings_to_record_,
             .redoable = document.annotator.history().redoable(),
             .is_saved = document.is_saved(),
+            .is_saving = is_saving(),
+            .has_session_file = document.has_session_file(),
+            .recovered = recovered_,
+            .opening = opening_name(),
+            .candidate = candidate_.get(),
+            .open_failure = open_failure_,
+            .failed_path = &failed_path_,
             .holder = document.holder,
             .session_path = document.session_path,
             .disputes = document.annotator.work().disputes(),
-            .jobs = jobs_.states(),
+            .jobs = job_states(),
             .messages = messages_,
             .keymap = keymap_,
             .preferences = preferences_,

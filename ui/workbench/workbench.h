@@ -5,14 +5,19 @@
 //
 //   actions -> perform -> Session, Annotator, Touch -> advance: touch, settings, stroke, preview, view, screenshots
 //
-// One thread, the one that owns the renderer, besides the servo's (haptics/servo.h) and one that writes a screenshot.
-// `advance` never waits for the device; a turn in which nothing happens costs microseconds (MEASURED.md).
+// One thread, the one that owns the renderer, besides the servo's (haptics/servo.h), those of jobs and savers, and one
+// that writes a screenshot.
+// `advance` never waits for the device, nor for a disk: files are read and written by jobs, and a volume that is opened
+// goes onto the device in slices of a few milliseconds. A turn in which nothing happens costs microseconds
+// (MEASURED.md).
 
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "engine/jobs/jobs.h"
+#include "engine/tasks/file_content.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/document.h"
 #include "ui/workbench/lists/pass_log.h"
@@ -23,6 +28,9 @@
 #include "ui/workbench/sight/hits.h"
 
 namespace shvr::ui {
+
+/// The last part of a path, also of a folder with a slash at its end.
+std::string short_name(const std::filesystem::path& path);
 
 struct WorkbenchOptions {
     View::Options view{};
@@ -45,8 +53,11 @@ public:
     void perform(const Action& action);
     /// The same; a failure becomes a message, but for DeviceLost. Returns whether it was carried out.
     bool apply(const Action& action);
-    /// Opens at once, with settings as --set takes them; the action Open does it beside the work.
-    void open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    /// Opens beside the work, with settings as --set takes them, as the action Open does: what is open stays until the
+    /// next is there, and is saved before that. A failure becomes a message.
+    void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings);
+    /// The same, and waits until it is there; saves nothing before. Fails where it cannot be opened.
+    void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {});
     void say(std::string text, Weight weight = Weight::done);
     /// After the graphics device was lost (DeviceLost, from any function here): drops what the workbench has on it,
     /// calls `make_anew`, and shows all again. What is recorded is all there; of a stroke under way, what was not
@@ -78,10 +89,18 @@ public:
     bool has_work() const;
     /// Whether the picture does not yet show what was done last.
     bool is_stirring() const { return look_is_stale_ || camera_moved_; }
-    /// Saves all work as Save does; if the person only looked around, saves the view silently. Where the work is only
-    /// looked at, nothing is saved, as was said; while it is asked what to believe, annotation stays as the journal has
-    /// it.
-    void save_before_leaving();
+    /// Whether what is open may be closed: call it turn by turn. Saves all work as Save does; if the person only looked
+    /// around, saves the view silently. Where the work is only looked at, nothing is saved, as was said; while it is
+    /// asked what to believe, annotation stays as the journal has it.
+    enum class Leave {
+        now,
+        later,    ///< something is being saved; all can be used meanwhile
+        refused,  ///< it cannot be saved; `why` says why, once
+    };
+    Leave leave(std::string& why);
+    bool is_saving() const { return save_ != nullptr || save_is_wanted_; }
+    /// Whether anything is to be seen of jobs.
+    bool shows_jobs() const { return opening_ || is_saving() || !jobs_.is_idle(); }
 
     // ---- What there is to see
 
@@ -182,6 +201,10 @@ private:
     void act(const CancelJob& action);
     void act(const Screenshot& action);
     void act(const Open& action);
+    void act(const LookAtFile& action);
+    void act(const TakeFile& action);
+    void act(const CorrectSpacing& action);
+    void act(const DismissNotices& action);
     void act(const ChooseBelief& action);
     void act(const WorkOnCopy& action);
     void act(const ChooseKeys& action);
@@ -202,14 +225,39 @@ private:
     void act(const ShowFullScreen& action);
     void act(const Quit& action);
 
-    // Documents
-    void open(OpenedSession opened, const std::filesystem::path& path, const std::vector<std::string>& settings);
-    void follow_jobs();
-    [[noreturn]] void bring_back(const std::string& why);
-    void show_again();
+    // Documents (workbench_open.cpp)
+    struct Opening;
+    void start_opening(Opening next);
+    void read_next();
+    void follow_opening();
+    bool is_ready_to_load();
+    void begin_loading();
+    void finish_opening();
+    void welcome(const std::filesystem::path& path, const std::vector<std::string>& losses);
+    void show_picture(const Session& pictured);
+    void end_opening(std::exception_ptr failure);
+    void cancel_opening();
+    /// As it was thrown, or in words.
+    std::exception_ptr opening_failure(const std::string& words) const;
+    Jobs::Number opening_number() const;
+    void bring_back();
+    Jobs::State state_of(const Opening& opening) const;
+    std::string_view opening_name() const;
+    std::vector<Jobs::State> job_states() const;
+    void stop_loading();
+    void load_again();
+    void load_once_more();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
-    void save();
     std::filesystem::path screenshot_stem() const;
+    Screenshots::Texts texts_of_picture(const glm::uvec2& pixels) const;
+
+    // Jobs and saving (workbench_save.cpp)
+    void follow_jobs();
+    void follow_save();
+    void begin_save(bool is_asked_for, Document::Parts parts = Document::Parts::all);
+    void end_save(const Jobs::Finished& job);
+    void take(FileContent content, const std::filesystem::path& path);
+    void take_annotation(Part part, const std::filesystem::path& path);
 
     // Own transfer functions
     std::filesystem::path preset_folder() const;
@@ -281,7 +329,31 @@ private:
     std::function<void(const std::string&)> log_;
     RecentActions recent_;
     Jobs jobs_;
-    Attempt touching_, recording_, keeping_, painting_, previewing_, looking_, reading_turn_, photographing_;
+    Jobs savers_{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< no save waits for other work
+    std::shared_ptr<Opening> opening_;                                          ///< null: nothing is being opened
+    std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< where `open` waits for what ends an opening
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< so that it is no job's
+    std::unique_ptr<Document> away_;  ///< what was open, without a scene, while the device has room for one only
+    /// What is being saved.
+    struct Save {
+        Jobs::Number number = 0;
+        std::shared_ptr<Document::Saving> saving;
+        bool is_asked_for = true;  ///< otherwise nothing is said where all goes well
+    };
+    std::unique_ptr<Save> save_;
+    bool save_is_wanted_ = false;     ///< once the stroke, or the save, under way has ended
+    double stroke_progress_s_ = 0.0;  ///< when the last of its bricks came
+    uint64_t stroke_uploads_ = 0;
+    std::string unpainted_;            ///< why a part of the stroke before the save was not painted
+    std::string save_failure_;         ///< of the last save; empty: it went well
+    bool has_tried_view_ = false;      ///< that alone is no reason to stay
+    bool is_leaving_ = false;          ///< that a save fails is a reason to stay
+    bool reopens_when_saved_ = false;  ///< with the spacing of the session
+    std::vector<std::string> recovered_;
+    std::unique_ptr<Candidate> candidate_;
+    std::string open_failure_;
+    std::filesystem::path failed_path_;
+    Attempt saving_, touching_, recording_, keeping_, painting_, previewing_, looking_, reading_turn_, photographing_;
     std::vector<std::string> logged_instead_;  ///< of the action under way: what replays it whatever is seen by then
     std::optional<Pointer> pointer_;
     std::string clipboard_;

@@ -15,28 +15,29 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
         document_->touch.drop_queries();
         document_->screen.drop();
     }
+    stop_loading();
     make_anew();
     look_again();
-    if (document_) show_again();
+    if (document_) load_again();
+    load_once_more();
     say(sentence("The graphics device stopped answering and was started again; ",
                  was_painting ? "of the stroke that was under way a part may be missing, all other work is there"
                               : "all work is there"),
         Weight::warning);
 }
 
-/// Where the new device cannot hold what the old one did, the document is saved and closed.
-void Workbench::show_again()
+/// Where the new device cannot hold what the old one did, the document is put away, and brought back once more.
+void Workbench::load_again()
 {
     try {
-        document_->show_again(renderer_);
+        document_->load_again(renderer_);
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {
-        const std::string path = document_->session_path.string();
-        if (!document_->only_looks()) save();
-        document_.reset();
-        fail("The graphics device was started again, but ", path, " cannot be shown on it: ", error.what(),
-             "; it is saved and closed");
+        say(sentence("The graphics device was started again, but ", document_->session_path.string(),
+                     " cannot be shown on it: ", error.what()),
+            Weight::error);
+        away_ = std::move(document_);
     }
 }
 

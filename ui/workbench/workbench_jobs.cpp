@@ -13,11 +13,6 @@ std::string joined(const std::vector<std::string>& texts, const char* between)
     return text;
 }
 
-std::string name_of(const std::filesystem::path& path)
-{
-    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
-}
-
 std::string sentence_about(const EvaluateResult& result)
 {
     std::string text;
@@ -32,36 +27,6 @@ std::string sentence_about(const EvaluateResult& result)
 }
 
 }  // namespace
-
-void Workbench::follow_jobs()
-{
-    for (const Jobs::Finished& job : jobs_.finish()) {
-        if (job.was_cancelled)
-            say("Cancelled: " + job.what, Weight::warning);
-        else if (!job.failure.empty())
-            say(job.failure, Weight::error);
-    }
-}
-
-void Workbench::act(const CancelJob& action)
-{
-    jobs_.cancel(action.number);
-}
-
-/// Statistics of a volume that is no project take a pass over its voxels. Meanwhile the work goes on; it is saved when
-/// the next is there.
-void Workbench::act(const Open& action)
-{
-    const std::filesystem::path path = action.path;
-    jobs_.start("opening " + name_of(path), [this, path](ProgressReporter& reporter) -> Jobs::Completion {
-        const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name_of(path))}};
-        auto opened = std::make_shared<OpenedSession>(open_session(path, {}, options));
-        return [this, path, opened] {
-            if (document_) save_before_leaving();
-            open(std::move(*opened), path, {});
-        };
-    });
-}
 
 void Workbench::act(const ExportTask& task)
 {
@@ -93,7 +58,7 @@ void Workbench::act(const ExportTask& task)
 void Workbench::act(const ImportTask& task)
 {
     check(task);
-    jobs_.start("importing " + name_of(task.volume), [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+    jobs_.start("importing " + short_name(task.volume), [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         ImportTask wanted = task;
         wanted.program = "shvr view";
         const ImportResult result = run(wanted, reporter);

@@ -28,11 +28,10 @@ void Workbench::prefer(Preferences preferences)
     keymap_ = Keymap(preferences.key_set, preferences.keys);
     preferences_ = std::move(preferences);
     if (!are_preferences_kept_) return;
-    try {
-        save_preferences(options_.preferences, preferences_);
-    } catch (const Error& error) {
-        say(error.what(), Weight::warning);
-    }
+    savers_.start("keeping preferences", [file = options_.preferences, kept = preferences_](ProgressReporter&) {
+        save_preferences(file, kept);
+        return Jobs::Completion();
+    });
 }
 
 void Workbench::act(const ChooseKeys& action)

@@ -162,7 +162,7 @@ void Workbench::settings_changed(const Session& before)
     const Session& after = document.session;
     if (before.render.sampling != after.render.sampling || before.render.paging != after.render.paging) {
         document.screen.clear();
-        document.show_again(renderer_);
+        document.load_again(renderer_);
     } else if (before.groups != after.groups) {
         renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
     }

@@ -68,6 +68,16 @@ std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace
     return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
+/// Whether the selected node does, though near enough to be allowed.
+bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
+{
+    const std::optional<uint32_t> node = trace.selection().node();
+    if (!node) return false;
+    const glm::dvec3 voxel = trace.node(*node).position / volume.spacing;
+    return glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) ||
+           glm::any(glm::greaterThan(voxel, glm::dvec3(volume.size)));
+}
+
 }  // namespace
 
 /// New nodes are as wide as what they lie in, if that is wanted and can be told.
@@ -98,7 +108,11 @@ void Workbench::trace(const TraceOp& asked)
     document_->drags_node = false;
     if (done) show_changes(*done);
     if (cut && done) return note_cut(cut);
-    say(said_of(op, effect.selection.has_value(), done, trace, before));
+    const std::string said = said_of(op, effect.selection.has_value(), done, trace, before);
+    const bool places = std::holds_alternative<NodeOp>(op) || std::holds_alternative<MoveOp>(op);
+    if (done && places && lies_outside(trace, document_->volume()))
+        return say(said + "; it lies outside the volume", Weight::warning);
+    say(said);
 }
 
 /// Tracing goes on from one of the ends.

@@ -1,9 +1,8 @@
 // Actions on the work: undo and redo, saving, pictures, opening another scan.
 
 #include <algorithm>
-#include <chrono>
-#include <thread>
 
+#include "engine/session/picture_session.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -48,11 +47,6 @@ void Workbench::show_changes(const Command& command)
     look_again();
 }
 
-void Workbench::act(const SaveOp&)
-{
-    save();
-}
-
 void Workbench::act(const RevertOp&)
 {
     record_settings();
@@ -66,6 +60,7 @@ void Workbench::act(const RevertOp&)
 
 void Workbench::act(const SaveAs& action)
 {
+    if (is_saving()) fail("the work is being saved; expected that to have ended");
     const std::string unpainted = finish_stroke();
     record_settings();
     std::string kept;
@@ -94,9 +89,22 @@ void Workbench::act(const Screenshot& action)
     session.render.size = pixels_ * session.interaction.screenshot_scale;
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
-    screenshots_.take_large(screenshot_stem(), renderer_, session, document_->camera, options);
+    screenshots_.take_large(screenshot_stem(), renderer_, session, document_->camera, options,
+                            texts_of_picture(session.render.size));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
+}
+
+/// The session in a picture is of that size, without the probe, which is no part of the picture.
+Screenshots::Texts Workbench::texts_of_picture(const glm::uvec2& pixels) const
+{
+    return [this, pixels](const std::filesystem::path& picture) {
+        Session session = document_->saved_session();
+        session.render.size = pixels;
+        const bool has_project = document_->has_session_file() || document_->annotator.work().journal().bytes > 0;
+        return shvr::texts_of_picture(std::move(session), document_->camera, picture,
+                                      has_project ? document_->session_path : std::filesystem::path(), false);
+    };
 }
 
 void Workbench::act(const ChooseBelief& action)
@@ -111,61 +119,7 @@ void Workbench::act(const ChooseBelief& action)
 
 void Workbench::act(const WorkOnCopy&)
 {
-    const std::filesystem::path copy = document_->save_copy();
-    open(copy, {});
-}
-
-/// Saves all work as the Save command does; if the user only looked around, saves the view silently. A window that only
-/// looks saves nothing, as it says; and while it is asked what to believe, annotation stays as the journal has it.
-void Workbench::save_before_leaving()
-{
-    if (document_->only_looks()) return;
-    if (!document_->annotator.work().disputes().empty()) return document_->save_settings();
-    if (document_->is_saved() && !document_->annotator.stroke_is_running()) return document_->keep_view();
-    save();
-}
-
-/// A save includes all that the stroke has covered, so this waits for its bricks. Returns why part of it was not
-/// painted; empty if all was.
-std::string Workbench::finish_stroke()
-{
-    constexpr double PATIENCE_S = 20.0;
-    constexpr std::chrono::milliseconds TURN(1);
-    Annotator& annotator = document_->annotator;
-    extend_stroke();
-    if (annotator.stroke_is_open()) annotator.end_stroke();
-    double last_progress_s = options_.now_s();
-    uint64_t uploads = 0;
-    try {
-        while (annotator.stroke_is_running()) {
-            const bool has_painted = annotator.advance().has_value();
-            renderer_.scene().advance();
-            const uint64_t uploads_before =
-                std::exchange(uploads, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
-            if (has_painted || uploads != uploads_before) last_progress_s = options_.now_s();
-            if (options_.now_s() - last_progress_s > PATIENCE_S) {
-                annotator.drop_stroke();
-                return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
-            }
-            std::this_thread::sleep_for(TURN);
-        }
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
-
-void Workbench::save()
-{
-    const std::string unpainted = finish_stroke();
-    record_settings();
-    std::string kept;
-    for (const Notice& notice : document_->save()) kept += "; " + notice.text;
-    const std::filesystem::path& trace = document_->session.trace_path;
-    const bool has_trace = !trace.empty() && std::filesystem::exists(trace);
-    say("Saved " + document_->session.mask_path.string() + (has_trace ? ", " + trace.string() : std::string()) +
-        " and " + document_->session_path.string() +
-        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted) + kept);
+    begin_open(document_->save_copy(), {});
 }
 
 }  // namespace shvr::ui

@@ -28,34 +28,39 @@ void TraceIndex::note(uint32_t number, const std::optional<glm::dvec3>& position
 {
     constexpr size_t FEWEST = 256;
     changed_[number] = position;
-    if (changed_.size() > std::max(FEWEST, tree_.size() / 32)) build();
+    if (changed_.size() > std::max(FEWEST, tree_size() / 32)) build();
 }
 
 void TraceIndex::build()
 {
-    std::erase_if(tree_, [&](const Point& point) { return changed_.contains(point.number); });
+    auto tree = std::make_shared<Tree>();
+    tree->points.reserve(tree_size() + changed_.size());
+    if (tree_)
+        for (const Point& point : tree_->points)
+            if (!changed_.contains(point.number)) tree->points.push_back(point);
     for (const auto& [number, position] : changed_)
-        if (position) tree_.push_back({*position, number});
+        if (position) tree->points.push_back({*position, number});
     changed_.clear();
-    axes_.assign(tree_.size(), 0);
-    split(0, tree_.size());
+    tree->axes.assign(tree->points.size(), 0);
+    tree->split(0, tree->points.size());
+    tree_ = std::move(tree);
 }
 
-void TraceIndex::split(size_t begin, size_t end)
+void TraceIndex::Tree::split(size_t begin, size_t end)
 {
     if (begin == end) return;
-    glm::dvec3 lower = tree_[begin].position, upper = lower;
+    glm::dvec3 lower = points[begin].position, upper = lower;
     for (size_t i = begin + 1; i < end; ++i) {
-        lower = glm::min(lower, tree_[i].position);
-        upper = glm::max(upper, tree_[i].position);
+        lower = glm::min(lower, points[i].position);
+        upper = glm::max(upper, points[i].position);
     }
     const glm::dvec3 extent = upper - lower;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     const size_t middle = begin + (end - begin) / 2;
     using Offset = std::ptrdiff_t;
-    std::nth_element(tree_.begin() + Offset(begin), tree_.begin() + Offset(middle), tree_.begin() + Offset(end),
+    std::nth_element(points.begin() + Offset(begin), points.begin() + Offset(middle), points.begin() + Offset(end),
                      [&](const Point& a, const Point& b) { return a.position[axis] < b.position[axis]; });
-    axes_[middle] = uint8_t(axis);
+    axes[middle] = uint8_t(axis);
     split(begin, middle);
     split(middle + 1, end);
 }
@@ -70,16 +75,16 @@ void TraceIndex::search(const glm::dvec3& position, const double& most_squared, 
         size_t begin, end;
         double away_squared;  ///< at least, along one axis
     };
-    std::vector<Range> ranges{{0, tree_.size(), 0.0}};
+    std::vector<Range> ranges{{0, tree_size(), 0.0}};
     while (!ranges.empty()) {
         const Range range = ranges.back();
         ranges.pop_back();
         if (range.begin == range.end || range.away_squared > most_squared) continue;
         const size_t middle = range.begin + (range.end - range.begin) / 2;
-        const Point& point = tree_[middle];
+        const Point& point = tree_->points[middle];
         if (changed_.empty() || !changed_.contains(point.number))
             visit(point.number, squared(point.position - position));
-        const double beyond = position[axes_[middle]] - point.position[axes_[middle]];
+        const double beyond = position[tree_->axes[middle]] - point.position[tree_->axes[middle]];
         const Range left{range.begin, middle, beyond > 0.0 ? beyond * beyond : 0.0};
         const Range right{middle + 1, range.end, beyond < 0.0 ? beyond * beyond : 0.0};
         // The nearer side is searched first, so that it shrinks the search radius for the other.

@@ -3,10 +3,11 @@
 // built, and a list of those changed since, which is searched linearly and stays below a 32nd of the tree. So queries
 // between edits take microseconds, and rebuilding costs little per edit.
 //
-// One thread changes it; any number of threads may query while none changes it.
+// One thread changes it; any number of threads may query while none changes it. Copies share the tree.
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,12 +33,17 @@ private:
     };
     void note(uint32_t number, const std::optional<glm::dvec3>& position);
     void build();
-    void split(size_t begin, size_t end);
     template <class Visit>
     void search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const;
 
-    std::vector<Point> tree_;    ///< in the middle of each range: the median along its longest axis
-    std::vector<uint8_t> axes_;  ///< the splitting axis of each
+    struct Tree {
+        std::vector<Point> points;  ///< in the middle of each range: the median along its longest axis
+        std::vector<uint8_t> axes;  ///< the splitting axis of each
+        void split(size_t begin, size_t end);
+    };
+    size_t tree_size() const { return tree_ ? tree_->points.size() : 0; }
+
+    std::shared_ptr<const Tree> tree_;                       ///< shared with copies; null: empty
     std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< since the tree was built; nothing: removed
 };
 

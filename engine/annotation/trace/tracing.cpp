@@ -196,8 +196,9 @@ void TraceGraph::set_internode(uint32_t number, const std::optional<TraceInterno
         next_internode_ = std::max(next_internode_, uint64_t{number} + 1);
     } else {
         for (const uint32_t end : {from->a, from->b}) {
-            drop(internodes_of_[end], number);
-            if (internodes_of_[end].empty()) internodes_of_.erase(end);
+            std::vector<uint32_t>& of_end = internodes_of_[end];
+            drop(of_end, number);
+            if (of_end.empty()) internodes_of_.erase(end);
         }
         internodes_.erase(number);
         if (holds(selection_.internodes, number)) selection_ = {};

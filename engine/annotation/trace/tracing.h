@@ -6,7 +6,8 @@
 //
 // Numbers of nodes and internodes are never reused, not even after an undo.
 //
-// Not thread safe: one thread owns a trace (the main one) and lends it as const.
+// One thread owns a trace (the main one) and lends it as const. A copy shares what it holds with the original
+// (shared_map.h), so it costs little, and may go to another thread.
 
 #include <cstdint>
 #include <map>
@@ -19,6 +20,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/annotation/direction.h"
+#include "engine/annotation/trace/shared_map.h"
 #include "engine/annotation/trace/trace_index.h"
 #include "engine/annotation/trace/trace_tally.h"
 
@@ -76,8 +78,8 @@ using TraceChange = std::variant<TraceNodeChange, TraceInternodeChange, TraceSiz
 
 class TraceGraph {
 public:
-    const std::map<uint32_t, TraceNode>& nodes() const { return nodes_; }
-    const std::map<uint32_t, TraceInternode>& internodes() const { return internodes_; }
+    const SharedMap<TraceNode>& nodes() const { return nodes_; }
+    const SharedMap<TraceInternode>& internodes() const { return internodes_; }
     const std::map<uint8_t, double>& internode_radii() const { return internode_radii_; }
     const TraceNode& node(uint32_t number) const;
     const TraceInternode& internode(uint32_t number) const;
@@ -126,9 +128,9 @@ private:
     void set_internode(uint32_t number, const std::optional<TraceInternode>& from,
                        const std::optional<TraceInternode>& to);
 
-    std::map<uint32_t, TraceNode> nodes_;
-    std::map<uint32_t, TraceInternode> internodes_;
-    std::map<uint32_t, std::vector<uint32_t>> internodes_of_;  ///< of nodes that have any
+    SharedMap<TraceNode> nodes_;
+    SharedMap<TraceInternode> internodes_;
+    SharedMap<std::vector<uint32_t>> internodes_of_;  ///< of nodes that have any
     std::map<uint8_t, double> internode_radii_;
     uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
     uint64_t revision_ = 0;                        ///< 0: empty

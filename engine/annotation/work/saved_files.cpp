@@ -38,9 +38,8 @@ std::vector<Change> bricks_between(const SparseBricks<Value>& from, const Sparse
 }
 
 /// What `from` has and `to` has otherwise or not; `made`: what `to` has beyond that or otherwise.
-template <class Record, class Number, class Value>
-void differences(const std::map<Number, Value>& from, const std::map<Number, Value>& to, std::vector<Record>& gone,
-                 std::vector<Record>& made)
+template <class Record, class Map>
+void differences(const Map& from, const Map& to, std::vector<Record>& gone, std::vector<Record>& made)
 {
     for (const auto& [number, value] : from)
         if (const auto found = to.find(number); found == to.end()) gone.push_back({number, value, {}});

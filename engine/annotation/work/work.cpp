@@ -4,9 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "engine/annotation/files/mask_image.h"
-#include "engine/annotation/files/mask_import.h"
-#include "engine/annotation/files/offset_import.h"
 #include "engine/base/atomic_writer.h"
 
 namespace shvr {
@@ -76,7 +73,7 @@ void Work::open_journal()
     if (files_.journal.empty()) return;
     if (is_to_set_aside_) set_journal_aside();
     const bool is_new = scan_.records.empty();
-    journal_ = std::make_unique<Journal>(files_.journal, scan_);
+    journal_ = std::make_shared<Journal>(files_.journal, scan_);
     scanned_.reset();
     if (is_new)
         begin_records();
@@ -128,7 +125,7 @@ void Work::keep_journal_in_place()
     if (is_there(files_.journal)) set_aside(files_.journal);
     journal_->copy_to(files_.journal);
     journal_.reset();
-    journal_ = std::make_unique<Journal>(files_.journal, scan_journal(files_.journal));
+    journal_ = std::make_shared<Journal>(files_.journal, scan_journal(files_.journal));
 }
 
 void Work::set_journal_aside()
@@ -159,13 +156,20 @@ void Work::record_files(RecordKind kind, std::string label)
 
 void Work::touch(std::span<const Change> changes)
 {
+    const auto note = [&](Part part) { touched_[size_t(part)] = touched_since_saving_[size_t(part)] = true; };
     const ByKind touch{
-        [&](const MaskBrickChange&) { touched_[size_t(Part::mask)] = true; },
-        [&](const TraceChange&) { touched_[size_t(Part::trace)] = true; },
-        [&](const DensityBrickChange&) { touched_[size_t(Part::offsets)] = true; },
+        [&](const MaskBrickChange&) { note(Part::mask); },
+        [&](const TraceChange&) { note(Part::trace); },
+        [&](const DensityBrickChange&) { note(Part::offsets); },
         [](const SettingChange&) {},
     };
     for (const Change& change : changes) std::visit(touch, change);
+}
+
+void Work::note_unsaved(size_t steps)
+{
+    for (size_t* const count : {&unsaved_, &unsaved_since_saving_})
+        *count = steps == 0 ? std::max<size_t>(*count, 1) : *count + steps;
 }
 
 void Work::note_step()
@@ -181,7 +185,7 @@ const Command* Work::perform(Command command)
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     touch(command.changes);
     const Command* const performed = history_.perform(document_, std::move(command), number);
-    ++unsaved_;
+    note_unsaved(1);
     note_step();
     return performed;
 }
@@ -192,7 +196,7 @@ void Work::extend(std::vector<Change> changes)
     const RecordNumber number = record(RecordKind::extension, {}, bytes_of(changes));
     touch(changes);
     history_.extend(document_, std::move(changes), number);
-    unsaved_ = std::max<size_t>(unsaved_, 1);
+    note_unsaved(0);
     note_step();
 }
 
@@ -213,7 +217,7 @@ const Command* Work::go(const Command* (History::*way)(Document&), RecordKind ki
     if (!command) return nullptr;  // the step before has just been recorded
     touch(command->changes);
     record(kind);
-    ++unsaved_;
+    note_unsaved(1);
     note_step();
     return command;
 }
@@ -238,139 +242,7 @@ void Work::keep_state()
     state_ = std::async(std::launch::async, [document = document_] { return bytes_of(document); });
 }
 
-// ---- Saving ----
-
-void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::path& density)
-{
-    const WorkFiles before = files_;
-    files_.mask = mask;
-    files_.trace = trace;
-    files_.density = density;
-    for (const Part part : PARTS) {
-        const fs::path& file = file_of(files_, part);
-        if (file == file_of(before, part)) continue;
-        digest_of(known_, part).reset();
-        seen_[size_t(part)] = {.is_foreign = is_there(file)};
-    }
-}
-
-void Work::expect_names(const WorkFiles& files) const
-{
-    if (files.mask.empty() && (files.trace.empty() || holds_any(document_, Part::mask)))
-        fail("the session names no file for the mask; expected the key annotation.mask");
-    if (files.trace.empty() && holds_any(document_, Part::trace))
-        fail("the session names no file for the trace; expected the key annotation.trace");
-    if (files.density.empty() && holds_any(document_, Part::offsets))
-        fail("the session names no file for density offsets; expected the key annotation.density");
-}
-
-/// The mask always; another part that has become empty is written as empty, but if there never was one, no file is.
-bool Work::is_to_write(Part part) const
-{
-    const fs::path& file = file_of(files_, part);
-    if (file.empty() || part == Part::mask) return !file.empty();
-    return is_there(file) ? touched_[size_t(part)] : holds_any(document_, part) || digest_of(known_, part).has_value();
-}
-
-/// Whether a file holds what the journal does not: found so at opening, or written by others since.
-bool Work::is_foreign(Part part) const
-{
-    const fs::path& file = file_of(files_, part);
-    const Seen& seen = seen_[size_t(part)];
-    if (!is_there(file)) return false;
-    if (seen.is_foreign) return true;
-    if (const std::optional<FileStamp> stamp = stamp_of(file); stamp && stamp == seen.stamp) return false;
-    try {
-        return file_digest(file) != seen.digest;
-    } catch (const Error&) {
-        return true;  // this process has never read it
-    }
-}
-
-void Work::note_file(Part part)
-{
-    Seen& seen = seen_[size_t(part)];
-    seen = {.stamp = stamp_of(file_of(files_, part))};  // also where it cannot be read
-    seen = seen_at(file_of(files_, part));
-}
-
-Work::Seen Work::seen_at(const fs::path& file)
-{
-    const std::optional<FileStamp> stamp = stamp_of(file);
-    return {.digest = file_digest(file), .stamp = stamp};
-}
-
-/// `journal`: the one that the mask names, beside `files`; null where there is none.
-void Work::write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks, const Journal* journal) const
-{
-    switch (part) {
-        case Part::mask: {
-            std::optional<MaskJournal> named;
-            if (const auto [number, checksum] = journal ? journal->last_durable() : std::pair<RecordNumber, uint64_t>();
-                number > 0)
-                named = {files.journal.filename().string(), number, checksum};
-            save_mask_as(files.mask, document_.mask, files.volume,
-                         {.colors = std::move(looks), .painted_on = files.volume_hash, .journal = named});
-            save_mask_image(files.mask, files.volume_hash, named);
-            return;
-        }
-        case Part::trace: save_trace(files.trace, document_.trace, space_of(files.volume)); return;
-        case Part::offsets: save_offsets_as(files.density, document_.density, files.volume); return;
-    }
-}
-
-Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function<void()>& save_session)
-{
-    refuse_if_only_looking();
-    expect_choice();
-    expect_names(files_);
-    // Also where another process has begun a journal since this one looked: then this one is refused.
-    if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
-    if (journal_) {
-        journal_->append(RecordKind::saving, {}, {});
-        journal_->flush();
-    }
-    Saved saved;
-    for (const Part part : PARTS) {
-        if (!is_to_write(part)) continue;
-        const fs::path& file = file_of(files_, part);
-        if (is_foreign(part)) {
-            const fs::path old = set_aside(file);
-            saved.notices.push_back({sentence(file.string(), ": was written by another program; expected the ",
-                                              name_of(part), " as this one knows it; it is kept as ", old.string(),
-                                              ", and what is saved is this program's"),
-                                     true});
-        }
-        try {
-            write(part, files_, looks, journal_.get());
-        } catch (const Error&) {
-            note_file(part);  // whatever of it was done is this process's
-            throw;
-        }
-        note_file(part);
-        digest_of(known_, part) = seen_[size_t(part)].digest;
-        saved.files.push_back(file);
-    }
-    if (save_session) {
-        save_session();
-        known_.settings = document_.settings.values();
-        known_kept_ = keeps_settings_ ? last_kept_ : 0;
-    }
-    record_files(RecordKind::saved);
-    flush();
-    if (save_session && keeps_settings_) files_.kept = kept_;
-    unsaved_ = 0;
-    misses_files_ = false;
-    touched_ = {};
-    return saved;
-}
-
-void Work::save_copy(const WorkFiles& to, std::vector<LabelImage::Color> looks) const
-{
-    for (const Part part : PARTS)
-        if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document_, part)))
-            write(part, to, looks, nullptr);
-}
+// ---- What is on disk ----
 
 bool Work::is_kept() const
 {
@@ -392,6 +264,12 @@ void Work::settle()
         keep_state();
     }
     journal_->flush();
+}
+
+std::function<void()> Work::flusher() const
+{
+    if (!journal_) return {};
+    return [journal = journal_] { journal->flush(); };
 }
 
 void Work::flush()

@@ -7,7 +7,8 @@
 // question for the user. Nothing is ever overwritten that the journal does not hold (README.md has the table). The
 // journal begins with the first command: only looking leaves no file.
 //
-// One thread, the main one. Only writing the journal happens elsewhere (journal.h).
+// One thread at a time: the one that opens it, then the main one. Writing happens elsewhere: of the journal (journal.h)
+// and of a save (Work::Saving).
 
 #include <filesystem>
 #include <functional>
@@ -18,6 +19,7 @@
 #include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/journal.h"
 #include "engine/annotation/work/saved_files.h"
+#include "engine/base/progress.h"
 #include "engine/projects/import_volume.h"
 
 namespace shvr {
@@ -66,6 +68,7 @@ public:
         bool only_look = false;        ///< takes no hold, and no command
         std::shared_ptr<Hold> hold{};  ///< of this journal; null: it is taken now
         std::string program = "shvr";  ///< as in Holder, where it is taken now
+        Progress progress{};           ///< of replaying the journal; what it throws ends the opening
     };
     /// For a Work without commands. Returns what there is to say: unsaved work, files that are missing or unreadable, a
     /// journal that is missing or damaged. Fails, loading nothing, if a file is of another volume or malformed and no
@@ -127,6 +130,17 @@ public:
         std::vector<Notice> notices;
     };
     Saved save(std::vector<LabelImage::Color> looks = {}, const std::function<void()>& save_session = {});
+
+    /// A save beside the work: what is to be written, as it was when the save began. What is done meanwhile is not in
+    /// it and stays unsaved. Until `write` has come to its end the journal does not say that anything was saved.
+    class Saving;
+    /// Takes what is to be written, at the cost of a copy of the document; fails as `save` does before it writes. One
+    /// at a time; `end_save` must follow.
+    std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
+    /// Whether it was written or not.
+    Saved end_save(Saving& saving);
+    bool is_saving() const { return is_saving_; }
+    /// Not while a save is under way.
     /// Goes on under other names, none of which may exist yet, with the whole history; what was written before stays as
     /// it is and is let go. In this order, each on disk before the next: a copy of the journal, the mark that a save
     /// begins, the files, what they are, and `save_session`, which writes `session`: what is killed before that leaves
@@ -135,7 +149,7 @@ public:
     Saved save_as(const WorkFiles& to, const std::vector<LabelImage::Color>& looks,
                   const std::filesystem::path& session = {}, const std::function<void()>& save_session = {});
     /// Writes the document into other files, which must not exist yet, and changes nothing else.
-    void save_copy(const WorkFiles& to, std::vector<LabelImage::Color> looks) const;
+    void save_copy(const WorkFiles& to, const std::vector<LabelImage::Color>& looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undos and redos since the last save.
@@ -146,6 +160,8 @@ public:
     bool is_kept() const;
     /// Ends what is under way beside the work, so that another Work can open the same files before this one is gone.
     void settle();
+    /// Waits until the journal is on disk, on another thread; empty where there is none. It may outlive the work.
+    std::function<void()> flusher() const;
     /// No command since has changed the trace.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
     /// Waits until the journal is on disk; fails with the reason if that is not possible.
@@ -217,6 +233,8 @@ private:
     void write_kept();
     void touch(std::span<const Change> changes);
     const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
+    /// 0: the last step goes on.
+    void note_unsaved(size_t steps);
     void note_step();
     void keep_state();
 
@@ -226,11 +244,11 @@ private:
         std::array<RecordNumber, 3> of{};
     };
     LastSave last_save(const JournalScan& scan) const;
+    static RecordNumber begin_of_save(const JournalScan& scan, RecordNumber saved);
     std::vector<Change> settings_since_save(const Document& saved) const;
     void expect_names(const WorkFiles& files) const;
-    bool is_to_write(Part part) const;
-    bool is_foreign(Part part) const;
-    void write(Part part, const WorkFiles& files, std::vector<LabelImage::Color> looks, const Journal* journal) const;
+    static void write(Part part, const Document& document, const WorkFiles& files,
+                      const std::vector<LabelImage::Color>& looks, const Journal* journal);
     void note_file(Part part);
 
     Size3 size_;
@@ -270,17 +288,49 @@ private:
         bool is_foreign = false;  ///< the journal does not hold what it holds
     };
     static Seen seen_at(const std::filesystem::path& file);
+    static void note_file(const std::filesystem::path& file, Seen& seen);
     class SavingAs;
     std::array<Seen, 3> seen_;
-    std::unique_ptr<Journal> journal_;
+    std::shared_ptr<Journal> journal_;  ///< a save under way holds it, too
     size_t unsaved_ = 0;
     bool misses_files_ = false;      ///< that the journal holds and the next save writes
     std::array<bool, 3> touched_{};  ///< since the last save
+    bool is_saving_ = false;
+    size_t unsaved_since_saving_ = 0;
+    std::array<bool, 3> touched_since_saving_{};
+    Progress opening_progress_;  ///< null unless it is being opened
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
     std::future<std::vector<std::byte>> state_;  ///< being made of a copy of the document
     RecordNumber state_about_ = 0;
     Limits limits_;
+};
+
+class Work::Saving {
+public:
+    Saving(const Saving&) = delete;
+    /// Writes the files and what they are, as `Work::save` says, on any thread; only once. What `progress` throws ends
+    /// it: then some files may be new and the rest old, as where it fails.
+    void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
+
+private:
+    friend class Work;
+    Saving() = default;
+    bool is_to_write(Part part) const;
+    bool is_foreign(Part part) const;
+    void write(Part part);
+
+    WorkFiles files_;
+    Document document_{.mask = Mask(Size3(0)), .trace = {}};
+    std::vector<LabelImage::Color> looks_;
+    std::shared_ptr<Journal> journal_;
+    std::array<bool, 3> touched_{};
+    std::array<Seen, 3> seen_;
+    SavedFiles known_;
+    SettingValues kept_;
+    RecordNumber last_kept_ = 0, known_kept_ = 0;
+    Saved saved_;
+    bool has_session_ = false, is_written_ = false;
 };
 
 /// That the journal is missing although the mask was saved with it; nothing where that is not so, or not known.

@@ -25,12 +25,18 @@ bool is_step(RecordKind kind)
     return kind == RecordKind::command || kind == RecordKind::undo || kind == RecordKind::redo;
 }
 
+/// A save holds what was there when it began; what was done until its end is not in it.
 size_t steps_since_save(const JournalScan& scan)
 {
     size_t steps = 0;
+    std::optional<size_t> since_saving;
     for (const JournalRecord& record : scan.records) {
-        if (record.kind == RecordKind::saved) steps = 0;
-        if (is_step(record.kind)) ++steps;
+        if (record.kind == RecordKind::saving) since_saving = 0;
+        if (record.kind == RecordKind::saved) steps = std::exchange(since_saving, {}).value_or(0);
+        const bool continues = record.kind == RecordKind::extension;
+        if (!is_step(record.kind) && !continues) continue;
+        steps = continues ? std::max<size_t>(steps, 1) : steps + 1;
+        if (since_saving) since_saving = continues ? std::max<size_t>(*since_saving, 1) : *since_saving + 1;
     }
     return steps;
 }
@@ -76,6 +82,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     SHVR_CHECK(!journal_ && history_.undoable() == 0, "work has begun");
     files_ = files;
     only_looks_ = opening.only_look;
+    opening_progress_ = opening.progress;
     program_ = opening.program;
     keeps_settings_ = !files.kept.empty();
     kept_ = files.kept;
@@ -83,6 +90,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     if (!only_looks_) hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
     if (opening.start == Start::fresh) {
         open_fresh();
+        opening_progress_ = {};
         return {};
     }
     std::vector<Notice> notices = open_once();
@@ -91,6 +99,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         std::this_thread::sleep_for(TURN);
         notices = open_once();
     }
+    opening_progress_ = {};
     for (Notice& notice : choose(opening.belief).notices) notices.push_back(std::move(notice));
     return notices;
 }
@@ -228,6 +237,8 @@ std::string Work::replay()
             document_ = std::move(whole.document);
             history_ = std::move(whole.history);
             return damage;
+        } catch (const Stopped&) {
+            throw;
         } catch (const Error& error) {
             scan_.cut(at - 1);
             damage = sentence("record ", at, " cannot be applied: ", error.what());
@@ -281,7 +292,11 @@ Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, Record
         work.document =
             document_of(content_of(state), empty_document(), [&](Change& change) { bring_to_spacing(change, state); });
     }
-    for (at = 1; at <= last; ++at) replay_one(known);
+    constexpr RecordNumber RECORDS_TOLD = 64;
+    for (at = 1; at <= last; ++at) {
+        if (at % RECORDS_TOLD == 0) tell(opening_progress_, double(at) / double(last));
+        replay_one(known);
+    }
     return work;
 }
 
@@ -357,6 +372,17 @@ void Work::look_at_mask_image(std::vector<Notice>& notices) const
     }
 }
 
+/// The record at which the save of a `saved` record began: it holds the work as it was then.
+RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
+{
+    for (RecordNumber number = saved - 1; number > 0; --number) {
+        const RecordKind kind = scan.records[number - 1].kind;
+        if (kind == RecordKind::saving) return number;
+        if (kind == RecordKind::saved) break;
+    }
+    return saved;  // the first, which was not saved but found
+}
+
 /// The states that a save may have written: the last one that was finished, and all that were begun since.
 std::vector<Document> Work::documents_at_saves() const
 {
@@ -366,8 +392,9 @@ std::vector<Document> Work::documents_at_saves() const
         const RecordKind kind = scan_.records[number - 1].kind;
         if (kind != RecordKind::saving && kind != RecordKind::saved) continue;
         RecordNumber at = 0;
-        documents.push_back(replayed(scan_, number, at).document);
-        if (kind == RecordKind::saved) break;
+        const bool was_finished = kind == RecordKind::saved;
+        documents.push_back(replayed(scan_, was_finished ? begin_of_save(scan_, number) : number, at).document);
+        if (was_finished) break;
     }
     return documents;
 }

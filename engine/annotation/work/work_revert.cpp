@@ -28,7 +28,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
             RecordNumber& of = last.of[size_t(part)];
             if (record.kind == RecordKind::known ? digest_of(files, part) != digest_of(before, part)
                                                  : has_saved || is_of_files)
-                of = number;
+                of = record.kind == RecordKind::known ? number : begin_of_save(scan, number);
         }
         before = std::move(files);
     }

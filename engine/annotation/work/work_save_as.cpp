@@ -81,6 +81,7 @@ public:
 Work::Saved Work::save_as(const WorkFiles& to, const std::vector<LabelImage::Color>& looks, const fs::path& session,
                           const std::function<void()>& save_session)
 {
+    SHVR_CHECK(!is_saving_, "a save is under way");
     refuse_if_only_looking();
     expect_choice();
     expect_names(to);
@@ -98,7 +99,7 @@ Work::Saved Work::save_as(const WorkFiles& to, const std::vector<LabelImage::Col
         if (file.empty() || (part != Part::mask && !holds_any(document_, part))) continue;
         next.made.add(file);
         if (part == Part::mask) next.made.add(mask_image_path(file));
-        write(part, to, looks, next.journal.get());
+        write(part, document_, to, looks, next.journal.get());
         next.seen[size_t(part)] = seen_at(file);
         digest_of(next.known, part) = next.seen[size_t(part)].digest;
         saved.files.push_back(file);

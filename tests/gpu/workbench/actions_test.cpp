@@ -143,6 +143,12 @@ const Row ROWS[] = {
     {R"({"op":"work_on_copy"})",
      "cameras, file preferences.json, file scan-copy.json, file scan-copy.mask, file scan-copy.mask.json, open, undo",
      {STROKE}},
+    {R"({"op":"look_at_file","path":"FOLDER/tiny.nrrd"})", "candidate"},
+    {R"({"op":"take_file","path":"FOLDER/tiny.nrrd"})",
+     "camera, file preferences.json, open, place, probe, render, transfer_function"},
+    {R"({"op":"take_file","path":"FOLDER/look.json"})", "saved, transfer_function, undo"},
+    {R"({"op":"take_file","path":"FOLDER/line.txt"})", "saved, trace, undo"},
+    {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
     {R"({"op":"forget_recent","path":"FOLDER/scan.json"})", "file preferences.json"},
     {R"({"op":"ask_open","on":true})", "asks"},
     {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
@@ -181,6 +187,9 @@ struct Bench {
         folder.write(
             "hot.json",
             R"({"note":"n","points":[{"at":0,"color":"#100000","opacity":0},{"at":1,"color":"#ff2010","opacity":1}]})");
+        folder.write("look.json", R"({"points":[{"intensity":70,"opacity":0},{"intensity":210,"opacity":0.8}]})");
+        folder.write("line.txt", "-v 10, 12, 14, 1, 2\n-v 20, 12, 14, 1, 2\n-l 0, 1, 2\n");
+        folder.write("other.mask", std::string(40 * 36 * 32, '\4'));
         bench->open(write_tubes_session(folder.path), {});
         settle(*bench);
     }
@@ -225,7 +234,7 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
         applied.insert(row_of(action).id);
     }
     // Those that need what this table does not set up, and the tests that do.
-    applied.insert({"choose_belief", "cancel_job"});
+    applied.insert({"choose_belief", "cancel_job", "dismiss_notices", "correct_spacing"});
     for (const ActionRow& row : action_rows()) CHECK_MESSAGE(applied.contains(row.id), row.id);
 }
 

@@ -38,6 +38,8 @@ TEST_CASE_FIXTURE(OnDevice, "a save in the middle of a stroke holds all that the
     bench.perform(Paint{true});
     bench.perform(PlaceProbe{{60, 100, 100}});
     bench.perform(SaveOp{});
+    CHECK(bench.model().is_saving);
+    settle(bench);
     CHECK_FALSE(bench.model().is_painting);
     CHECK(bench.model().voxels_by_group[1] > 33000);  // two balls of radius 20
     CHECK(read_text(folder.path / "scan.mask", int64_t{1} << 24).find(char(1)) != std::string::npos);
@@ -53,6 +55,7 @@ TEST_CASE_FIXTURE(OnDevice, "a save whose bricks do not arrive within 20 s is ma
     bench.perform(Paint{true});
     is_late = true;  // from one look at the clock to the next
     bench.perform(SaveOp{});
+    settle(bench);
     CHECK(bench.messages().last().find(
               "the rest of the stroke was not painted: its bricks did not arrive within 20 s") != std::string::npos);
     CHECK_FALSE(bench.model().is_painting);

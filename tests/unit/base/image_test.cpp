@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <string>
@@ -389,4 +390,37 @@ TEST_CASE("a picture that the disk does not take fails with the system's reason"
     ::setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, old_handler);
     CHECK(said.find("shvr full test.png: cannot be written: File too large") != std::string::npos);
+}
+
+TEST_CASE("texts in a picture come back as they were, and damaged ones are refused")
+{
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("shvr-texts-" + std::to_string(::getpid()) + ".png");
+    std::string longer;
+    for (int i = 0; i < 50000; ++i) longer += "wörter ";
+    Image8 image{3, 2, std::vector<uint8_t>(24, 200)};
+    write_png(path, image, {{"SHVR session", "{\"a\": 1}"}, {"SHVR project", longer}});
+    CHECK(read_png_text(path, "SHVR session") == "{\"a\": 1}");
+    CHECK(read_png_text(path, "SHVR project") == longer);
+    CHECK(read_png_text(path, "other") == std::nullopt);
+    CHECK((read_png(path).rgba == image.rgba));
+    CHECK(std::filesystem::file_size(path) < longer.size() / 10);  // they are compressed
+
+    std::vector<std::byte> file = read_file(path, 1 << 20);
+    const std::vector<std::byte> whole = file;
+    const auto write = [&](const std::vector<std::byte>& bytes) {
+        std::ofstream(path, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    };
+    file[100] ^= std::byte{1};  // in the first text
+    write(file);
+    CHECK_THROWS_WITH_AS(static_cast<void>(read_png_text(path, "SHVR session")),
+                         doctest::Contains("its texts cannot be read"), Error);
+    write({whole.begin(), whole.begin() + 90});
+    CHECK_THROWS_AS(static_cast<void>(read_png_text(path, "SHVR session")), Error);
+    write({whole.begin(), whole.begin() + 4});
+    CHECK(read_png_text(path, "SHVR session") == std::nullopt);
+    CHECK_THROWS_WITH_AS(write_png(path, image, {{"k", std::string(MAX_PICTURE_TEXT + 1, 'x')}}),
+                         doctest::Contains("expected at most"), Error);
+    std::filesystem::remove(path);
 }

@@ -82,6 +82,15 @@ void FileChooser::ask(const fs::path& begin, std::vector<Place> places)
         wanted_name_ = path.filename().string();
 }
 
+void FileChooser::ask_again(const fs::path& path, std::vector<Place> places, std::string failure)
+{
+    ask({}, std::move(places));
+    enter(path.parent_path());
+    text_ = path.string();
+    wanted_name_ = path.filename().string();
+    failure_ = std::move(failure);
+}
+
 void FileChooser::enter(const fs::path& folder)
 {
     list_.enter(folder);

@@ -26,6 +26,8 @@ public:
     explicit FileChooser(const Question& question) : question_(question) {}
     /// Shows it from the next `draw` on. `begin`: a path to begin with; empty: where it was left, or home.
     void ask(const std::filesystem::path& begin, std::vector<Place> places);
+    /// The same, with why the path could not be taken.
+    void ask_again(const std::filesystem::path& path, std::vector<Place> places, std::string failure);
     bool is_open() const { return is_open_ || is_asked_for_; }
     void close() { closes_ = true; }
     /// In the same window each time. Returns the path that was accepted, once.

@@ -98,7 +98,18 @@ void open_dialog(const Model& model, Actions& actions)
         opening.ask(begin, places_of(model));
     }
     if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
-    if (const auto path = opening.draw()) actions.push_back(Open{*path});
+    static std::filesystem::path chosen;  // here last: where it cannot be opened it is asked for once more
+    if (!chosen.empty() && model.failed_path && *model.failed_path == chosen) {
+        opening.ask_again(std::exchange(chosen, {}), places_of(model), std::string(model.open_failure));
+        was_asked = true;
+        actions.push_back(AskOpen{true});
+    } else if (model.opening.empty() && model.is_open && model.session.volume_path == chosen) {
+        chosen.clear();
+    }
+    if (const auto path = opening.draw()) {
+        chosen = *path;
+        actions.push_back(Open{*path});
+    }
     if (was_asked && !opening.is_open()) {
         was_asked = false;
         actions.push_back(AskOpen{false});
@@ -131,6 +142,17 @@ void start_page(const Model& model, Actions& actions)
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("or drop a scan, a folder of slices, a session or a project here");
+    if (!model.opening.empty()) {
+        ImGui::Spacing();
+        ImGui::TextUnformatted(("Opening " + std::string(model.opening) + " ...").c_str());
+    } else if (!model.open_failure.empty()) {
+        ImGui::Spacing();
+        ImGui::PushTextWrapPos(0.0f);
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextUnformatted(std::string(model.open_failure).c_str());
+        ImGui::PopStyleColor();
+        ImGui::PopTextWrapPos();
+    }
     if (!model.preferences.recent.empty()) {
         ImGui::Spacing();
         ImGui::Separator();

@@ -65,8 +65,15 @@ Dialogs dialogs;
 
 }  // namespace
 
+void ask_to_import(const std::filesystem::path& volume)
+{
+    dialogs.importing.task.volume = volume;
+    dialogs.importing.is_asked_for = true;
+}
+
 void task_menu(const Model& model)
 {
+    load_menu(model);
     if (ImGui::MenuItem("Import as project...")) {
         dialogs.importing.is_asked_for = true;
         if (model.is_open && dialogs.importing.task.volume.empty())
@@ -80,8 +87,9 @@ void task_menu(const Model& model)
     if (ImGui::MenuItem("Compare with the truth...")) dialogs.evaluating.is_asked_for = true;
 }
 
-void task_dialogs(Actions& actions)
+void task_dialogs(const Model& model, Actions& actions)
 {
+    load_dialogs(model, actions);
     dialogs.exporting.draw("Export", actions);
     dialogs.importing.draw("Import", actions);
     dialogs.labelling.draw("Label", actions);

@@ -1,0 +1,207 @@
+// Saving: what is to be written is taken at once, on the thread of the work, and written on any.
+
+#include <utility>
+
+#include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/files/mask_import.h"
+#include "engine/annotation/files/offset_import.h"
+#include "engine/annotation/work/work.h"
+
+namespace shvr {
+
+namespace fs = std::filesystem;
+
+void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::path& density)
+{
+    const WorkFiles before = files_;
+    files_.mask = mask;
+    files_.trace = trace;
+    files_.density = density;
+    for (const Part part : PARTS) {
+        const fs::path& file = file_of(files_, part);
+        if (file == file_of(before, part)) continue;
+        digest_of(known_, part).reset();
+        seen_[size_t(part)] = {.is_foreign = is_there(file)};
+    }
+}
+
+void Work::expect_names(const WorkFiles& files) const
+{
+    if (files.mask.empty() && (files.trace.empty() || holds_any(document_, Part::mask)))
+        fail("the session names no file for the mask; expected the key annotation.mask");
+    if (files.trace.empty() && holds_any(document_, Part::trace))
+        fail("the session names no file for the trace; expected the key annotation.trace");
+    if (files.density.empty() && holds_any(document_, Part::offsets))
+        fail("the session names no file for density offsets; expected the key annotation.density");
+}
+
+Work::Seen Work::seen_at(const fs::path& file)
+{
+    const std::optional<FileStamp> stamp = stamp_of(file);
+    return {.digest = file_digest(file), .stamp = stamp};
+}
+
+void Work::note_file(Part part)
+{
+    note_file(file_of(files_, part), seen_[size_t(part)]);
+}
+
+void Work::note_file(const fs::path& file, Seen& seen)
+{
+    seen = {.stamp = stamp_of(file)};  // also where it cannot be read
+    seen = seen_at(file);
+}
+
+/// `journal`: the one that the mask names, beside `files`; null where there is none.
+void Work::write(Part part, const Document& document, const WorkFiles& files,
+                 const std::vector<LabelImage::Color>& looks, const Journal* journal)
+{
+    switch (part) {
+        case Part::mask: {
+            std::optional<MaskJournal> named;
+            if (const auto [number, checksum] = journal ? journal->last_durable() : std::pair<RecordNumber, uint64_t>();
+                number > 0)
+                named = {files.journal.filename().string(), number, checksum};
+            save_mask_as(files.mask, document.mask, files.volume,
+                         {.colors = looks, .painted_on = files.volume_hash, .journal = named});
+            save_mask_image(files.mask, files.volume_hash, named);
+            return;
+        }
+        case Part::trace: save_trace(files.trace, document.trace, space_of(files.volume)); return;
+        case Part::offsets: save_offsets_as(files.density, document.density, files.volume); return;
+    }
+}
+
+void Work::save_copy(const WorkFiles& to, const std::vector<LabelImage::Color>& looks) const
+{
+    for (const Part part : PARTS)
+        if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document_, part)))
+            write(part, document_, to, looks, nullptr);
+}
+
+// ---- A save on its way ----------------------------------------------------------------------------------------------
+
+std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> looks)
+{
+    SHVR_CHECK(!is_saving_, "one save after the other");
+    refuse_if_only_looking();
+    expect_choice();
+    expect_names(files_);
+    // Also where another process has begun a journal since this one looked: then this one is refused.
+    if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
+    if (journal_) journal_->append(RecordKind::saving, {}, {});
+    is_saving_ = true;
+    unsaved_since_saving_ = 0;
+    touched_since_saving_ = {};
+    std::unique_ptr<Saving> saving(new Saving);
+    saving->files_ = files_;
+    saving->document_ = document_;
+    saving->looks_ = std::move(looks);
+    saving->journal_ = journal_;
+    saving->touched_ = touched_;
+    saving->seen_ = seen_;
+    saving->known_ = known_;
+    saving->kept_ = kept_;
+    saving->last_kept_ = keeps_settings_ ? last_kept_ : 0;
+    saving->known_kept_ = known_kept_;
+    return saving;
+}
+
+/// The mask always; another part that has become empty is written as empty, but if there never was one, no file is.
+bool Work::Saving::is_to_write(Part part) const
+{
+    const fs::path& file = file_of(files_, part);
+    if (file.empty() || part == Part::mask) return !file.empty();
+    return is_there(file) ? touched_[size_t(part)] : holds_any(document_, part) || digest_of(known_, part).has_value();
+}
+
+/// Whether a file holds what the journal does not: found so at opening, or written by others since.
+bool Work::Saving::is_foreign(Part part) const
+{
+    const fs::path& file = file_of(files_, part);
+    const Seen& seen = seen_[size_t(part)];
+    if (!is_there(file)) return false;
+    if (seen.is_foreign) return true;
+    if (const std::optional<FileStamp> stamp = stamp_of(file); stamp && stamp == seen.stamp) return false;
+    try {
+        return file_digest(file) != seen.digest;
+    } catch (const Error&) {
+        return true;  // this process has never read it
+    }
+}
+
+void Work::Saving::write(Part part)
+{
+    const fs::path& file = file_of(files_, part);
+    Seen& seen = seen_[size_t(part)];
+    if (is_foreign(part)) {
+        const fs::path old = set_aside(file);
+        saved_.notices.push_back(
+            {sentence(file.string(), ": was written by another program; expected the ", name_of(part),
+                      " as this one knows it; it is kept as ", old.string(), ", and what is saved is this program's"),
+             true});
+    }
+    try {
+        Work::write(part, document_, files_, looks_, journal_.get());
+    } catch (const Error&) {
+        note_file(file, seen);  // whatever of it was done is this process's
+        throw;
+    }
+    note_file(file, seen);
+    digest_of(known_, part) = seen.digest;
+    saved_.files.push_back(file);
+}
+
+void Work::Saving::write(const std::function<void()>& save_session, const Progress& progress)
+{
+    SHVR_CHECK(!is_written_, "a save is written once");
+    if (journal_) journal_->flush();
+    double done = 0.0;
+    for (const Part part : PARTS) {
+        tell(progress, done++ / double(PARTS.size() + 1));
+        if (is_to_write(part)) write(part);
+    }
+    tell(progress, done / double(PARTS.size() + 1));
+    if (save_session) {
+        save_session();
+        known_.settings = document_.settings.values();
+        known_kept_ = last_kept_;
+    }
+    has_session_ = bool(save_session);
+    if (journal_) {
+        journal_->append(RecordKind::saved, {}, bytes_of(known_), known_kept_);
+        journal_->flush();
+    }
+    is_written_ = true;
+}
+
+Work::Saved Work::end_save(Saving& saving)
+{
+    SHVR_CHECK(is_saving_, "no save has begun");
+    is_saving_ = false;
+    saving.journal_.reset();  // it may be opened again before the save is gone
+    seen_ = saving.seen_;
+    for (const Part part : PARTS) digest_of(known_, part) = digest_of(saving.known_, part);
+    if (!saving.is_written_) return saving.saved_;
+    known_.settings = saving.known_.settings;
+    known_kept_ = saving.known_kept_;
+    if (saving.has_session_ && keeps_settings_) files_.kept = saving.kept_;
+    unsaved_ = unsaved_since_saving_;
+    misses_files_ = false;
+    touched_ = touched_since_saving_;
+    return saving.saved_;
+}
+
+Work::Saved Work::save(std::vector<LabelImage::Color> looks, const std::function<void()>& save_session)
+{
+    const std::unique_ptr<Saving> saving = begin_save(std::move(looks));
+    try {
+        saving->write(save_session);
+    } catch (...) {
+        end_save(*saving);
+        throw;
+    }
+    return end_save(*saving);
+}
+
+}  // namespace shvr

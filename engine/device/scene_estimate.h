@@ -1,0 +1,30 @@
+#pragma once
+// What a volume will take of host and device before it is loaded, from sizes alone: an upper bound of the volume's own
+// share, as Scene makes it.
+
+#include <cstdint>
+#include <string>
+
+#include "engine/look/settings.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+struct SceneEstimate {
+    uint64_t device_bytes = 0;  ///< of the volume: all bricks, or the room for those that are paged
+    uint64_t device_budget = 0;
+    uint64_t host_bytes = 0;  ///< bricks kept, and coarser levels where the file has none
+    uint64_t host_budget = 0;
+    bool is_paged = false;      ///< bricks are read while they are looked at
+    bool makes_levels = false;  ///< reads all voxels once more, for coarser levels
+    std::string refusal{};      ///< why it cannot be loaded; empty: it can
+};
+
+/// `device_budget`, `host_budget`: of the whole program, in bytes, with nothing else loaded. Reads no voxels. Any
+/// thread.
+SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
+                             uint64_t host_budget);
+/// "312 MiB of 4 GiB on the device, 40 MiB of 2 GiB on the host": a sentence for a dialog.
+std::string in_words(const SceneEstimate& estimate);
+
+}  // namespace shvr

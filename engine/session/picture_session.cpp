@@ -1,0 +1,51 @@
+#include "engine/session/picture_session.h"
+
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace shvr {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR project";
+const char* const CAMERA_OF_PICTURE = "picture";
+
+fs::path folder_of(const fs::path& picture)
+{
+    return fs::absolute(picture).lexically_normal().parent_path();
+}
+
+}  // namespace
+
+PictureTexts texts_of_picture(Session session, const Camera& camera, const fs::path& picture, const fs::path& project,
+                              bool shows_probe)
+{
+    session.cameras[CAMERA_OF_PICTURE] = camera;
+    session.camera_name = CAMERA_OF_PICTURE;
+    if (!shows_probe) session.probe.shown = session.probe.shell = session.probe.preview = false;
+    PictureTexts texts{{SESSION_TEXT, to_text(session, folder_of(picture))}};
+    if (!project.empty())
+        texts.emplace_back(PROJECT_TEXT,
+                           fs::absolute(project).lexically_normal().lexically_proximate(folder_of(picture)).string());
+    return texts;
+}
+
+std::optional<PictureSession> session_in_picture(const fs::path& picture)
+{
+    std::error_code ignored;
+    if (!fs::is_regular_file(picture, ignored) || picture.extension() != ".png") return std::nullopt;
+    const std::optional<std::string> text = read_png_text(picture, SESSION_TEXT);
+    if (!text)
+        fail(picture.string(),
+             ": is a picture without a session in it; expected one that shvr made, or a session, a "
+             "project folder or a volume");
+    PictureSession found{*text, {}};
+    if (const std::optional<std::string> project = read_png_text(picture, PROJECT_TEXT))
+        found.project = (folder_of(picture) / *project).lexically_normal();
+    return found;
+}
+
+}  // namespace shvr

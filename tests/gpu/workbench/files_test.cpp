@@ -1,0 +1,231 @@
+// Files that are held out to the window: what they are, what loading takes, pictures with their sessions, and what was
+// recovered at opening.
+
+#include <doctest/doctest.h>
+
+#include "engine/base/file.h"
+#include "engine/base/image_file.h"
+#include "engine/session/session.h"
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+struct Desk {
+    TemporaryFolder folder;
+    Workbench bench;
+
+    explicit Desk(Renderer& renderer) : bench(renderer, {.has_servo = false})
+    {
+        bench.set_pixels({48, 40});
+        std::string scan = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";
+        for (int voxel = 0; voxel < 24 * 20 * 16; ++voxel) scan += char(voxel * 11 % 251);
+        folder.write("scan.nrrd", scan);
+    }
+    std::string path(const char* name) const { return (folder.path / name).string(); }
+    bool said(const std::string& text) const
+    {
+        for (const Message& message : bench.messages().all())
+            if (message.text.find(text) != std::string::npos) return true;
+        return false;
+    }
+    void open(const char* name)
+    {
+        bench.perform(Open{path(name)});
+        settle(bench);
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OnDevice, "what a file is and takes is known before it is loaded; why it cannot be opened, too")
+{
+    Desk desk(renderer());
+    const auto look = [&](const char* name, const std::string& settings) -> const Candidate& {
+        desk.bench.perform(LookAtFile{desk.path(name), settings});
+        settle(desk.bench);
+        REQUIRE(desk.bench.model().candidate);
+        return *desk.bench.model().candidate;
+    };
+    const Candidate& scan = look("scan.nrrd", "");
+    CHECK_FALSE(desk.bench.is_open());
+    CHECK(scan.kind == "Volume");
+    CHECK(scan.failure == "");
+    CHECK(scan.volume.size == Size3(24, 20, 16));
+    CHECK(scan.volume.spacing_from == Provenance::assumed);
+    CHECK_FALSE(scan.is_project);
+    CHECK(scan.memory.find("on the device") != std::string::npos);
+    const Candidate& typed = look("scan.nrrd", "volume.spacing=[0.5,0.5,2]\nvolume.unit=um");
+    CHECK(typed.volume.spacing == glm::dvec3(0.5, 0.5, 2.0));
+    CHECK(typed.volume.spacing_from == Provenance::given);
+    desk.folder.write("bare.bin", std::string(60, '\5'));
+    CHECK(look("bare.bin", "").failure != "");
+    const Candidate& bare = look("bare.bin", "volume.raw=3x4x5:uint8:little:0");
+    CHECK(bare.failure == "");
+    CHECK(bare.kind == "Bare voxels");
+    CHECK(look("bare.bin", "volume.raw=30x4x5:uint8:little:0").failure.find("bare.bin") != std::string::npos);
+    desk.bench.perform(Open{desk.path("bare.bin"), "volume.raw=3x4x5:uint8:little:0"});
+    settle(desk.bench);
+    CHECK(desk.bench.model().volume.size == Size3(3, 4, 5));
+    CHECK(desk.bench.model().candidate == nullptr);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a bare scan that nothing was saved of is no project that is saved")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    CHECK(saved_in_words(desk.bench.model()) == std::string("no project yet"));
+    desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    CHECK(saved_in_words(desk.bench.model()) == std::string("not saved"));
+    desk.bench.perform(SaveOp{});
+    settle(desk.bench);
+    CHECK(saved_in_words(desk.bench.model()) == std::string("saved"));
+    // Near enough to be allowed, and not without a word.
+    desk.bench.perform(NodeOp{.at = {10, 12, 16.5}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    CHECK(desk.said("it lies outside the volume"));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what cannot be opened leaves the start page, with the path and the reason")
+{
+    Desk desk(renderer());
+    desk.folder.write("broken.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8\n\n");
+    desk.bench.begin_open(desk.path("broken.nrrd"), {});
+    settle(desk.bench);
+    CHECK_FALSE(desk.bench.is_open());
+    CHECK(desk.bench.model().open_failure.find("broken.nrrd") != std::string::npos);
+    REQUIRE(desk.bench.model().failed_path);
+    CHECK(*desk.bench.model().failed_path == desk.path("broken.nrrd"));
+    desk.open("scan.nrrd");
+    CHECK(desk.bench.is_open());
+    CHECK(desk.bench.model().open_failure.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever its name; the rest is refused in words")
+{
+    Desk desk(renderer());
+    const auto drop = [&](const char* name) {
+        desk.bench.perform(TakeFile{desk.path(name)});
+        settle(desk.bench);
+    };
+    desk.folder.write("look", R"({"points":[{"intensity":70,"opacity":0},{"intensity":210,"opacity":0.8}]})");
+    drop("look");
+    CHECK(desk.said("belongs to a volume; expected that to be open"));
+    drop("scan.nrrd");
+    CHECK(desk.bench.model().volume.size == Size3(24, 20, 16));
+    drop("look");
+    CHECK(desk.said("is taken; undo takes it back"));
+    CHECK(desk.bench.model().undoable == 1);
+    desk.folder.write("paint.anything", std::string(24 * 20 * 16, '\3'));
+    drop("paint.anything");
+    CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);
+    drop("paint.anything");
+    CHECK(desk.said("holds the mask that there is already"));
+    desk.folder.write("line.txt", "-v 10, 12, 14, 1, 2\n");
+    drop("line.txt");
+    CHECK(desk.bench.model().trace.nodes().size() == 1);
+    CHECK(desk.bench.model().undoable == 3);
+    for (int steps = 0; steps < 3; ++steps) desk.bench.perform(UndoOp{1});
+    CHECK(desk.bench.model().voxels_by_group[3] == 0);
+    desk.folder.write("notes.json", R"({"a": 1})");
+    drop("notes.json");
+    CHECK(desk.said("notes.json: is none of what can be taken; expected a volume"));
+    drop("nothing.here");
+    CHECK(desk.said("nothing.here"));
+    desk.folder.write("session", R"({"shvr_session": 1, "volume": {"path": "scan.nrrd"}})");
+    drop("session");
+    CHECK(desk.bench.messages().all().back().weight == Weight::error);  // a session is one by its name, .json
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their voxels, and it is there next time")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    const glm::dvec3 eye = desk.bench.model().camera.eye;
+    desk.bench.perform(CorrectSpacing{{0.5, 0.5, 2.0}, "um"});
+    settle(desk.bench);
+    for (const bool is_again : {false, true}) {
+        CAPTURE(is_again);
+        if (is_again) desk.open("scan.session.json");
+        CHECK(desk.bench.model().volume.spacing == glm::dvec3(0.5, 0.5, 2.0));
+        CHECK(desk.bench.model().volume.unit == "um");
+        REQUIRE(desk.bench.model().trace.nodes().size() == 1);
+        CHECK(desk.bench.model().trace.nodes().begin()->second.position == glm::dvec3(5, 6, 28));
+        CHECK(glm::distance(desk.bench.model().camera.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice, "what was recovered at opening stays to be seen until it is dismissed")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    desk.bench.perform(SaveOp{});
+    settle(desk.bench);
+    CHECK(desk.bench.why_not(DismissNotices{}) == "there is nothing to be dismissed");
+    std::filesystem::remove(desk.path("scan.session.mask"));
+    desk.open("scan.session.json");
+    REQUIRE(desk.bench.model().recovered.size() == 1);
+    CHECK(desk.bench.model().recovered[0].find("scan.session.mask: is missing") != std::string::npos);
+    desk.bench.perform(NodeOp{.at = {12, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    settle(desk.bench);
+    CHECK(desk.bench.model().recovered.size() == 1);
+    desk.bench.perform(DismissNotices{});
+    CHECK(desk.bench.model().recovered.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is rendered again bit for bit, and opened")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    desk.bench.perform(
+        PaintOp{.brush = Brush::fill, .group = 3, .threshold = 100, .radius_voxels = 5, .path = {{12, 10, 8}}});
+    desk.bench.perform(Set{R"({"light":{"ambient":0.62},"transfer_function":{"points":[
+        {"intensity":90,"opacity":0,"color":"#204060"},{"intensity":200,"opacity":0.6,"color":"#ffe0a0"}]}})"});
+    desk.bench.perform(Orbit{40, -15});
+    settle(desk.bench);
+    desk.bench.perform(SaveOp{});
+    desk.bench.perform(Screenshot{});
+    settle(desk.bench);
+    desk.bench.wait_for_screenshots();
+    const std::string picture = desk.path("scan.session-view-1.png");
+    const Image8 shown = read_png(picture);
+    const Camera camera = desk.bench.model().camera;
+    // Another look since: the picture has its own.
+    desk.bench.perform(Set{R"({"light":{"ambient":0.1}})"});
+    desk.bench.perform(LookFrom{"top"});
+    settle(desk.bench);
+
+    const OpenedSession opened = open_session(picture);
+    CHECK(opened.pictured == desk.path("scan.session.json"));
+    Renderer other({});
+    other.load(opened.source, opened.statistics, opened.session.render);
+    Work work(opened.source->info().size, opened.source->info().type);
+    work.open({.journal = opened.session.journal_path, .volume = opened.source->info()},
+              Work::Opening{.only_look = true});
+    other.scene().show(work.document());
+    const Camera of_picture = camera_named(opened.session, opened.session.camera_name, opened.source->info());
+    const Image8 again = to_image8(other.render(opened.session, of_picture).image);
+    CHECK(again.width == shown.width);
+    int differing = 0, most = 0;
+    for (size_t i = 0; i < shown.rgba.size(); ++i) {
+        differing += again.rgba[i] != shown.rgba[i];
+        most = std::max(most, std::abs(int(again.rgba[i]) - int(shown.rgba[i])));
+    }
+    CHECK(differing == 0);
+    CHECK(most == 0);
+
+    // Opened, it shows the project as in the picture; undo takes its look back.
+    desk.bench.perform(Open{picture});
+    settle(desk.bench);
+    CHECK(desk.bench.model().session_path == desk.path("scan.session.json"));
+    CHECK(desk.bench.model().session.light.ambient == 0.62);
+    CHECK(desk.bench.model().camera.eye == camera.eye);
+    desk.bench.perform(UndoOp{1});
+    CHECK(desk.bench.model().session.light.ambient == 0.1);
+}

@@ -1,0 +1,205 @@
+// Opening with choices: what a file is, what loading it takes, and what a person states instead of the file. The
+// spacing of what is open, and its correction.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include "engine/base/error.h"
+#include "ui/panels/dialogs/file_chooser.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
+#include "ui/workbench/lists/load_form.h"
+#include "ui/workbench/preferences.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr const char *LOAD = "Open with options", *SPACING = "Correct the spacing";
+
+FileChooser choosing({.title = "Look at a file",
+                      .verb = "Look",
+                      .note = "Any file with voxels, also bare ones; nothing is loaded yet."});
+
+struct LoadDialog {
+    LoadForm form;
+    std::string path;
+    bool is_asked_for = false;
+};
+LoadDialog loading;
+
+struct SpacingDialog {
+    glm::dvec3 spacing{1.0};
+    std::string unit;
+    bool is_asked_for = false;
+};
+SpacingDialog correcting;
+
+bool spacing_fields(glm::dvec3& spacing, std::string& unit)
+{
+    float sides[3] = {float(spacing.x), float(spacing.y), float(spacing.z)};
+    bool is_changed = ImGui::InputFloat3("size of a voxel: x, y, z", sides, "%g");
+    if (is_changed)
+        for (int axis = 0; axis < 3; ++axis)
+            if (sides[axis] != float(spacing[axis])) spacing[axis] = std::max(double(sides[axis]), 1e-12);
+    is_changed |= ImGui::InputText("unit", &unit);
+    hint("um, mm, ...; empty: as it is");
+    return is_changed;
+}
+
+/// True where something changed.
+bool bare_fields(LoadForm& form)
+{
+    bool is_changed = ImGui::Checkbox("Bare voxels, without a header", &form.is_bare);
+    hint("A file of numbers alone: their count along x, y and z and their kind have to be typed.");
+    if (!form.is_bare) return is_changed;
+    is_changed |= ImGui::InputInt3("voxels along x, y, z", form.size);
+    for (int& side : form.size) side = std::clamp(side, 1, 1 << 20);
+    if (ImGui::BeginCombo("type", name_of(form.type))) {
+        for (const VoxelType type : {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
+                                     VoxelType::uint32, VoxelType::int32, VoxelType::float32, VoxelType::float64})
+            if (ImGui::Selectable(name_of(type), type == form.type)) {
+                form.type = type;
+                is_changed = true;
+            }
+        ImGui::EndCombo();
+    }
+    is_changed |= ImGui::Checkbox("big-endian", &form.is_big_endian);
+    hint("Which byte of a number comes first. Most machines write little-endian.");
+    is_changed |= ImGui::InputInt("bytes to skip at the beginning", &form.offset_bytes);
+    form.offset_bytes = std::max(form.offset_bytes, 0);
+    return is_changed;
+}
+
+void about(const Candidate& candidate)
+{
+    ImGui::PushTextWrapPos(0.0f);
+    if (candidate.is_being_read) {
+        ImGui::TextDisabled("is being looked at ...");
+    } else {
+        if (!candidate.kind.empty()) {
+            ImGui::TextUnformatted(sentence(candidate.kind, ", ", size_in_words(candidate.volume)).c_str());
+            ImGui::TextDisabled("Spacing: %s. Unit: %s.", in_words(candidate.volume.spacing_from),
+                                in_words(candidate.volume.unit_from));
+            ImGui::TextUnformatted(("Takes " + candidate.memory).c_str());
+        }
+        for (const std::string& warning : candidate.warnings) ImGui::TextDisabled("%s", warning.c_str());
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        if (!candidate.failure.empty()) ImGui::TextUnformatted(candidate.failure.c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopTextWrapPos();
+}
+
+void load_dialog(const Model& model, Actions& actions)
+{
+    if (std::exchange(loading.is_asked_for, false)) ImGui::OpenPopup(LOAD);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({36.0f * ImGui::GetFontSize(), 0.0f});
+    if (!ImGui::BeginPopupModal(LOAD, nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    LoadForm& form = loading.form;
+    ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
+    ImGui::TextWrapped("%s", loading.path.c_str());
+    ImGui::Spacing();
+    bool is_changed = bare_fields(form);
+    if (!form.is_bare) {
+        is_changed |= ImGui::InputText("channel", &form.channel);
+        hint("Of a file with several: red, green, blue, alpha, a name in the file, or a number from 1.");
+        is_changed |= ImGui::InputText("time point", &form.frame);
+        hint("Of a file with several: a number from 1.");
+    }
+    is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
+    hint("Instead of what the file states, or where it states none.");
+    if (form.states_spacing) is_changed |= spacing_fields(form.spacing, form.unit);
+    ImGui::PopItemWidth();
+    const std::string settings = settings_of(form);
+    const Candidate* const candidate = model.candidate;
+    const bool is_current = candidate && candidate->settings == settings && candidate->path == loading.path;
+    if (is_changed || !is_current) actions.push_back(LookAtFile{loading.path, settings});
+    ImGui::Separator();
+    if (candidate) about(*candidate);
+    ImGui::Separator();
+    const ImVec2 button{9.0f * ImGui::GetFontSize(), 0.0f};
+    const bool can_open = is_current && !candidate->is_being_read && candidate->failure.empty();
+    bool closes = false;
+    ImGui::BeginDisabled(!can_open);
+    if (ImGui::Button("Open", button)) {
+        actions.push_back(Open{loading.path, settings});
+        closes = true;
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    const bool can_import = can_open && !candidate->is_project && settings.empty();
+    ImGui::BeginDisabled(!can_import);
+    if (ImGui::Button("Import as project...", button)) {
+        ask_to_import(loading.path);
+        closes = true;
+    }
+    ImGui::EndDisabled();
+    hint("A folder with the volume in several sizes, which opens at once; the file itself stays as it is.");
+    ImGui::SameLine();
+    closes |= ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (closes) {
+        actions.push_back(LookAtFile{});
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+void spacing_dialog(const Model& model, Actions& actions)
+{
+    if (std::exchange(correcting.is_asked_for, false)) {
+        correcting.spacing = model.volume.spacing;
+        correcting.unit = model.volume.unit;
+        ImGui::OpenPopup(SPACING);
+    }
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({32.0f * ImGui::GetFontSize(), 0.0f});
+    if (!ImGui::BeginPopupModal(SPACING, nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    ImGui::TextWrapped("Now %s (%s).", size_in_words(model.volume).c_str(), in_words(model.volume.spacing_from));
+    ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
+    spacing_fields(correcting.spacing, correcting.unit);
+    ImGui::PopItemWidth();
+    ImGui::TextWrapped("Paint and nodes stay at their voxels; lengths follow. The work is saved and opened again.");
+    const CorrectSpacing action{correcting.spacing, correcting.unit};
+    const ImVec2 button{8.0f * ImGui::GetFontSize(), 0.0f};
+    ImGui::BeginDisabled(!why_not(model, action).empty());
+    if (ImGui::Button("Correct", button)) {
+        actions.push_back(action);
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+        ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+}  // namespace
+
+void load_menu(const Model& model)
+{
+    if (ImGui::MenuItem("Open with options...")) {
+        const auto& recent = model.preferences.recent;
+        choosing.ask(recent.empty() ? std::filesystem::path() : recent.front().parent_path(),
+                     places(model.is_open ? model.session.volume_path : std::filesystem::path(), recent));
+    }
+    if (ImGui::MenuItem("Correct the spacing...", nullptr, false, model.is_open)) correcting.is_asked_for = true;
+}
+
+void load_dialogs(const Model& model, Actions& actions)
+{
+    if (const auto path = choosing.draw()) {
+        loading.path = path->string();
+        loading.is_asked_for = true;
+    }
+    load_dialog(model, actions);
+    spacing_dialog(model, actions);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,126 @@
+// Files that somebody holds out to the window: what they are, their contents say.
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/file.h"
+#include "engine/session/session_patch.h"
+#include "engine/tasks/file_content.h"
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr int64_t MAX_JSON_BYTES = int64_t{16} << 20;
+
+std::vector<std::string> lines_of(const std::string& text)
+{
+    std::vector<std::string> lines;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size());
+        if (end > begin) lines.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return lines;
+}
+
+}  // namespace
+
+void Workbench::act(const Open& action)
+{
+    candidate_.reset();
+    begin_open(action.path, lines_of(action.settings));
+}
+
+// ---- What a file is, before it is opened ----------------------------------------------------------------------------
+
+void Workbench::act(const LookAtFile& action)
+{
+    candidate_.reset();
+    if (action.path.empty()) return;
+    candidate_ = std::make_unique<Candidate>(Candidate{.path = action.path, .settings = action.settings});
+    jobs_.start("looking at " + short_name(action.path), [this, action](ProgressReporter&) {
+        Candidate found{.path = action.path, .settings = action.settings, .is_being_read = false};
+        try {
+            const UnmeasuredSession opened = open_unmeasured_session(action.path, lines_of(action.settings));
+            const Session& session = opened.session;
+            found.is_project = !session_file_of(action.path).empty();
+            found.kind = !opened.pictured.empty() ? "Picture of a session"
+                         : found.is_project       ? "Session or project"
+                         : session.raw_layout     ? "Bare voxels"
+                                                  : "Volume";
+            found.volume = opened.source->info();
+            found.levels = opened.source->levels();
+            found.warnings = opened.losses;
+            for (const std::string& warning : found.volume.warnings) found.warnings.push_back(warning);
+            const SceneEstimate estimate =
+                renderer_.estimate(*opened.source, session.render, shows_occlusion(session.light));
+            found.memory = in_words(estimate);
+            found.failure = estimate.refusal;
+        } catch (const Error& error) {
+            found.failure = error.what();
+        }
+        return Jobs::Completion([this, found = std::move(found)] {
+            const bool is_wanted =
+                candidate_ && candidate_->path == found.path && candidate_->settings == found.settings;
+            if (is_wanted) *candidate_ = found;
+        });
+    });
+}
+
+// ---- What is dropped onto the window --------------------------------------------------------------------------------
+
+void Workbench::act(const TakeFile& action)
+{
+    std::optional<VolumeInfo> volume;
+    if (document_) volume = document_->volume();
+    jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume](ProgressReporter&) {
+        const WhatItIs found = what_is(path, volume ? &*volume : nullptr);
+        return Jobs::Completion([this, path, found] {
+            if (!found.content) fail(found.why_not);
+            take(*found.content, path);
+        });
+    });
+}
+
+void Workbench::take(FileContent content, const std::filesystem::path& path)
+{
+    const bool is_for_document = content == FileContent::mask || content == FileContent::offsets ||
+                                 content == FileContent::trace || content == FileContent::transfer_function;
+    if (!is_for_document) return begin_open(path, {});
+    if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
+    if (content == FileContent::mask) return take_annotation(Part::mask, path);
+    if (content == FileContent::offsets) return take_annotation(Part::offsets, path);
+    if (content == FileContent::trace) return take_annotation(Part::trace, path);
+    act(Set{patch_of("transfer_function=" + read_text(path, MAX_JSON_BYTES))});
+    record_settings();
+    say("The transfer function of " + path.string() + " is taken; undo takes it back");
+}
+
+/// Reads it on the worker; it becomes one step of the history.
+void Workbench::take_annotation(Part part, const std::filesystem::path& path)
+{
+    const VolumeInfo volume = document_->volume();
+    WorkFiles files{.volume_hash = document_->session.volume_hash, .volume = volume};
+    (part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density) = path;
+    const uint64_t opening = openings_;
+    jobs_.start("reading " + short_name(path), [this, part, path, volume, files, opening](ProgressReporter&) {
+        const auto found = std::make_shared<shvr::Document>(
+            shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
+        load(part, files, *found);
+        return Jobs::Completion([this, part, path, found, opening] {
+            if (!document_ || openings_ != opening) fail(path.string(), ": was for what is no longer open");
+            Annotator& annotator = document_->annotator;
+            if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it once more");
+            record_settings();
+            const Command* const command = annotator.perform(sentence(name_of(part), " of ", short_name(path)),
+                                                             changes_between(part, annotator.document(), *found));
+            if (!command) return say(path.string() + ": holds the " + name_of(part) + " that there is already");
+            show_changes(*command);
+            say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));
+        });
+    });
+}
+
+}  // namespace shvr::ui

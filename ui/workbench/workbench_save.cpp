@@ -1,0 +1,207 @@
+// Jobs as they end, and saving, which is one of them: what is to be written is taken at once, and files are written
+// beside the work.
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "ui/workbench/workbench.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// How long a save waits for the bricks of a stroke.
+constexpr double PATIENCE_S = 20.0;
+
+}  // namespace
+
+void Workbench::act(const CancelJob& action)
+{
+    if (opening_ && opening_number() == action.number) return cancel_opening();
+    jobs_.cancel(action.number);
+    savers_.cancel(action.number);
+}
+
+void Workbench::follow_jobs()
+{
+    for (const Jobs::Finished& job : savers_.finish()) end_save(job);
+    for (const Jobs::Finished& job : jobs_.finish()) {
+        if (opening_ && opening_number() == job.number) {
+            if (job.was_cancelled)
+                cancel_opening();
+            else if (!job.failure.empty())
+                end_opening(opening_failure(job.failure));
+            continue;
+        }
+        if (job.was_cancelled)
+            say("Cancelled: " + job.what, Weight::warning);
+        else if (!job.failure.empty())
+            say(job.failure, Weight::error);
+    }
+}
+
+/// All that a stroke under way covers belongs to it, so it may begin a little later.
+void Workbench::act(const SaveOp&)
+{
+    Annotator& annotator = document_->annotator;
+    extend_stroke();
+    if (annotator.stroke_is_open()) annotator.end_stroke();
+    stroke_progress_s_ = options_.now_s();
+    if (!save_ && !annotator.stroke_is_running()) return begin_save(true);
+    save_is_wanted_ = true;
+    say(save_ ? "Saved once more when the save that is under way has ended"
+              : "Saved when the stroke that is under way is painted");
+}
+
+void Workbench::follow_save()
+{
+    if (!save_is_wanted_ || save_) return;
+    Annotator& annotator = document_->annotator;
+    if (annotator.stroke_is_running()) {
+        if (options_.now_s() - stroke_progress_s_ <= PATIENCE_S) return;
+        annotator.drop_stroke();
+        unpainted_ = sentence("its bricks did not arrive within ", PATIENCE_S, " s");
+    }
+    save_is_wanted_ = false;
+    begin_save(true);
+}
+
+void Workbench::begin_save(bool is_asked_for, Document::Parts parts)
+{
+    if (parts == Document::Parts::all) record_settings();
+    const std::shared_ptr<Document::Saving> saving = document_->begin_save(parts);
+    save_failure_.clear();
+    save_ = std::make_unique<Save>(Save{.saving = saving, .is_asked_for = is_asked_for});
+    save_->number = savers_.start("saving " + short_name(document_->session_path),
+                                  [saving](ProgressReporter& reporter) -> Jobs::Completion {
+                                      saving->write(reporter);
+                                      return {};
+                                  });
+}
+
+void Workbench::end_save(const Jobs::Finished& job)
+{
+    if (!save_ || save_->number != job.number) {
+        if (!job.failure.empty()) say(job.failure, Weight::warning);
+        return;
+    }
+    const std::unique_ptr<Save> save = std::move(save_);
+    std::string kept;
+    for (const Notice& notice : document_->end_save(*save->saving)) kept += "; " + notice.text;
+    std::string unpainted = std::exchange(unpainted_, {});
+    if (!unpainted.empty()) unpainted = "; the rest of the stroke was not painted: " + unpainted;
+    if (!save->saving->is_written()) {
+        save_failure_ = job.was_cancelled ? "the save was cancelled" : job.failure;
+        reopens_when_saved_ = false;
+        if (!save->is_asked_for) return;
+        const std::string rest = unpainted + kept + "; what was not saved is in the journal";
+        return job.was_cancelled ? say("Cancelled: " + job.what + rest, Weight::warning)
+                                 : say(job.failure + unpainted + kept, Weight::error);
+    }
+    if (std::exchange(reopens_when_saved_, false)) begin_open(document_->session_path, {});
+    if (!save->is_asked_for && kept.empty()) return;
+    const Session& session = document_->session;
+    const bool has_trace = !session.trace_path.empty() && !document_->annotator.document().trace.nodes().empty();
+    const bool is_behind = document_->annotator.work().unsaved() > 0;
+    say("Saved " + session.mask_path.string() + (has_trace ? ", " + session.trace_path.string() : std::string()) +
+        " and " + document_->session_path.string() + unpainted + kept +
+        (is_behind ? "; what was done since the save began is not in it" : ""));
+}
+
+Workbench::Leave Workbench::leave(std::string& why)
+{
+    if (!document_) return savers_.is_idle() ? Leave::now : Leave::later;
+    if (is_saving() || !savers_.is_idle()) {
+        is_leaving_ = true;
+        return Leave::later;
+    }
+    if (std::exchange(is_leaving_, false) && !save_failure_.empty()) {
+        why = std::exchange(save_failure_, {});
+        return Leave::refused;
+    }
+    const bool asks = !document_->annotator.work().disputes().empty();
+    const bool is_running = document_->annotator.stroke_is_running();
+    try {
+        if (document_->only_looks()) return Leave::now;
+        if (asks && !document_->has_settings_to_save()) return Leave::now;
+        if (!asks && document_->is_saved() && !is_running) {
+            if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
+            begin_save(false, Document::Parts::session);  // a camera position is not worth an error message
+            return Leave::later;
+        }
+        if (asks)
+            begin_save(false, Document::Parts::session);
+        else
+            act(SaveOp{});
+    } catch (const std::exception& error) {
+        why = error.what();
+        return Leave::refused;
+    }
+    has_tried_view_ = false;
+    is_leaving_ = true;
+    return Leave::later;
+}
+
+std::string Workbench::finish_stroke()
+{
+    constexpr std::chrono::milliseconds TURN(1);
+    Annotator& annotator = document_->annotator;
+    extend_stroke();
+    if (annotator.stroke_is_open()) annotator.end_stroke();
+    double last_progress_s = options_.now_s();
+    uint64_t uploads = 0;
+    try {
+        while (annotator.stroke_is_running()) {
+            const bool has_painted = annotator.advance().has_value();
+            renderer_.scene().advance();
+            const uint64_t uploads_before =
+                std::exchange(uploads, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
+            if (has_painted || uploads != uploads_before) last_progress_s = options_.now_s();
+            if (options_.now_s() - last_progress_s > PATIENCE_S) {
+                annotator.drop_stroke();
+                return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
+            }
+            std::this_thread::sleep_for(TURN);
+        }
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+// ---- The spacing ----------------------------------------------------------------------------------------------------
+
+/// The session states it from now on; opening it converts what the journal holds.
+void Workbench::act(const CorrectSpacing& action)
+{
+    if (is_saving()) fail("the work is being saved; expected that to have ended");
+    Session& session = document_->session;
+    Camera& camera = document_->camera;
+    const Session before = session;
+    const Camera view = camera;
+    const glm::dvec3 ratio = action.spacing / document_->volume().spacing;
+    camera.eye *= ratio;
+    camera.target *= ratio;
+    const double most = std::max({ratio.x, ratio.y, ratio.z});
+    camera.near_distance *= most;
+    camera.far_distance *= most;
+    if (session.raw_layout) {
+        session.raw_layout->spacing = action.spacing;
+        if (!action.unit.empty()) session.raw_layout->unit = action.unit;
+    } else {
+        session.open_options.spacing = action.spacing;
+        if (!action.unit.empty()) session.open_options.unit = action.unit;
+    }
+    try {
+        finish_stroke();
+        begin_save(true);
+    } catch (...) {
+        session = before;
+        camera = view;
+        throw;
+    }
+    reopens_when_saved_ = true;
+}
+
+}  // namespace shvr::ui
