@@ -19,12 +19,12 @@
 #include "engine/jobs/jobs.h"
 #include "engine/tasks/file_content.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/document.h"
+#include "ui/workbench/document/document.h"
+#include "ui/workbench/document/screenshots.h"
 #include "ui/workbench/lists/pass_log.h"
 #include "ui/workbench/lists/recent_actions.h"
 #include "ui/workbench/messages.h"
 #include "ui/workbench/preferences.h"
-#include "ui/workbench/screenshots.h"
 #include "ui/workbench/sight/hits.h"
 
 namespace shvr::ui {

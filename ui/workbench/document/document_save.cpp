@@ -6,7 +6,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/session/label_looks.h"
-#include "ui/workbench/document.h"
+#include "ui/workbench/document/document.h"
 
 namespace shvr::ui {
 

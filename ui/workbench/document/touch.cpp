@@ -1,4 +1,4 @@
-#include "ui/workbench/touch.h"
+#include "ui/workbench/document/touch.h"
 
 #include <algorithm>
 #include <ctime>

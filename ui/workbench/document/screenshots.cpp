@@ -1,4 +1,4 @@
-#include "ui/workbench/screenshots.h"
+#include "ui/workbench/document/screenshots.h"
 
 #include <chrono>
 #include <utility>

@@ -18,8 +18,8 @@
 #include "engine/picture/picture_job.h"
 #include "engine/session/session.h"
 #include "ui/workbench/action.h"
+#include "ui/workbench/document/touch.h"
 #include "ui/workbench/sight/sight.h"
-#include "ui/workbench/touch.h"
 
 namespace shvr::ui {
 

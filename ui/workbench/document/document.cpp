@@ -1,4 +1,4 @@
-#include "ui/workbench/document.h"
+#include "ui/workbench/document/document.h"
 
 #include <algorithm>
 #include <array>
