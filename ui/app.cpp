@@ -228,7 +228,6 @@ void App::handle_events(double timeout_s)
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
-        const ImGuiIO& io = ImGui::GetIO();
         if (key)
             keyboard_.handle(*key, model(), ui_has_key(*key), actions_);
         else if (bench_->model().is_painting || !is_overtaken(events, event))
