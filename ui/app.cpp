@@ -217,6 +217,7 @@ bool App::ui_has_key(const KeyEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput || choosers_have_keys()) return true;
+    if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one that is chosen
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     return (io.NavVisible || has_popup) && moves_in_panels(event);
 }
