@@ -1,0 +1,129 @@
+// Lines and words that the window draws over its panes.
+
+#include "ui/workbench/sight/marks.h"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/model_world.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+/// A volume of 100^3 voxels of 2 mm, seen from above: a millimetre is a pixel.
+struct Panes {
+    World world;
+    Pane view{.kind = Pane::Kind::main, .shot = Camera(), .box = {{0, 0}, {300, 300}}, .name = "camera"};
+    Pane slice{.kind = Pane::Kind::slice, .shot = Camera(), .box = {{300, 0}, {600, 300}}, .name = "slice"};
+
+    Panes()
+    {
+        world.volume.size = {100, 100, 100};
+        world.volume.spacing = glm::dvec3(2.0);
+        world.volume.unit = "mm";
+        Camera camera;
+        camera.projection = Camera::Projection::orthographic;
+        camera.eye = {100.0, 100.0, 400.0};
+        camera.target = {100.0, 100.0, 100.0};
+        camera.up = {0.0, 1.0, 0.0};
+        camera.height = 300.0;
+        view.shot = camera;
+        camera.near_distance = 299.0;  // z = 101 ... 99
+        camera.far_distance = 301.0;
+        slice.shot = camera;
+        slice.shot.is_slice = true;
+        slice.axis = 2;
+        for (const Pane& pane : {view, slice}) world.panes.push_back({.pane = pane, .view = nullptr});
+        world.model.probe_voxel = {50.0, 50.0, 50.0};
+        world.session.probe.brush.radius_voxels = 10.0;
+        InteractionSettings& shown = world.session.interaction;
+        shown.axes = shown.scale_bar = shown.probe_label = false;
+        world.trace.apply(TraceNodeChange{0, {}, TraceNode{{60.0, 100.0, 100.0}, 4.0, 1}}, Direction::forwards);
+        world.trace.apply(TraceNodeChange{1, {}, TraceNode{{60.0, 100.0, 160.0}, 4.0, 1}}, Direction::forwards);
+    }
+    Marks over(const Pane& pane) const { return marks_of(world.model, pane, &pane == &slice); }
+    static bool says(const Marks& marks, const std::string& text)
+    {
+        return std::ranges::any_of(marks.labels, [&](const Label& label) { return label.text == text; });
+    }
+};
+
+/// Ends of strokes between those distances of a pixel.
+ptrdiff_t ends_around(const Marks& marks, const glm::dvec2& pixel, double radius)
+{
+    return std::ranges::count_if(marks.strokes, [&](const Stroke& stroke) {
+        return std::abs(glm::distance(stroke.from, pixel) - radius) < 0.05;
+    });
+}
+
+}  // namespace
+
+TEST_CASE("In a slice the brush's ring is its cross-section with the plane")
+{
+    Panes panes;
+    CHECK(ends_around(panes.over(panes.slice), {150.0, 150.0}, 20.0) >= 48);
+    CHECK(ends_around(panes.over(panes.view), {150.0, 150.0}, 20.0) == 0);
+    panes.world.model.probe_voxel.z = 56.0;  // 12 mm off the plane: 16 across
+    CHECK(ends_around(panes.over(panes.slice), {150.0, 150.0}, 16.0) >= 48);
+    panes.world.model.probe_voxel.z = 61.0;
+    CHECK(ends_around(panes.over(panes.slice), {150.0, 150.0}, 16.0) == 0);
+    panes.world.model.probe_voxel.z = 50.0;
+    panes.world.session.probe.brush.region = RegionShape::box;
+    CHECK(ends_around(panes.over(panes.slice), {150.0, 150.0}, std::hypot(20.0, 20.0)) >= 4);
+}
+
+TEST_CASE("A slice says which it is, shows the nodes that it passes through, and no others")
+{
+    Panes panes;
+    const Marks marks = panes.over(panes.slice);
+    CHECK(Panes::says(marks, "z 51 of 100, 101 mm"));
+    CHECK(ends_around(marks, {110.0, 150.0}, 4.0) >= 48);  // node 0; node 1 lies behind it
+    Panes other;
+    other.world.trace.apply(TraceNodeChange{0, TraceNode{{60.0, 100.0, 100.0}, 4.0, 1}, {}}, Direction::forwards);
+    CHECK(ends_around(other.over(other.slice), {110.0, 150.0}, 4.0) == 0);
+}
+
+TEST_CASE("The link that a new node would get is drawn before it is made, with its length")
+{
+    Panes panes;
+    CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
+    panes.world.trace.select({{0}, {}});
+    CHECK(Panes::says(panes.over(panes.view), "40 mm"));
+    panes.world.session.probe.tool = Tool::measure;
+    CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
+}
+
+TEST_CASE("Distances are drawn where they are, in a slice only near its plane")
+{
+    Panes panes;
+    const Measurement far{{20.0, 20.0, 80.0}, {30.0, 20.0, 80.0}}, near{{20.0, 20.0, 50.5}, {40.0, 20.0, 50.5}};
+    const Measurement both[] = {far, near};
+    panes.world.model.measurements = both;
+    CHECK(Panes::says(panes.over(panes.view), "20 mm"));
+    CHECK(Panes::says(panes.over(panes.view), "40 mm"));
+    CHECK(!Panes::says(panes.over(panes.slice), "20 mm"));
+    CHECK(Panes::says(panes.over(panes.slice), "40 mm"));
+}
+
+TEST_CASE("Scale bar, axes and the probe's depth are drawn where they are wanted")
+{
+    Panes panes;
+    CHECK(panes.over(panes.view).labels.size() == 1);  // the pane's name
+    InteractionSettings& shown = panes.world.session.interaction;
+    shown.axes = shown.scale_bar = shown.probe_label = true;
+    panes.world.model.reading.depth = 12.5;
+    panes.world.model.reading.relevant_share = 0.25;
+    const Marks marks = panes.over(panes.view);
+    CHECK(Panes::says(marks, "50 mm"));
+    CHECK(Panes::says(marks, "x"));
+    CHECK(Panes::says(marks, "y"));
+    CHECK(!Panes::says(marks, "z"));  // towards the viewer
+    CHECK(Panes::says(marks, "25 % full, 12.5 mm deep"));
+    panes.view.shot.camera.projection = Camera::Projection::perspective;
+    const Marks deep = panes.over(panes.view);
+    CHECK(std::ranges::any_of(deep.labels, [](const Label& label) { return label.text.ends_with("middle's depth"); }));
+}
