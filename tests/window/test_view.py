@@ -205,14 +205,17 @@ class View(Window):
         self.assertTrue(any("Guidance on" in line for line in report["messages"]), report["messages"])
 
     def test_a_control_point_is_dragged(self):
-        session = self.write_ball()
-        self.start(session)
+        session, log = self.write_ball(), self.folder / "log.jsonl"
+        self.start(session, "--log", log)
         self.wait_for_window("sphere.* - SHVR")
         before = json.loads(session.read_text())["transfer_function"]
-        # The widget's upper edge holds the points of opacity 1; the last lies in its right corner.
-        for y in range(100, 480, 6):
+        # The widget's upper edge holds the points of opacity 1; the last lies in its right corner. From below, since
+        # there are buttons above.
+        for y in range(480, 100, -6):
             self.do("mousemove", WINDOW[0] - 31, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove",
-                    WINDOW[0] - 60, y + 10, "sleep", 0.1, "mouseup", 1, pause_s=0.05)
+                    WINDOW[0] - 60, y + 10, "sleep", 0.1, "mouseup", 1, pause_s=0.2)
+            if "transfer_function" in log.read_text():
+                break
         self.do("key", "ctrl+s", pause_s=0.5)
         self.finish()
         self.assertNotEqual(json.loads(session.read_text())["transfer_function"], before)

@@ -119,7 +119,7 @@ void graph()
     const std::string name = passes_state.graphed.empty() ? "all steps" : passes_state.graphed;
     const std::string text = name + ", at most " + printed("%.2f ms a frame", double(most));
     ImGui::PlotHistogram("##graph", values.data(), int(values.size()), 0, text.c_str(), 0.0f, std::max(most, 0.1f),
-                         {-1.0f, 6.0f * ImGui::GetFontSize()});
+                         {ImGui::GetContentRegionAvail().x, 6.0f * ImGui::GetFontSize()});
     const std::string help = "Milliseconds on the GPU from one frame of the window to the next, over the last " +
                              printed("%.1f", passes_state.log.seconds()) +
                              " s in which something was drawn. Where nothing changes nothing is drawn.";

@@ -17,6 +17,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr float MAX_TRACE_LINES = 14.0f;
+constexpr float SELECTED_ALPHA = 0.45f;  ///< of the accent colour
 
 /// Between frames.
 struct TraceListState {
@@ -46,7 +47,10 @@ void first_cell(const std::string& text, bool is_selected, uint8_t group, const 
                                               ImGui::GetColorU32(encoded(group_of(model.session.groups, group).color)),
                                               2.0f);
     ImGui::SameLine();
-    if (ImGui::Selectable(text.c_str(), is_selected)) {
+    ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, SELECTED_ALPHA));
+    const bool is_clicked = ImGui::Selectable(text.c_str(), is_selected);
+    ImGui::PopStyleColor();
+    if (is_clicked) {
         const std::string why = why_not(model, selects.front());
         if (why.empty()) actions.insert(actions.end(), selects.begin(), selects.end());
     }
