@@ -34,12 +34,12 @@ struct InteractionSettings {
     double resolution = 0.7;  ///< share of the screen's, along each axis, while something moves; less if that is slow
     double frames_per_second = 30.0;  ///< at most
     uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
+    double workspace_scale = 1.0;     ///< how far the probe goes for a move of a haptic device's hand
     Pivot pivot = Pivot::target;
     // Lines and words that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;       ///< the probe's depth, and how much of it is relevant
-    double workspace_scale = 1.0;  ///< how far the probe goes for a move of a haptic device's hand
+    bool probe_label = true;  ///< the probe's depth, and how much of it is relevant
     bool operator==(const InteractionSettings&) const = default;
 };
 

@@ -223,7 +223,9 @@ Action step_back(const Model& model, double amount)
     if (model.shows_preferences) return ShowPreferences{false};
     if (model.shows_help) return ShowHelp{false};
     if (model.shows_messages) return ShowMessages{false};
+    if (model.shows_passes) return ShowPasses{false};
     if (model.is_full_screen) return ShowFullScreen{false};
+    if (!model.measurements.empty()) return ClearMeasurements{};
     return take<Tool::turn>(model, amount);
 }
 
@@ -318,7 +320,7 @@ constexpr Shortcut SHORTCUTS[] = {
          toggle_drawn<&InteractionSettings::probe_label>, ""),
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
     {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
-    both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, "Escape"),
+    both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, ""),
     {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, plain<FitView>, {"Home", "Ctrl+Home"}},
     both("reset_view", VIEWS_KEYS, "Reset the view", Mode::tap, plain<ResetView>, "Shift+Home"),
     both("look_at_selection", VIEWS_KEYS, "Look at what is selected", Mode::tap, plain<LookAtSelection>, "Alt+Home"),
