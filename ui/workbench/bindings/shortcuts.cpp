@@ -333,6 +333,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "focus_menu", VIEWS_KEYS, "Use the menu by keyboard", Mode::tap,
         [](const Model&, double) -> Action { return FocusOn{"menu"}; }, "Shift+F10"),
+    both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
+    both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
+    both("cut_box", VIEWS_KEYS, "Edges of the cutting planes", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
 
     both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
     both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),
@@ -340,9 +343,6 @@ constexpr Shortcut SHORTCUTS[] = {
     both("tool_trace", TOOL_KEYS, "Trace with the mouse", Mode::tap, take<Tool::trace>, "Alt+4"),
     both("tool_select", TOOL_KEYS, "Select with the mouse", Mode::tap, take<Tool::select>, "Alt+5"),
     both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
-    both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
-    both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
-    both("cut_box", VIEWS_KEYS, "Edges of the cutting planes", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
 
     both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
     both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
