@@ -63,7 +63,7 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // Steps wider than a bin: other bins would not be empty. Rounded values may lie in two bins, so most others must be.
+    // Steps wider than a bin: other bins would not be empty. A rounded value may lie in two, so most others must be.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
