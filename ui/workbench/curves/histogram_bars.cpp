@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace shvr::ui {
 
@@ -62,10 +63,10 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // Steps wider than a bin: other bins would not be empty. Rounded ones need a bin's distance between them.
+    // Steps wider than a bin: other bins would not be empty. A rounded value may lie in two, so most others must be.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
-        const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(2.0 * bin_width, 3.0);
+        const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
     // Narrower: bins hold one more or one fewer, which shows as a comb that the right step makes smooth.
@@ -93,6 +94,33 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
+/// Values that were made of fewer ones by a curve, as when a scan was brightened, leave out others here and there: each
+/// that there is reaches halfway to the next.
+void join_small_gaps(std::vector<HistogramBar>& bars)
+{
+    constexpr size_t LARGEST_GAP = 2;  // bars that are left out
+    constexpr size_t LEAST_SHARE = 4;  // of so many bars one must be left out, or they stay as they are
+    std::vector<size_t> filled;
+    for (size_t i = 0; i < bars.size(); ++i)
+        if (bars[i].voxels > 0.0) filled.push_back(i);
+    size_t left_out = 0;
+    for (size_t k = 1; k < filled.size(); ++k)
+        if (filled[k] - filled[k - 1] - 1 <= LARGEST_GAP) left_out += filled[k] - filled[k - 1] - 1;
+    if (left_out * LEAST_SHARE < filled.size()) return;
+    std::vector<HistogramBar> joined;
+    for (size_t k = 0; k < filled.size(); ++k) {
+        HistogramBar bar = bars[filled[k]];
+        const double width = bar.upper - bar.lower;
+        if (k > 0 && filled[k] - filled[k - 1] - 1 <= LARGEST_GAP)
+            bar.lower = 0.5 * (bars[filled[k - 1]].upper + bar.lower);
+        if (k + 1 < filled.size() && filled[k + 1] - filled[k] - 1 <= LARGEST_GAP)
+            bar.upper = 0.5 * (bars[filled[k]].upper + bars[filled[k + 1]].lower);
+        bar.voxels *= width / (bar.upper - bar.lower);
+        joined.push_back(bar);
+    }
+    bars = std::move(joined);
+}
+
 }  // namespace
 
 HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics)
@@ -114,6 +142,7 @@ HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics)
     made.step = lattice.step();
     if (made.step > width) {
         add_values(lattice, range.lower, counts, made);
+        if (made.step == 1.0) join_small_gaps(made.bars);
         return made;
     }
     const std::vector<int64_t> values = values_in_bins(lattice, counts.size());
