@@ -10,7 +10,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR project";
+const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR project",
+                  *const OUTLINE_TEXT = "SHVR outline";
 const char* const CAMERA_OF_PICTURE = "picture";
 
 fs::path folder_of(const fs::path& picture)
@@ -21,16 +22,23 @@ fs::path folder_of(const fs::path& picture)
 }  // namespace
 
 PictureTexts texts_of_picture(Session session, const Camera& camera, const fs::path& picture, const fs::path& project,
-                              bool shows_probe)
+                              PictureProbe probe)
 {
     session.cameras[CAMERA_OF_PICTURE] = camera;
     session.camera_name = CAMERA_OF_PICTURE;
-    if (!shows_probe) session.probe.shown = session.probe.shell = session.probe.preview = false;
+    if (probe == PictureProbe::none) session.probe.shown = session.probe.shell = session.probe.preview = false;
+    if (probe == PictureProbe::plain) session.probe.shown = true;
     PictureTexts texts{{SESSION_TEXT, to_text(session, folder_of(picture))}};
+    if (probe == PictureProbe::plain) texts.emplace_back(OUTLINE_TEXT, "none");
     if (!project.empty())
         texts.emplace_back(PROJECT_TEXT,
                            fs::absolute(project).lexically_normal().lexically_proximate(folder_of(picture)).string());
     return texts;
+}
+
+bool outlines_probe(const fs::path& picture)
+{
+    return picture.extension() != ".png" || read_png_text(picture, OUTLINE_TEXT) != "none";
 }
 
 std::optional<PictureSession> session_in_picture(const fs::path& picture)

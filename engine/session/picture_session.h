@@ -5,6 +5,7 @@
 //                    the picture's folder
 //   "SHVR project"   the session's file that the picture was made of, relative to the same folder; none for a bare
 //                    volume. The journal beside it holds the annotation
+//   "SHVR outline"   "none" where the probe has no outline
 //
 // Annotation is not in the picture: where it has changed since, the picture made again shows it as it is now. Programs
 // that write pictures anew drop the texts. Any thread may call these.
@@ -16,9 +17,17 @@
 
 namespace shvr {
 
-/// `picture`: its file. `project`: as above; may be empty. `shows_probe`: as the session says, or not at all.
+/// How the picture shows the probe.
+enum class PictureProbe {
+    none,
+    plain,        ///< as the window does: always, and without an outline over what hides it
+    as_rendered,  ///< as `shvr render` does: where the session says so, with its outline
+};
+/// `picture`: its file. `project`: as above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,
-                              const std::filesystem::path& project, bool shows_probe);
+                              const std::filesystem::path& project, PictureProbe probe);
+/// Whether a picture made again from that file has the probe's outline: not where it is one of the window.
+bool outlines_probe(const std::filesystem::path& picture);
 
 struct PictureSession {
     std::string text;

@@ -75,10 +75,14 @@ void run_render(RenderCommandOptions options)
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Progress progress = work.begin("drawing " + options.output);
+    const PictureProbe kept_probe = outlines_probe(options.input) ? PictureProbe::as_rendered : PictureProbe::plain;
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
-                     {.probe = probe, .outlines_probe = true, .count_work = options.common.json, .progress = progress},
+                     {.probe = probe,
+                      .outlines_probe = outlines_probe(options.input),
+                      .count_work = options.common.json,
+                      .progress = progress},
                      options.with_session
-                         ? texts_of_picture(opened.session, camera, options.output, opened.project, true)
+                         ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
                          : PictureTexts());
     const Picture picture = draw(file, options, work);
     check_validation(opened);

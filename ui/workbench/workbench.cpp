@@ -239,7 +239,7 @@ void Workbench::follow_screenshots()
         say("The large screenshot was cancelled by painting", Weight::warning);
     }
     const Screenshots::Turn turn =
-        screenshots_.advance(document_->screen, screenshot_stem(), is_still_, texts_of_picture(pixels_));
+        screenshots_.advance(document_->screen, screenshot_stem(), is_still_, texts_of_picture(pixels_, true));
     if (!turn.said.empty()) say(turn.said);
     if (!turn.progress.empty()) messages_.amend(options_.now_s(), turn.progress);
 }

@@ -249,7 +249,7 @@ private:
     void load_once_more();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     std::filesystem::path screenshot_stem() const;
-    Screenshots::Texts texts_of_picture(const glm::uvec2& pixels) const;
+    Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 
     // Jobs and saving (workbench_save.cpp)
     void follow_jobs();

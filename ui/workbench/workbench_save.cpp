@@ -59,6 +59,7 @@ void Workbench::follow_save()
     if (!save_is_wanted_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
+        renderer_.scene().advance();  // takes its bricks, also where no picture is drawn
         if (options_.now_s() - stroke_progress_s_ <= PATIENCE_S) return;
         annotator.drop_stroke();
         unpainted_ = sentence("its bricks did not arrive within ", PATIENCE_S, " s");

@@ -90,20 +90,21 @@ void Workbench::act(const Screenshot& action)
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
     screenshots_.take_large(screenshot_stem(), renderer_, session, document_->camera, options,
-                            texts_of_picture(session.render.size));
+                            texts_of_picture(session.render.size, false));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
 }
 
-/// The session in a picture is of that size, without the probe, which is no part of the picture.
-Screenshots::Texts Workbench::texts_of_picture(const glm::uvec2& pixels) const
+/// The session in a picture is of that size; a picture larger than the window shows no probe.
+Screenshots::Texts Workbench::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
 {
-    return [this, pixels](const std::filesystem::path& picture) {
+    return [this, pixels, shows_probe](const std::filesystem::path& picture) {
         Session session = document_->saved_session();
         session.render.size = pixels;
         const bool has_project = document_->has_session_file() || document_->annotator.work().journal().bytes > 0;
         return shvr::texts_of_picture(std::move(session), document_->camera, picture,
-                                      has_project ? document_->session_path : std::filesystem::path(), false);
+                                      has_project ? document_->session_path : std::filesystem::path(),
+                                      shows_probe ? PictureProbe::plain : PictureProbe::none);
     };
 }
 

@@ -5,7 +5,8 @@
 
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
-#include "engine/session/session.h"
+#include "engine/picture/probe_look.h"
+#include "engine/session/picture_session.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
@@ -210,7 +211,9 @@ TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is re
               Work::Opening{.only_look = true});
     other.scene().show(work.document());
     const Camera of_picture = camera_named(opened.session, opened.session.camera_name, opened.source->info());
-    const Image8 again = to_image8(other.render(opened.session, of_picture).image);
+    const RenderOptions as_shown{.probe = shown_probe(opened.session, opened.source->info(), opened.statistics),
+                                 .outlines_probe = outlines_probe(picture)};
+    const Image8 again = to_image8(other.render(opened.session, of_picture, as_shown).image);
     CHECK(again.width == shown.width);
     int differing = 0, most = 0;
     for (size_t i = 0; i < shown.rgba.size(); ++i) {
