@@ -59,13 +59,6 @@ std::string why(const Model& model, const RenameCamera& action)
     return model.session.cameras.contains(action.to) ? sentence("a view is kept as ", action.to, " already") : "";
 }
 
-std::string why(const Model& model, const LookFrom& action)
-{
-    const std::vector<std::string> names = camera_names(model.session);
-    const bool is_known = std::ranges::find(names, action.camera) != names.end() || action.camera.starts_with('{');
-    return is_known || action.camera.empty() ? "" : sentence("no view is kept as ", action.camera);
-}
-
 std::string why(const Model& model, const LookAtSelection&)
 {
     return model.trace.selection().empty() ? "nothing is selected" : "";
