@@ -34,6 +34,8 @@ public:
     /// that moves.
     std::optional<double> share() const { return wanted_ ? share_ : std::nullopt; }
     bool is_current() const;
+    /// A question is in flight. One whose bricks are missing is not: it is asked again as they come.
+    bool is_asking() const { return query_.is_asking(); }
 
 private:
     struct Asked {

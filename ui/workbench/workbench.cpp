@@ -157,7 +157,7 @@ bool Workbench::has_work() const
     return document_ &&
            (!document_->screen.complete() || document_->annotator.stroke_is_running() || document_->touch.servo() ||
             is_stirring() || screenshots_.is_writing() || screenshots_.has_large() ||
-            !document_->previewer.is_current() || !document_->meter.is_current());
+            !document_->previewer.is_current() || document_->meter.is_asking());
 }
 
 void Workbench::advance()

@@ -145,7 +145,7 @@ const Row ROWS[] = {
      {STROKE}},
     {R"({"op":"look_at_file","path":"FOLDER/tiny.nrrd"})", "candidate"},
     {R"({"op":"take_file","path":"FOLDER/tiny.nrrd"})",
-     "camera, file preferences.json, open, place, probe, render, transfer_function"},
+     "camera, file preferences.json, open, place, probe, render, transfer_function, view"},
     {R"({"op":"take_file","path":"FOLDER/look.json"})", "saved, transfer_function, undo"},
     {R"({"op":"take_file","path":"FOLDER/line.txt"})", "saved, trace, undo"},
     {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
