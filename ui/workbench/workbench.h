@@ -87,8 +87,8 @@ public:
     std::string finish_stroke();
     /// Whether another turn at once would find something to do.
     bool has_work() const;
-    /// Whether the picture does not yet show what was done last.
-    bool is_stirring() const { return look_is_stale_ || camera_moved_; }
+    /// Whether there is a picture that does not yet show what was done last.
+    bool is_stirring() const { return pixels_.x > 0 && pixels_.y > 0 && (look_is_stale_ || camera_moved_); }
     /// Whether what is open may be closed: call it turn by turn. Saves all work as Save does; if the person only looked
     /// around, saves the view silently. Where the work is only looked at, nothing is saved, as was said; while it is
     /// asked what to believe, annotation stays as the journal has it.
