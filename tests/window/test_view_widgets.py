@@ -48,7 +48,7 @@ class Widgets(Window):
     def test_the_wheel_over_the_curve_shifts_all_points_and_slowly_with_shift(self):
         self.view()
         points = []
-        for y in range(330, 700, 30):  # wherever the curve is; elsewhere the panel is scrolled, which sets nothing
+        for y in range(110, 580, 20):  # wherever the curve is; elsewhere the panel is scrolled, which sets nothing
             self.do("mousemove", WINDOW[0] - 160, y, "sleep", 0.2, "click", 4, pause_s=0.4)
             points = [values["transfer_function"]["points"] for values in self.settings() if "transfer_function" in values]
             if points:

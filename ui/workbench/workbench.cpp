@@ -31,7 +31,11 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options)
     load_preferences();
 }
 
-Workbench::~Workbench() = default;
+/// What is being written, preferences among it, is written to its end.
+Workbench::~Workbench()
+{
+    static_cast<void>(savers_.wait());
+}
 
 void Workbench::say(std::string text, Weight weight)
 {

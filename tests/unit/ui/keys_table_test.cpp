@@ -1,5 +1,4 @@
-// KEYS.md lists every shortcut with its keys in both sets and the action it makes: for people, and for the window's
-// tests, which press them all (tests/window/test_view_keys.py).
+// KEYS.md lists every shortcut with its keys in both sets and the action it makes.
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
