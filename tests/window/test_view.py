@@ -428,6 +428,7 @@ class View(Window):
         x, y = self.middle()
         for group, other in enumerate(others, 3):
             self.open(other)
+            time.sleep(5)                           # beside the work
             self.do("key", "Escape", pause_s=0.4)   # the chooser stays with the reason
             self.put_probe(x, y, "key", group)
             self.stroke((x, y), (x + 10 * group, y))
@@ -437,7 +438,8 @@ class View(Window):
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertIn("other.mask", said)
-        self.assertEqual(said.count(f"{session} stays open"), 2, said)
+        self.assertIn(f"{session} stays open", said)       # it could not be read
+        self.assertIn(f"{session} is open again", said)    # it could not be loaded, and there is room for one only
         painted = {group: count for group, count in report["voxels_in_group"].items()}
         self.assertEqual(sorted(painted), ["3", "4"], said)
         self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [

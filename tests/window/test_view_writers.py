@@ -65,7 +65,7 @@ class Writers(Window):
         before = self.files()
         self.writer(session)
         self.view(session)
-        self.click(63, 38)  # "Work on a copy"
+        self.click(63, 67)  # "Work on a copy"
         self.wait_for_file(self.folder / "session-copy.json")
         self.do("key", "7", pause_s=0.5)
         self.paint()
@@ -83,7 +83,7 @@ class Writers(Window):
         self.view(session)
         elsewhere = {**DAB, "path": [[32, 54, 54]]}  # not where the window paints
         holder.communicate(json.dumps(elsewhere) + '\n{"op":"save"}\n', PATIENCE_S)
-        self.click(158, 38)  # "Try again"
+        self.click(158, 67)  # "Try again"
         self.do("key", "7", pause_s=0.5)
         self.paint()
         report = self.finish()

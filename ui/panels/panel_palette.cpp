@@ -95,8 +95,10 @@ void palette_window(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize({std::min(50.0f * font, viewport.WorkSize.x), 0.0f});
     ImGui::SetNextWindowPos({viewport.GetWorkCenter().x, viewport.WorkPos.y + 2.0f * font}, ImGuiCond_Always,
                             {0.5f, 0.0f});
+    // Arrows choose a line; the text keeps the keyboard.
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                                   ImGuiWindowFlags_NoNavInputs;
     if (palette.takes_keys) ImGui::SetNextWindowFocus();
     ImGui::Begin("Find anything", nullptr, flags);
     if (std::exchange(palette.takes_keys, false)) ImGui::SetKeyboardFocusHere();
