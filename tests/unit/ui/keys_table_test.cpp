@@ -48,13 +48,15 @@ std::string in_code(const char* keys)
 TEST_CASE("KEYS.md says of each shortcut what the program does")
 {
     std::string expected =
-        "# Keys\n\nEvery shortcut, its keys in today's set and in the thesis's, and the action that it makes. Chords are\n"
+        "# Keys\n\nEvery shortcut, its keys in today's set and in the thesis's, and the action that it makes. Chords "
+        "are\n"
         "separated by spaces. `tests/unit/ui/keys_table_test.cpp` prints this file where it differs.\n";
     const World world;
     std::string group;
     for (const Shortcut& shortcut : shortcuts()) {
         if (std::exchange(group, shortcut.group) != shortcut.group)
-            expected += sentence("\n## ", group, "\n\n| shortcut | does | today | thesis | action |\n|---|---|---|---|---|\n");
+            expected +=
+                sentence("\n## ", group, "\n\n| shortcut | does | today | thesis | action |\n|---|---|---|---|---|\n");
         expected += sentence("| `", shortcut.id, "` | ", shortcut.name, " | ", in_code(shortcut.keys[0]), " | ",
                              in_code(shortcut.keys[1]), " | ", in_short(shortcut.action(world.model, 1.0)), " |\n");
     }
