@@ -210,7 +210,7 @@ class Export(CliTest):
         label = read_by_zarr(self, self.folder / "own.zarr", self.folder / "bare")["label"]
         self.assertEqual([color["label-value"] for color in label["colors"]], [3, 5, 12])
         self.assertEqual(label["colors"][0]["rgba"], [255, 128, 0, 51])
-        self.assertEqual(label["colors"][2]["rgba"], [0x1f, 0x77, 0xb4, 255])  # the second of the ten
+        self.assertEqual(label["colors"][2]["rgba"], [0x18, 0x17, 0xff, 255])  # the second of the ten
         self.assertEqual(label["properties"], [{"label-value": 3, "name": "vessel"},
                                                {"label-value": 5, "name": "not painted"},
                                                {"label-value": 12, "name": "group 12"}])
@@ -226,7 +226,7 @@ class Export(CliTest):
                                  annotation={"mask": "own.zarr"})
         self.check("export", own, "--mask", self.folder / "again.zarr")
         again = json.loads((self.folder / "again.zarr" / ".zattrs").read_text())["image-label"]
-        self.assertEqual(again["colors"][0]["rgba"], [0x2c, 0xa0, 0x2c, 255])
+        self.assertEqual(again["colors"][0]["rgba"], [203, 242, 0, 255])
         self.assertEqual([entry["name"] for entry in again["properties"]], ["mine", "not painted", "group 12"])
 
     def test_a_project_takes_its_mask_as_labels_and_knows_it_again(self):

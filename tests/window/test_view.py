@@ -428,7 +428,7 @@ class View(Window):
         x, y = self.middle()
         for group, other in enumerate(others, 3):
             self.open(other)
-            time.sleep(5)                           # beside the work
+            time.sleep(15)                          # beside the work, on a busy machine
             self.do("key", "Escape", pause_s=0.4)   # the chooser stays with the reason
             self.put_probe(x, y, "key", group)
             self.stroke((x, y), (x + 10 * group, y))

@@ -118,7 +118,9 @@ void Journal::begin(const fs::path& rest)
         check(write_all(file_.number(), 0, header));
         end_ = header.size();
     }
-    is_in_folder_ = false;  // the journal's thread syncs it, so that who begins a journal waits for no disk
+    // Once, and waited for: a journal of which a power cut leaves the name but not the header could not be opened.
+    check(sync(file_.number()));
+    sync_folder(path_);
 }
 
 Journal::~Journal()
@@ -236,18 +238,6 @@ std::string Journal::write_from(uint64_t at, const std::deque<Waiting>& waiting,
     return {};
 }
 
-/// So that a new file is still there after a power cut. Returns 0, or errno.
-int Journal::sync_folder_of_journal()
-{
-    try {
-        sync_folder(path_);
-    } catch (const Error&) {
-        return errno != 0 ? errno : EIO;
-    }
-    is_in_folder_ = true;
-    return 0;
-}
-
 void Journal::write()
 {
     std::deque<Waiting> waiting;  // not yet synced
@@ -274,9 +264,7 @@ void Journal::write()
         if (failure.empty()) {
             for (; written < waiting.size(); ++written) written_bytes += waiting[written].bytes.size();
             if (is_due && written > 0) {
-                int error = sync(file_.number());
-                if (error == 0 && !is_in_folder_) error = sync_folder_of_journal();
-                if (error != 0)
+                if (const int error = sync(file_.number()); error != 0)
                     failure = sentence(path_.string(), ": cannot be synced: ", reason_of(error),
                                        "; unsaved work stays in memory, and writing is tried again");
                 next_sync = Clock::now() + SYNC_INTERVAL;

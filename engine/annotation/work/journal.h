@@ -64,7 +64,6 @@ private:
         bool is_framed = false;
     };
     void write();
-    int sync_folder_of_journal();
     /// Frames the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
     /// Returns why it failed; empty if it did not.
@@ -88,8 +87,7 @@ private:
     bool is_ending_ = false;
     std::string failure_;
 
-    uint64_t checksum_ = 0;     ///< of the last framed record; the thread's
-    bool is_in_folder_ = true;  ///< likewise, once it runs: its folder is synced
+    uint64_t checksum_ = 0;  ///< of the last framed record; the thread's
     std::thread thread_;
 };
 

@@ -36,12 +36,18 @@ constexpr const char* BEFORE[] = {
 
 /// What has to be there besides.
 const std::map<std::string, std::vector<const char*>> BESIDES{
-    {"eraser", {}},
+    {"step_back", {R"({"op":"set","values":{"probe":{"tool":"paint"}}})"}},
+    {"tool_turn", {R"({"op":"set","values":{"probe":{"tool":"paint"}}})"}},
+    {"auto_contrast", {R"({"op":"set","values":{"view":{"slices":{"white":900}}}})"}},
+    {"mend_cut", {R"({"op":"select","node":1})", R"({"op":"delete"})"}},
     {"group_2", {R"({"op":"set","values":{"probe":{"group":4}}})"}},
     {"single_view", {R"({"op":"set","values":{"view":{"arrangement":"slices"}}})"}},
     {"select_nearest", {R"({"op":"deselect"})"}},
     {"regroup_2", {R"({"op":"group","group":4})"}},
 };
+
+/// What is under the pointer is the concern of hands_test.cpp.
+const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto"};
 
 /// Those that change nothing a state tells of: what they say is what they do.
 const std::vector<std::string> ONLY_SAY{"update_occlusion", "regroup_0", "quit"};
@@ -53,7 +59,8 @@ TEST_CASE_FIXTURE(OnDevice, "every shortcut of the thesis's set acts")
     const Keymap thesis(KeySet::thesis);
     size_t tried = 0;
     for (const Shortcut& shortcut : shortcuts()) {
-        if (thesis.chords_of(shortcut).empty() || std::string(shortcut.id) == "large_screenshot") continue;
+        const bool is_left_out = std::ranges::find(LEFT_OUT, shortcut.id) != LEFT_OUT.end();
+        if (thesis.chords_of(shortcut).empty() || is_left_out) continue;
         CAPTURE(std::string(shortcut.id));
         TemporaryFolder folder;
         Workbench bench(renderer(), {.has_servo = false, .preferences = folder.path / "preferences.json"});
@@ -71,7 +78,8 @@ TEST_CASE_FIXTURE(OnDevice, "every shortcut of the thesis's set acts")
         bench.wait_for_screenshots();
         const bool only_says = std::ranges::find(ONLY_SAY, shortcut.id) != ONLY_SAY.end();
         const std::string changed = difference(before, state_of(bench, folder.path));
-        const bool acts = !changed.empty() || (only_says && (bench.messages().count() > said || bench.take_quit()));
+        const bool acts = !changed.empty() || (only_says && (bench.messages().count() > said || bench.take_quit())) ||
+                          !bench.take_focus().empty();
         CHECK(acts);
         ++tried;
     }
