@@ -414,38 +414,6 @@ class View(Window):
         self.assertIn("device memory", said)
         self.assertTrue(report["view_complete"], said)
 
-    def test_a_scan_that_cannot_be_opened_leaves_the_one_before_as_it_was(self):
-        small = self.write_session("small.json", annotation={"mask": "other.mask"})
-        self.check("annotate", small, "--script", self.write_script("s.jsonl", [
-            {"op": "paint", "brush": "fill", "region": "ball", "path": [[12, 12, 12]], "radius": 5, "threshold": 0,
-             "group": 3}, {"op": "save"}]))
-        session = self.write_ball()
-        others = [self.write_ball(name="other.json", annotation={"mask": "other.mask"}),
-                  self.write_ball(name="large.json", render={"paging": "never"},
-                                  volume={"procedural": "sphere", "size": [320, 320, 320]})]
-        self.start(session, "--budget-device", 64)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        for group, other in enumerate(others, 3):
-            self.open(other)
-            time.sleep(15)                          # beside the work, on a busy machine
-            self.do("key", "Escape", pause_s=0.4)   # the chooser stays with the reason
-            self.put_probe(x, y, "key", group)
-            self.stroke((x, y), (x + 10 * group, y))
-        self.do("key", "p")
-        photograph = self.folder / "session-view-1.png"
-        self.wait_for_file(photograph)
-        report = self.finish()
-        said = "\n".join(report["messages"])
-        self.assertIn("other.mask", said)
-        self.assertIn(f"{session} stays open", said)       # it could not be read
-        self.assertIn(f"{session} is open again", said)    # it could not be loaded, and there is room for one only
-        painted = {group: count for group, count in report["voxels_in_group"].items()}
-        self.assertEqual(sorted(painted), ["3", "4"], said)
-        self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
-            {"op": "expect", "voxels_in_group": painted}]))
-        self.check_photograph(session, photograph)
-
     def test_what_cannot_be_opened_is_said_over_the_start_page(self):
         self.start(self.folder / "missing.nhdr")
         self.wait_for_window("SHVR")
