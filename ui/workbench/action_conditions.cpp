@@ -16,6 +16,7 @@ std::string why_not_edited(const Model& model)
 {
     if (!model.holder.empty()) return sentence("the project is open for writing in ", model.holder);
     if (!model.disputes.empty()) return "saved files were changed by another program: files or journal?";
+    if (model.is_saving_as) return "the work is being saved under another name";
     return {};
 }
 

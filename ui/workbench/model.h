@@ -81,6 +81,7 @@ struct Model {
     size_t undoable = 0, redoable = 0;  ///< a setting that is not a step of the history yet counts as undoable
     bool is_saved = true;
     bool is_saving = false;                    ///< files are being written; what is done meanwhile is not in them
+    bool is_saving_as = false;                 ///< under another name: no command until that has ended
     bool has_session_file = false;             ///< false: a bare scan that was never saved
     std::span<const std::string> recovered{};  ///< what was recovered or set aside at opening, until it is dismissed
     std::string_view opening{};                ///< what is being opened; empty: nothing

@@ -312,6 +312,7 @@ Model Workbench::model() const
             .redoable = document.annotator.history().redoable(),
             .is_saved = document.is_saved(),
             .is_saving = is_saving(),
+            .is_saving_as = document.annotator.work().is_saving_as(),
             .has_session_file = document.has_session_file(),
             .recovered = recovered_,
             .opening = opening_name(),

@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "engine/jobs/jobs.h"
 #include "engine/tasks/file_content.h"
@@ -98,9 +99,9 @@ public:
         refused,  ///< it cannot be saved; `why` says why, once
     };
     Leave leave(std::string& why);
-    bool is_saving() const { return save_ != nullptr || save_is_wanted_; }
+    bool is_saving() const { return save_ != nullptr || wanted_save_; }
     /// Whether anything is to be seen of jobs.
-    bool shows_jobs() const { return opening_ || is_saving() || !jobs_.is_idle(); }
+    bool shows_jobs() const { return opening_ || is_saving() || !copies_.empty() || !jobs_.is_idle(); }
 
     // ---- What there is to see
 
@@ -254,7 +255,11 @@ private:
     // Jobs and saving (workbench_save.cpp)
     void follow_jobs();
     void follow_save();
+    void save_to(const std::filesystem::path& path);
     void begin_save(bool is_asked_for, Document::Parts parts = Document::Parts::all);
+    void begin_save_as(const std::filesystem::path& path);
+    void start_saving(std::shared_ptr<Document::Saving> saving, bool is_asked_for);
+    void start_copy(const std::filesystem::path& path, bool opens_it);
     void end_save(const Jobs::Finished& job);
     void take(FileContent content, const std::filesystem::path& path);
     void take_annotation(Part part, const std::filesystem::path& path);
@@ -341,13 +346,15 @@ private:
         bool is_asked_for = true;  ///< otherwise nothing is said where all goes well
     };
     std::unique_ptr<Save> save_;
-    bool save_is_wanted_ = false;     ///< once the stroke, or the save, under way has ended
+    /// Once the stroke, or the save, under way has ended. Empty: in place; else under that name.
+    std::optional<std::filesystem::path> wanted_save_;
     double stroke_progress_s_ = 0.0;  ///< when the last of its bricks came
     uint64_t stroke_uploads_ = 0;
     std::string unpainted_;            ///< why a part of the stroke before the save was not painted
     std::string save_failure_;         ///< of the last save; empty: it went well
     bool has_tried_view_ = false;      ///< that alone is no reason to stay
     bool is_leaving_ = false;          ///< that a save fails is a reason to stay
+    std::set<Jobs::Number> copies_;    ///< being written by a saver
     bool reopens_when_saved_ = false;  ///< with the spacing of the session
     std::vector<std::string> recovered_;
     std::unique_ptr<Candidate> candidate_;

@@ -1,5 +1,5 @@
-// Jobs as they end, and saving, which is one of them: what is to be written is taken at once, and files are written
-// beside the work.
+// Jobs as they end, and saving, in place or elsewhere, which is one of them: what is to be written is taken at once,
+// and files are written beside the work.
 
 #include <algorithm>
 #include <chrono>
@@ -25,7 +25,10 @@ void Workbench::act(const CancelJob& action)
 
 void Workbench::follow_jobs()
 {
-    for (const Jobs::Finished& job : savers_.finish()) end_save(job);
+    for (const Jobs::Finished& job : savers_.finish()) {
+        if (copies_.erase(job.number) > 0 && job.was_cancelled) say("Cancelled: " + job.what, Weight::warning);
+        end_save(job);
+    }
     for (const Jobs::Finished& job : jobs_.finish()) {
         if (opening_ && opening_number() == job.number) {
             if (job.was_cancelled)
@@ -41,22 +44,33 @@ void Workbench::follow_jobs()
     }
 }
 
-/// All that a stroke under way covers belongs to it, so it may begin a little later.
 void Workbench::act(const SaveOp&)
+{
+    save_to({});
+}
+
+void Workbench::act(const SaveAs& action)
+{
+    if (is_saving()) fail("the work is being saved; expected that to have ended");
+    save_to(action.path);
+}
+
+/// All that a stroke under way covers belongs to it, so it may begin a little later.
+void Workbench::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
     extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
     stroke_progress_s_ = options_.now_s();
-    if (!save_ && !annotator.stroke_is_running()) return begin_save(true);
-    save_is_wanted_ = true;
+    if (!save_ && !annotator.stroke_is_running()) return path.empty() ? begin_save(true) : begin_save_as(path);
+    wanted_save_ = path;
     say(save_ ? "Saved once more when the save that is under way has ended"
               : "Saved when the stroke that is under way is painted");
 }
 
 void Workbench::follow_save()
 {
-    if (!save_is_wanted_ || save_) return;
+    if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
         renderer_.scene().advance();  // takes its bricks, also where no picture is drawn
@@ -64,14 +78,28 @@ void Workbench::follow_save()
         annotator.drop_stroke();
         unpainted_ = sentence("its bricks did not arrive within ", PATIENCE_S, " s");
     }
-    save_is_wanted_ = false;
-    begin_save(true);
+    const std::filesystem::path path = *std::exchange(wanted_save_, std::nullopt);
+    if (path.empty())
+        begin_save(true);
+    else
+        begin_save_as(path);
 }
 
 void Workbench::begin_save(bool is_asked_for, Document::Parts parts)
 {
     if (parts == Document::Parts::all) record_settings();
-    const std::shared_ptr<Document::Saving> saving = document_->begin_save(parts);
+    start_saving(document_->begin_save(parts), is_asked_for);
+}
+
+void Workbench::begin_save_as(const std::filesystem::path& path)
+{
+    record_settings();
+    start_saving(document_->begin_save_as(path), true);
+    say("Saving as " + path.string() + "; until that has ended nothing can be painted, traced or undone");
+}
+
+void Workbench::start_saving(std::shared_ptr<Document::Saving> saving, bool is_asked_for)
+{
     save_failure_.clear();
     save_ = std::make_unique<Save>(Save{.saving = saving, .is_asked_for = is_asked_for});
     save_->number = savers_.start("saving " + short_name(document_->session_path),
@@ -81,10 +109,37 @@ void Workbench::begin_save(bool is_asked_for, Document::Parts parts)
                                   });
 }
 
+void Workbench::act(const CopySession& action)
+{
+    start_copy(action.path, false);
+}
+
+void Workbench::act(const WorkOnCopy&)
+{
+    start_copy({}, true);
+}
+
+/// Of what is there now, whatever is done meanwhile.
+void Workbench::start_copy(const std::filesystem::path& path, bool opens_it)
+{
+    if (!document_->only_looks()) record_settings();
+    const std::function<std::filesystem::path()> copy = document_->copier(path);
+    const std::string name = short_name(document_->session_path);
+    copies_.insert(
+        savers_.start("copying " + name, [this, copy, opens_it, name](ProgressReporter& reporter) -> Jobs::Completion {
+            static_cast<void>(reporter.begin("writing a copy of " + name));
+            const std::filesystem::path copied = copy();
+            return [this, copied, opens_it] {
+                if (opens_it) return begin_open(copied, {});
+                say("Copied to " + copied.string() + "; this window goes on with " + document_->session_path.string());
+            };
+        }));
+}
+
 void Workbench::end_save(const Jobs::Finished& job)
 {
     if (!save_ || save_->number != job.number) {
-        if (!job.failure.empty()) say(job.failure, Weight::warning);
+        if (!job.failure.empty()) say(job.failure, Weight::error);
         return;
     }
     const std::unique_ptr<Save> save = std::move(save_);
@@ -99,6 +154,13 @@ void Workbench::end_save(const Jobs::Finished& job)
         const std::string rest = unpainted + kept + "; what was not saved is in the journal";
         return job.was_cancelled ? say("Cancelled: " + job.what + rest, Weight::warning)
                                  : say(job.failure + unpainted + kept, Weight::error);
+    }
+    if (save->saving->is_under_another_name()) {
+        look_again();
+        Preferences preferences = preferences_;
+        preferences.note_opened(document_->session_path);
+        prefer(std::move(preferences));
+        return say("Saved as " + document_->session_path.string() + unpainted + kept);
     }
     if (std::exchange(reopens_when_saved_, false)) begin_open(document_->session_path, {});
     if (!save->is_asked_for && kept.empty()) return;

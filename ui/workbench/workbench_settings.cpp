@@ -202,14 +202,14 @@ void Workbench::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
     if (!is_hand_down_) session_before_hand_.reset();
-    if (!settings_to_record_ || is_being_set || document_->annotator.stroke_is_running()) return;
+    if (!settings_to_record_ || is_being_set) return;
     record_settings();
 }
 
 /// Of what follows, undo is to take back that first.
 void Workbench::record_settings()
 {
-    if (document_->annotator.stroke_is_running()) return;
+    if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
     settings_to_record_ = false;
     if (document_->record_settings() && log_) log_(line_of(EndStep{}));
 }

@@ -58,27 +58,6 @@ void Workbench::act(const RevertOp&)
     say("Reverted to the last save; undo takes that back");
 }
 
-void Workbench::act(const SaveAs& action)
-{
-    if (is_saving()) fail("the work is being saved; expected that to have ended");
-    const std::string unpainted = finish_stroke();
-    record_settings();
-    std::string kept;
-    for (const Notice& notice : document_->save_as(action.path)) kept += "; " + notice.text;
-    say("Saved as " + document_->session_path.string() +
-        (unpainted.empty() ? "" : "; the rest of the stroke was not painted: " + unpainted) + kept);
-    Preferences preferences = preferences_;
-    preferences.note_opened(document_->session_path);
-    prefer(std::move(preferences));
-}
-
-void Workbench::act(const CopySession& action)
-{
-    record_settings();
-    say("Copied to " + document_->save_copy(action.path).string() + "; this window goes on with " +
-        document_->session_path.string());
-}
-
 void Workbench::act(const Screenshot& action)
 {
     if (!action.is_large) {
@@ -116,11 +95,6 @@ void Workbench::act(const ChooseBelief& action)
     document_->drags_node = false;
     look_again();
     say(said);
-}
-
-void Workbench::act(const WorkOnCopy&)
-{
-    begin_open(document_->save_copy(), {});
 }
 
 }  // namespace shvr::ui

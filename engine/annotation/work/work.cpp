@@ -61,6 +61,7 @@ void Work::begin_journal()
 {
     refuse_if_only_looking();
     expect_choice();  // what is disputed would fit no longer
+    if (is_saving_as_) fail("the work is being saved under another name; expected that to have ended");
     if (journal_)
         keep_journal_in_place();
     else

@@ -140,16 +140,24 @@ public:
     /// Whether it was written or not.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
-    /// Not while a save is under way.
-    /// Goes on under other names, none of which may exist yet, with the whole history; what was written before stays as
-    /// it is and is let go. In this order, each on disk before the next: a copy of the journal, the mark that a save
+
+    /// Going on under other names, none of which may exist yet, with the whole history; what was written before stays
+    /// as it is and is let go. In this order, each on disk before the next: a copy of the journal, the mark that a save
     /// begins, the files, what they are, and `save_session`, which writes `session`: what is killed before that leaves
-    /// files that nothing names, and after it a whole project. Fails with nothing changed, and removes what it
-    /// has made. Where there is no history yet, the new journal begins with the first command.
-    Saved save_as(const WorkFiles& to, const std::vector<LabelImage::Color>& looks,
-                  const std::filesystem::path& session = {}, const std::function<void()>& save_session = {});
-    /// Writes the document into other files, which must not exist yet, and changes nothing else.
-    void save_copy(const WorkFiles& to, const std::vector<LabelImage::Color>& looks) const;
+    /// files that nothing names, and after it a whole project. Fails with nothing changed, and removes what it has
+    /// made. Where there is no history yet, the new journal begins with the first command.
+    Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
+                  const std::function<void()>& save_session = {});
+    /// The same beside the work, as `begin_save`. Until `end_save_as` commands are refused: they would be in one of the
+    /// journals only.
+    class SavingAs;
+    std::unique_ptr<SavingAs> begin_save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks,
+                                            const std::filesystem::path& session = {});
+    Saved end_save_as(SavingAs& saving);
+    bool is_saving_as() const { return is_saving_as_; }
+    /// Writes the document as it is now into other files, which must not exist yet; on any thread, also when the work
+    /// has ended.
+    std::function<void(const WorkFiles& to)> copier(std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// Commands, undos and redos since the last save.
@@ -289,13 +297,13 @@ private:
     };
     static Seen seen_at(const std::filesystem::path& file);
     static void note_file(const std::filesystem::path& file, Seen& seen);
-    class SavingAs;
     std::array<Seen, 3> seen_;
     std::shared_ptr<Journal> journal_;  ///< a save under way holds it, too
     size_t unsaved_ = 0;
     bool misses_files_ = false;      ///< that the journal holds and the next save writes
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
+    bool is_saving_as_ = false;  ///< then both
     size_t unsaved_since_saving_ = 0;
     std::array<bool, 3> touched_since_saving_{};
     Progress opening_progress_;  ///< null unless it is being opened
@@ -329,6 +337,34 @@ private:
     SavedFiles known_;
     SettingValues kept_;
     RecordNumber last_kept_ = 0, known_kept_ = 0;
+    Saved saved_;
+    bool has_session_ = false, is_written_ = false;
+};
+
+class Work::SavingAs {
+public:
+    SavingAs(const SavingAs&) = delete;
+    /// As Saving::write. What was made is removed where it does not come to its end.
+    void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
+
+private:
+    friend class Work;
+    SavingAs() = default;
+
+    WorkFiles files_;
+    Document document_{.mask = Mask(Size3(0)), .trace = {}};
+    std::vector<LabelImage::Color> looks_;
+    std::filesystem::path session_;
+    std::string program_;
+    std::shared_ptr<Journal> before_;  ///< of the work as it is; null where it has no history yet
+    SettingValues kept_;
+    RecordNumber last_kept_ = 0, known_kept_ = 0;
+
+    // The new files
+    std::shared_ptr<Hold> hold_;
+    std::unique_ptr<Journal> journal_;
+    std::array<Seen, 3> seen_;
+    SavedFiles known_;
     Saved saved_;
     bool has_session_ = false, is_written_ = false;
 };

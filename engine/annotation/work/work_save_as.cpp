@@ -23,63 +23,33 @@ void expect_free(const WorkFiles& files, const fs::path& session)
     }
 }
 
-}  // namespace
-
-/// The new files, until the work goes on in them.
-class Work::SavingAs {
-    /// What was made, in places that were free; removed again unless it is to stay.
-    class Made {
-    public:
-        Made() = default;
-        Made(const Made&) = delete;
-        ~Made()
-        {
-            for (const fs::path& path : paths_) {
-                std::error_code ignored;
-                if (fs::is_directory(path, ignored))
-                    fs::remove_all(path, ignored);
-                else
-                    ::unlink(path.c_str());
-            }
-        }
-        /// Before it is made.
-        void add(const fs::path& path) { paths_.push_back(path); }
-        void keep() { paths_.clear(); }
-
-    private:
-        std::vector<fs::path> paths_;
-    };
-
+/// What was made, in places that were free; removed again unless it is to stay.
+class Made {
 public:
-    /// `before`: of the work as it is; null where it has no history yet.
-    SavingAs(const WorkFiles& to, const std::string& program, const Journal* before)
-        : hold_(Hold::take(to.journal, program))
+    Made() = default;
+    Made(const Made&) = delete;
+    ~Made()
     {
-        if (before == nullptr) return;
-        made.add(to.journal);
-        before->copy_to(to.journal);
-        journal = std::make_unique<Journal>(to.journal, scan_journal(to.journal));
-        journal->append(RecordKind::saving, {}, {});
-        journal->flush();
+        for (const fs::path& path : paths_) {
+            std::error_code ignored;
+            if (fs::is_directory(path, ignored))
+                fs::remove_all(path, ignored);
+            else
+                ::unlink(path.c_str());
+        }
     }
+    /// Before it is made.
+    void add(const fs::path& path) { paths_.push_back(path); }
+    void keep() { paths_.clear(); }
 
 private:
-    std::shared_ptr<Hold> hold_;  // let go last
-
-public:
-    Made made;
-    std::unique_ptr<Journal> journal;
-    std::array<Seen, 3> seen;
-    SavedFiles known;
-    std::shared_ptr<Hold> keep()
-    {
-        made.keep();
-        return std::move(hold_);
-    }
+    std::vector<fs::path> paths_;
 };
 
-Work::Saved Work::save_as(const WorkFiles& to, const std::vector<LabelImage::Color>& looks, const fs::path& session,
-                          const std::function<void()>& save_session)
+}  // namespace
+
+std::unique_ptr<Work::SavingAs> Work::begin_save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks,
+                                                    const fs::path& session)
 {
     SHVR_CHECK(!is_saving_, "a save is under way");
     refuse_if_only_looking();
@@ -87,51 +57,114 @@ Work::Saved Work::save_as(const WorkFiles& to, const std::vector<LabelImage::Col
     expect_names(to);
     expect_free(to, session);
     const bool has_history = journal_ || (!scan_.records.empty() && !is_to_set_aside_);
-    if (has_history) {
-        begin_journal();
-        journal_->flush();
-    }
-    SavingAs next(to, program_, has_history ? journal_.get() : nullptr);
-    next.known.settings = save_session ? document_.settings.values() : known_.settings;
-    Saved saved;
-    for (const Part part : PARTS) {
-        const fs::path& file = file_of(to, part);
-        if (file.empty() || (part != Part::mask && !holds_any(document_, part))) continue;
-        next.made.add(file);
-        if (part == Part::mask) next.made.add(mask_image_path(file));
-        write(part, document_, to, looks, next.journal.get());
-        next.seen[size_t(part)] = seen_at(file);
-        digest_of(next.known, part) = next.seen[size_t(part)].digest;
-        saved.files.push_back(file);
-    }
-    const RecordNumber known_kept = !save_session ? known_kept_ : keeps_settings_ ? last_kept_ : 0;
-    if (next.journal) {
-        next.journal->append(RecordKind::saved, {}, bytes_of(next.known), known_kept);
-        next.journal->flush();
+    if (has_history) begin_journal();
+    std::unique_ptr<SavingAs> saving(new SavingAs);
+    saving->files_ = to;
+    saving->document_ = document_;
+    saving->looks_ = std::move(looks);
+    saving->session_ = session;
+    saving->program_ = program_;
+    if (has_history) saving->before_ = journal_;
+    saving->known_.settings = known_.settings;
+    saving->kept_ = kept_;
+    saving->last_kept_ = keeps_settings_ ? last_kept_ : 0;
+    saving->known_kept_ = known_kept_;
+    is_saving_ = is_saving_as_ = true;
+    return saving;
+}
+
+void Work::SavingAs::write(const std::function<void()>& save_session, const Progress& progress)
+{
+    SHVR_CHECK(!is_written_, "a save is written once");
+    std::shared_ptr<Hold> hold = Hold::take(files_.journal, program_);  // let go last
+    expect_free(files_, session_);                                      // still
+    Made made;
+    double done = 0.0;
+    const auto tell_step = [&] { tell(progress, done++ / double(PARTS.size() + 2)); };
+    tell_step();
+    std::unique_ptr<Journal> journal;
+    if (before_) {
+        before_->flush();
+        made.add(files_.journal);
+        before_->copy_to(files_.journal);
+        journal = std::make_unique<Journal>(files_.journal, scan_journal(files_.journal));
+        journal->append(RecordKind::saving, {}, {});
+        journal->flush();
     }
     if (save_session) {
-        if (!session.empty()) next.made.add(session);
+        known_.settings = document_.settings.values();
+        known_kept_ = last_kept_;
+    }
+    for (const Part part : PARTS) {
+        tell_step();
+        const fs::path& file = file_of(files_, part);
+        if (file.empty() || (part != Part::mask && !holds_any(document_, part))) continue;
+        made.add(file);
+        if (part == Part::mask) made.add(mask_image_path(file));
+        Work::write(part, document_, files_, looks_, journal.get());
+        seen_[size_t(part)] = seen_at(file);
+        digest_of(known_, part) = seen_[size_t(part)].digest;
+        saved_.files.push_back(file);
+    }
+    tell_step();
+    if (journal) {
+        journal->append(RecordKind::saved, {}, bytes_of(known_), known_kept_);
+        journal->flush();
+    }
+    if (save_session) {
+        if (!session_.empty()) made.add(session_);
         save_session();
     }
 
     // From here on nothing can fail.
-    journal_ = std::move(next.journal);
-    hold_ = next.keep();
+    made.keep();
+    hold_ = std::move(hold);
+    journal_ = std::move(journal);
+    has_session_ = bool(save_session);
+    is_written_ = true;
+}
+
+Work::Saved Work::end_save_as(SavingAs& saving)
+{
+    SHVR_CHECK(is_saving_as_, "no save under another name has begun");
+    is_saving_ = is_saving_as_ = false;
+    const bool has_history = saving.before_ != nullptr;
+    saving.before_.reset();  // it may be opened again before the save is gone
+    if (!saving.is_written_) {
+        if (journal_) write_kept();
+        return saving.saved_;
+    }
+    journal_ = std::move(saving.journal_);
+    hold_ = std::move(saving.hold_);
     if (!has_history) scan_ = {};
     scanned_.reset();
     is_to_set_aside_ = is_fresh_ = cannot_keep_ = false;
-    const WorkFiles before = std::exchange(files_, to);
-    files_.settings = save_session ? document_.settings.values() : before.settings;
-    files_.kept = save_session && keeps_settings_ ? kept_ : before.kept;
+    const WorkFiles before = std::exchange(files_, saving.files_);
+    files_.settings = saving.has_session_ ? saving.document_.settings.values() : before.settings;
+    files_.kept = saving.has_session_ && keeps_settings_ ? saving.kept_ : before.kept;
     files_.normalized = before.normalized;
     files_.normalized_kept = before.normalized_kept;
-    known_ = std::move(next.known);
-    known_kept_ = known_kept;
-    seen_ = next.seen;
+    known_ = std::move(saving.known_);
+    known_kept_ = saving.known_kept_;
+    seen_ = saving.seen_;
     unsaved_ = 0;
     misses_files_ = false;
     touched_ = {};
-    return saved;
+    if (journal_) write_kept();
+    return std::move(saving.saved_);
+}
+
+Work::Saved Work::save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const fs::path& session,
+                          const std::function<void()>& save_session)
+{
+    const std::unique_ptr<SavingAs> saving = begin_save_as(to, std::move(looks), session);
+    try {
+        saving->write(save_session);
+    } catch (...) {
+        end_save_as(*saving);
+        throw;
+    }
+    return end_save_as(*saving);
 }
 
 }  // namespace shvr

@@ -72,11 +72,13 @@ void Work::write(Part part, const Document& document, const WorkFiles& files,
     }
 }
 
-void Work::save_copy(const WorkFiles& to, const std::vector<LabelImage::Color>& looks) const
+std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color> looks) const
 {
-    for (const Part part : PARTS)
-        if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document_, part)))
-            write(part, document_, to, looks, nullptr);
+    return [document = document_, looks = std::move(looks)](const WorkFiles& to) {
+        for (const Part part : PARTS)
+            if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document, part)))
+                write(part, document, to, looks, nullptr);
+    };
 }
 
 // ---- A save on its way ----------------------------------------------------------------------------------------------

@@ -174,7 +174,7 @@ void Work::keep_settings(const SettingValues& values)
         differs = differs || held != value;
         held = value;
     }
-    if (!differs || only_looks_) return;
+    if (!differs || only_looks_ || is_saving_as_) return;
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
     // Without a hold another program may write the journal, until a command takes it.

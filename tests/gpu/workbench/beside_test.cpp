@@ -195,6 +195,98 @@ TEST_CASE_FIXTURE(OnDevice, "a save that is cancelled leaves the work unsaved, a
     CHECK(desk.bench.model().is_saved);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "while Save as waits for the disk all but commands goes on, and settings follow it")
+{
+    Desk desk(renderer());
+    desk.stroke(3);
+    desk.bench.perform(SaveOp{});
+    settle(desk.bench);
+    const auto bytes_of = [&](const char* name) { return read_text(desk.path(name), int64_t{1} << 24); };
+    const std::string mask = bytes_of("scan.mask"), session = bytes_of("scan.json");
+    SlowDisk disk;
+    disk.stop_at("other.mask");
+    desk.bench.perform(SaveAs{desk.path("other.json")});
+    desk.turn_until([&] { return disk.is_waited_for(); });
+    const char* const WHY = "the work is being saved under another name";
+    CHECK(desk.bench.why_not(Paint{true}) == WHY);
+    CHECK(desk.bench.why_not(UndoOp{1}) == WHY);
+    CHECK_THROWS_AS(desk.stroke(5), Error);
+    CHECK_THROWS_AS(desk.bench.perform(UndoOp{1}), Error);
+    CHECK(desk.bench.model().voxels_by_group[3] > 0);
+    desk.bench.perform(Orbit{0.1, 0.2});
+    desk.bench.perform(Set{R"({"light":{"ambient":0.31}})"});
+    for (int turn = 0; turn < 200; ++turn) desk.bench.advance();
+    CHECK(desk.bench.model().session_path == desk.path("scan.json"));
+    CHECK(disk.calls_of_this_thread() == 0);
+    disk.go_on();
+    settle(desk.bench);
+    CHECK(disk.calls_of_this_thread() == 0);
+    CHECK(desk.said("Saved as " + desk.path("other.json")));
+    CHECK(desk.bench.model().session_path == desk.path("other.json"));
+    CHECK_FALSE(desk.bench.model().is_saved);  // the light is a step after the save
+    CHECK(desk.bench.model().undoable == 2);
+    desk.bench.perform(UndoOp{1});
+    CHECK(desk.bench.model().session.light.ambient != 0.31);
+    CHECK(steps_of(desk.path("scan.journal")) == 1);
+    CHECK(steps_of(desk.path("other.journal")) == 2);
+    CHECK(bytes_of("scan.mask") == mask);
+    CHECK(bytes_of("scan.json") == session);
+    CHECK(bytes_of("other.mask") == mask);
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "a Save as that fails or is cancelled leaves nothing, and the work goes on as it was called")
+{
+    Desk desk(renderer());
+    desk.stroke(3);
+    for (const bool is_cancelled : {false, true}) {
+        CAPTURE(is_cancelled);
+        SlowDisk disk;
+        if (is_cancelled)
+            disk.stop_at("other.mask");
+        else
+            disk.refuse_at("other.mask", ENOSPC);
+        desk.bench.perform(SaveAs{desk.path("other.json")});
+        if (is_cancelled) {
+            desk.turn_until([&] { return disk.is_waited_for(); });
+            desk.bench.perform(CancelJob{desk.bench.model().jobs.front().number});
+            disk.go_on();
+        }
+        settle(desk.bench);
+        CHECK(desk.said(is_cancelled ? "Cancelled: saving" : "No space left on device"));
+        CHECK(desk.bench.model().session_path == desk.path("scan.json"));
+        for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(desk.folder.path))
+            CHECK_FALSE(entry.path().filename().string().starts_with("other"));
+        desk.stroke(is_cancelled ? 5 : 4);
+        CHECK(desk.bench.model().voxels_by_group[is_cancelled ? 5 : 4] > 0);
+    }
+    desk.bench.perform(SaveAs{desk.path("other.json")});
+    settle(desk.bench);
+    CHECK(desk.bench.model().is_saved);
+    CHECK(steps_of(desk.path("other.journal")) == 3);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a copy is of what was there when it was asked for, and waits for no disk here")
+{
+    Desk desk(renderer());
+    desk.stroke(3);
+    SlowDisk disk;
+    disk.stop_at("copy.mask");
+    desk.bench.perform(CopySession{desk.path("copy.json")});
+    desk.turn_until([&] { return disk.is_waited_for(); });
+    CHECK(desk.bench.shows_jobs());
+    desk.stroke(5);
+    disk.go_on();
+    settle(desk.bench);
+    CHECK(disk.calls_of_this_thread() == 0);
+    CHECK(desk.said("Copied to " + desk.path("copy.json")));
+    CHECK_FALSE(desk.bench.shows_jobs());
+    const std::string mask = read_text(desk.path("copy.mask"), int64_t{1} << 20);
+    CHECK(mask.find(char(3)) != std::string::npos);
+    CHECK(mask.find(char(5)) == std::string::npos);
+    CHECK(desk.bench.model().session_path == desk.path("scan.json"));
+}
+
 TEST_CASE_FIXTURE(OnDevice, "what is open can be used until the next stands, which goes onto the device in slices")
 {
     Desk desk(renderer());

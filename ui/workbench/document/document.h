@@ -114,19 +114,19 @@ struct Document {
     enum class Parts { all, session };
     /// Fails where nothing can be saved; writes nothing. `end_save` must follow, whatever became of it.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Returns the notices.
+    /// Returns the notices. After a save under another name the document has that.
     std::vector<Notice> end_save(Saving& saving);
     /// Only the camera and the probe's position changed, and the session has a file: saving them is worth no word. So
     /// just looking at a volume creates no file.
     bool has_view_to_keep() const;
     /// Only settings that have a file are to be saved.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
-    /// Writes mask, offsets, trace and session into new files, and goes on with those there are. `path`: of the
-    /// session; empty: beside this one. Returns the path of the new session. Fails where a file of that name exists.
-    std::filesystem::path save_copy(const std::filesystem::path& path = {}) const;
-    /// Goes on under another name, with the whole history; the files so far stay as they are. Fails where a file of
-    /// that name exists; then nothing has changed.
-    std::vector<Notice> save_as(const std::filesystem::path& path);
+    /// The same under another name, with which the work goes on, with the whole history; the files so far stay as they
+    /// are. Until it has ended, commands are refused. `path`: of the session. Fails where a file of that name exists.
+    std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
+    /// Writes mask, offsets, trace and session as they are now into new files, on any thread. `path`: of the session;
+    /// empty: a free one beside this. Returns it. Fails where a file of that name exists.
+    std::function<std::filesystem::path()> copier(const std::filesystem::path& path = {}) const;
 
 private:
     void take_kept_settings();
@@ -153,13 +153,15 @@ public:
     /// On any thread, once. Fails where a file cannot be written.
     void write(ProgressReporter& reporter);
     bool is_written() const { return is_written_; }
+    bool is_under_another_name() const { return as_ != nullptr; }
 
 private:
     friend struct Document;
     Saving() = default;
     void write_session();
 
-    std::unique_ptr<Work::Saving> work_;  ///< null: the session alone
+    std::unique_ptr<Work::Saving> work_;  ///< null: the session alone, or
+    std::unique_ptr<Work::SavingAs> as_;  ///< under another name
     std::filesystem::path session_path_;
     std::string text_;                       ///< of the session
     std::optional<std::string> text_there_;  ///< as this process last read or wrote it

@@ -10,75 +10,6 @@
 
 namespace shvr::ui {
 
-std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
-{
-    if (only_looks())
-        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
-                                    holder, "; expected it to be closed there, or a copy to work on"));
-    std::shared_ptr<Saving> saving(new Saving);
-    if (parts == Parts::all) {
-        if (session.density_path.empty() && annotator.document().density.voxels() > 0)
-            session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
-        name_trace();
-        annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
-        keep_settings();
-        saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
-    }
-    saving->session_path_ = session_path;
-    saving->text_ = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
-    saving->text_there_ = session_text_;
-    saving->edits_ = edits();
-    saving->camera_ = camera;
-    saving->probe_voxel_ = probe_voxel();
-    return saving;
-}
-
-/// What another program wrote there since is kept, and the notice tells where.
-void Document::Saving::write_session()
-{
-    if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {
-        const std::filesystem::path old = set_aside(session_path_);
-        notice_ = {
-            sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
-                     old.string(), ", and what is saved is this window's"),
-            true};
-    }
-    write_file_atomically(session_path_, std::as_bytes(std::span(text_)));
-    has_session_ = true;
-}
-
-void Document::Saving::write(ProgressReporter& reporter)
-{
-    const Progress progress = reporter.begin("saving " + session_path_.filename().string());
-    if (work_)
-        work_->write([this] { write_session(); }, progress);
-    else
-        write_session();
-    is_written_ = true;
-}
-
-std::vector<Notice> Document::end_save(Saving& saving)
-{
-    std::vector<Notice> notices;
-    if (saving.work_) notices = annotator.work().end_save(*saving.work_).notices;
-    if (saving.notice_) notices.push_back(*saving.notice_);
-    if (saving.has_session_) session_text_ = saving.text_;
-    if (!saving.is_written_) return notices;
-    saved_edits_ = saving.edits_;
-    edits_are_saved_.reset();
-    saved_camera_ = saving.camera_;
-    saved_probe_voxel_ = saving.probe_voxel_;
-    return notices;
-}
-
-bool Document::has_view_to_keep() const
-{
-    if (only_looks() || !annotator.work().disputes().empty()) return false;
-    const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
-    std::error_code ignored;
-    return !is_kept && overridden_.empty() && is_saved() && std::filesystem::is_regular_file(session_path, ignored);
-}
-
 namespace {
 
 std::filesystem::path beside(const std::filesystem::path& session_file, const char* extension)
@@ -119,33 +50,111 @@ std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
 
 }  // namespace
 
-std::filesystem::path Document::save_copy(const std::filesystem::path& path) const
+std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
 {
-    const std::filesystem::path copy = path.empty() ? free_copy_path(session_path) : new_session_path(path);
-    const Session copied = renamed(saved_session(), copy);
-    annotator.work().save_copy(work_files(copied, volume()), label_looks(session.groups, annotator.document().mask));
-    const std::string text = to_text(copied, std::filesystem::absolute(copy).parent_path());
-    write_file_atomically(copy, std::as_bytes(std::span(text)));
-    return copy;
+    if (only_looks())
+        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
+                                    holder, "; expected it to be closed there, or a copy to work on"));
+    std::shared_ptr<Saving> saving(new Saving);
+    if (parts == Parts::all) {
+        if (session.density_path.empty() && annotator.document().density.voxels() > 0)
+            session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+        name_trace();
+        annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+        keep_settings();
+        saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
+    }
+    saving->session_path_ = session_path;
+    saving->text_ = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
+    saving->text_there_ = session_text_;
+    saving->edits_ = edits();
+    saving->camera_ = camera;
+    saving->probe_voxel_ = probe_voxel();
+    return saving;
 }
 
-std::vector<Notice> Document::save_as(const std::filesystem::path& path)
+/// What another program wrote there since is kept, and the notice tells where.
+void Document::Saving::write_session()
+{
+    if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {
+        const std::filesystem::path old = set_aside(session_path_);
+        notice_ = {
+            sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
+                     old.string(), ", and what is saved is this window's"),
+            true};
+    }
+    write_file_atomically(session_path_, std::as_bytes(std::span(text_)));
+    has_session_ = true;
+}
+
+void Document::Saving::write(ProgressReporter& reporter)
+{
+    const Progress progress = reporter.begin("saving " + session_path_.filename().string());
+    if (as_)
+        as_->write([this] { write_session(); }, progress);
+    else if (work_)
+        work_->write([this] { write_session(); }, progress);
+    else
+        write_session();
+    is_written_ = true;
+}
+
+std::vector<Notice> Document::end_save(Saving& saving)
+{
+    std::vector<Notice> notices;
+    if (saving.work_) notices = annotator.work().end_save(*saving.work_).notices;
+    if (saving.as_) notices = annotator.work().end_save_as(*saving.as_).notices;
+    if (saving.as_ && saving.is_written_) {
+        session = renamed(std::move(session), saving.session_path_);
+        session_path = saving.session_path_;
+        overridden_.clear();  // what was set for this time only is in the new file
+    }
+    if (saving.notice_) notices.push_back(*saving.notice_);
+    if (saving.has_session_) session_text_ = saving.text_;
+    if (!saving.is_written_) return notices;
+    saved_edits_ = saving.edits_;
+    edits_are_saved_.reset();
+    saved_camera_ = saving.camera_;
+    saved_probe_voxel_ = saving.probe_voxel_;
+    return notices;
+}
+
+bool Document::has_view_to_keep() const
+{
+    if (only_looks() || !annotator.work().disputes().empty()) return false;
+    const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
+    std::error_code ignored;
+    return !is_kept && overridden_.empty() && is_saved() && std::filesystem::is_regular_file(session_path, ignored);
+}
+
+std::function<std::filesystem::path()> Document::copier(const std::filesystem::path& path) const
+{
+    if (!path.empty()) new_session_path(path);  // refused at once
+    return [session = saved_session(), at = session_path, path, volume = volume(),
+            copy = annotator.work().copier(label_looks(session.groups, annotator.document().mask))] {
+        const std::filesystem::path to = path.empty() ? free_copy_path(at) : new_session_path(path);
+        const Session copied = renamed(session, to);
+        copy(work_files(copied, volume));
+        const std::string text = to_text(copied, std::filesystem::absolute(to).parent_path());
+        write_file_atomically(to, std::as_bytes(std::span(text)));
+        return to;
+    };
+}
+
+std::shared_ptr<Document::Saving> Document::begin_save_as(const std::filesystem::path& path)
 {
     const std::filesystem::path next = new_session_path(path);
     keep_settings();
     const Session moved = renamed(saved_session(), next);
-    const std::string text = to_text(moved, next.parent_path());
-    std::vector<Notice> notices =
-        annotator.work()
-            .save_as(work_files(moved, volume()), label_looks(session.groups, annotator.document().mask), next,
-                     [&] { write_file_atomically(next, std::as_bytes(std::span(text))); })
-            .notices;
-    session = renamed(std::move(session), next);
-    session_path = next;
-    session_text_ = text;
-    overridden_.clear();  // what was set for this time only is in the new file
-    note_saved();
-    return notices;
+    std::shared_ptr<Saving> saving(new Saving);
+    saving->as_ = annotator.work().begin_save_as(work_files(moved, volume()),
+                                                 label_looks(session.groups, annotator.document().mask), next);
+    saving->session_path_ = next;
+    saving->text_ = to_text(moved, next.parent_path());
+    saving->edits_ = renamed(edits(), next);
+    saving->camera_ = camera;
+    saving->probe_voxel_ = probe_voxel();
+    return saving;
 }
 
 /// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left
