@@ -43,6 +43,8 @@ public:
     /// device shows the change.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
+    /// For another annotator; this one is of no use any more.
+    std::unique_ptr<Work> take_work() { return std::move(work_); }
     const Document& document() const { return work_->document(); }
     const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }

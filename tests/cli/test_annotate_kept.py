@@ -66,7 +66,7 @@ class Kept(CliTest):
         self.annotate([{"op": "save"}, self.dab(2), node])
         said = self.annotate([self.dab(3), count, {"op": "revert"}, saved, {"op": "undo"}, count, {"op": "redo"}, saved,
                               {"op": "revert"}, {"op": "save"}], "--verbose")
-        self.assertIn("script.jsonl:3: reverted to the last save", said)
+        self.assertIn("script.jsonl:3: Reverted to the last save", said)
         self.assertIn("script.jsonl:9: nothing differs from the last save", said)
         self.annotate([saved, {"op": "undo"}, count, {"op": "revert"}, saved])
         self.assertIn("script.jsonl:1: unknown key count",

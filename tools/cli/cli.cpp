@@ -246,6 +246,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     OpenedSession session = open_session(path, common.settings, options);
     Opened opened{std::move(session.session),
                   std::move(session.source),
+                  session.statistics,
                   std::move(session.warnings),
                   std::move(renderer),
                   nullptr,

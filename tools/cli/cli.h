@@ -67,6 +67,7 @@ glm::uvec2 parse_size(const std::string& text);
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
+    VolumeStatistics statistics;
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;

@@ -3,9 +3,7 @@
 #include <concepts>
 
 #include "engine/annotation/script/script.h"
-#include "engine/annotation/trace/trace_command.h"
 #include "engine/annotation/work/hold.h"
-#include "engine/session/label_looks.h"
 #include "tools/cli/cli.h"
 #include "ui/workbench/workbench.h"
 
@@ -20,11 +18,12 @@ struct AnnotateCommandOptions {
     bool verbose = false;
 };
 
+/// A script drives the workbench, as the window does.
 class Replay {
 public:
-    Replay(Opened& opened_session, const AnnotateCommandOptions& given) : opened(opened_session), options(given) {}
+    Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given) : bench(workbench), options(given) {}
 
-    Opened& opened;
+    ui::Workbench& bench;
     const AnnotateCommandOptions& options;
     int64_t voxels_changed = 0;
     StrokeResult::ByGroup taken_from{};
@@ -38,7 +37,8 @@ private:
     {
         if (options.verbose) say(options.common, sentence(at, ": ", words...));
     }
-    const TraceGraph& trace() const { return opened.annotator->document().trace; }
+    const Annotator& annotator() const { return bench.document().annotator; }
+    const TraceGraph& trace() const { return annotator().document().trace; }
 
     /// Returns the result of `act`; its errors name the line.
     template <class Act>
@@ -46,6 +46,8 @@ private:
     {
         try {
             return act();
+        } catch (const DeviceLost&) {
+            throw;
         } catch (const Error& error) {
             fail(at, ": ", error.what());
         }
@@ -62,14 +64,13 @@ private:
 public:
     void operator()(const PaintOp& op)
     {
-        opened.annotator->paint(in_session(op, opened.session));
-        const StrokeResult& result = opened.annotator->last_stroke();
+        in_words([&] { bench.perform(op); });
+        const StrokeResult& result = annotator().last_stroke();
         voxels_changed += result.voxels();
         for (const auto& [group, voxels] : result.taken_from) taken_from[group] += voxels;
         kept_locked += result.kept_by_locks();
         kept_painted += result.kept_painted;
-        const std::string said =
-            sentence_of(result, [&](uint8_t group) { return group_of(opened.session.groups, group).name; });
+        const std::string& said = bench.messages().last();
         if (result.kept_locked_out > 0)
             warn({sentence(at, ": ", said)}, options.common);  // the line does not do what it is there for
         else
@@ -79,16 +80,7 @@ public:
     requires std::constructible_from<TraceOp, Op>
     void operator()(const Op& op)
     {
-        const ProbeSettings& probe = opened.session.probe;
-        TraceEffect effect = in_words([&] {
-            const BrushSettings& brush = probe.brush;
-            const VolumeInfo& volume = opened.source->info();
-            return effect_of(op, trace(), {volume.spacing, brush.radius_voxels, brush.group, volume.size});
-        });
-        if (effect.selection)
-            opened.annotator->work().select_trace(std::move(*effect.selection));
-        else
-            opened.annotator->edit_trace(std::move(effect.label), std::move(effect.changes));
+        in_words([&] { bench.perform(op); });
         if constexpr (std::same_as<Op, NodeOp>) {
             const uint32_t number = trace().selection().node().value();
             tell("node ", number, " in group ", int(trace().node(number).group));
@@ -96,32 +88,33 @@ public:
     }
     void operator()(const UndoOp& op)
     {
-        expect_steps("undo", op.count, opened.annotator->history().undoable());
-        for (int i = 0; i < op.count; ++i) opened.annotator->undo();
+        expect_steps("undo", op.count, annotator().history().undoable());
+        in_words([&] { bench.perform(op); });
     }
     void operator()(const RedoOp& op)
     {
-        expect_steps("redo", op.count, opened.annotator->history().redoable());
-        for (int i = 0; i < op.count; ++i) opened.annotator->redo();
+        expect_steps("redo", op.count, annotator().history().redoable());
+        in_words([&] { bench.perform(op); });
     }
-    void operator()(const SaveOp&)
+    void operator()(const SaveOp& op)
     {
-        const auto save = [&] {
-            return opened.annotator->work().save(label_looks(opened.session.groups, opened.annotator->document().mask));
-        };
-        const Work::Saved saved = in_words(save);
+        const Work::Saved saved = in_words([&] {
+            bench.perform(op);
+            return bench.finish_save();
+        });
         warn(saved.notices, options.common);
         for (const std::filesystem::path& path : saved.files)
             say(options.common, sentence(at, ": saved ", path.string()));
     }
-    void operator()(const RevertOp&)
+    void operator()(const RevertOp& op)
     {
-        const Command* const reverted = in_words([&] { return opened.annotator->revert(); });
-        tell(reverted ? reverted->label : "nothing differs from the last save");
+        in_words([&] { bench.perform(op); });
+        tell(bench.messages().last());
     }
     void operator()(const ExpectOp& op)
     {
-        const std::array<int64_t, 256> counts = opened.annotator->document().mask.voxels_by_group();
+        const Document& document = annotator().document();
+        const std::array<int64_t, 256> counts = document.mask.voxels_by_group();
         for (const auto& [group, voxels] : op.voxels_in_group)
             if (counts[group] != voxels)
                 throw GateError(
@@ -131,7 +124,7 @@ public:
         for (const auto& [what, expected, found] : traced)
             if (expected && *expected != int64_t(found))
                 throw GateError(sentence(at, ": ", found, " ", what, "; expected ", *expected));
-        const int64_t raised = opened.annotator->document().density.voxels();
+        const int64_t raised = document.density.voxels();
         if (op.voxels_with_offset.value_or(raised) != raised)
             throw GateError(sentence(at, ": ", raised, " voxels have an offset; expected ", *op.voxels_with_offset));
     }
@@ -165,35 +158,43 @@ void run_annotate(const AnnotateCommandOptions& options)
         options.project, options.common, work,
         {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"});
     check_radii(script, name, opened.source->info());
-    Replay replay{opened, options};
+    ui::Workbench bench(*opened.renderer, {.has_servo = false, .is_script = true});
+    const std::filesystem::path session = opened.project;
+    bench.take({.opened = {.session = opened.session, .source = opened.source, .statistics = opened.statistics},
+                .session_path = session,
+                .overridden = options.common.settings,
+                .work = opened.annotator->take_work()});
+    opened.annotator.reset();
+    Replay replay{bench, options};
     static_cast<void>(work.begin("replaying " + name));
     for (size_t done = 0; done < script.size(); ++done) {
         replay.at = sentence(name, ":", script[done].number);
         if (work.is_asked_to_stop()) {
-            opened.annotator->work().flush();
+            bench.flush();
             fail(replay.at, ": stopped before this line; the ", done, " commands before it are kept");
         }
         work.show(double(done) / double(script.size()), {}, -1.0);
         std::visit(replay, script[done].op);
     }
-    opened.annotator->work().flush();
+    bench.flush();
     check_validation(opened);
+    const Annotator& annotator = bench.document().annotator;
     const std::string kept = replay.kept_locked > 0 ? sentence(replay.kept_locked, " kept by locks, ") : std::string();
     Json taken_from = Json::object();
     for (const auto& [group, voxels] : replay.taken_from) taken_from[std::to_string(group)] = voxels;
     if (!options.common.json)
-        say(options.common, sentence(name, ": ", script.size(), script.size() == 1 ? " command, " : " commands, ",
-                                     replay.voxels_changed, " voxels changed, ", kept,
-                                     opened.annotator->work().unsaved(), " steps not saved"));
+        say(options.common,
+            sentence(name, ": ", script.size(), script.size() == 1 ? " command, " : " commands, ",
+                     replay.voxels_changed, " voxels changed, ", kept, annotator.work().unsaved(), " steps not saved"));
     else
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},
                {"voxels_taken_from", taken_from},
                {"voxels_kept_locked", replay.kept_locked},
                {"voxels_kept_painted", replay.kept_painted},
-               {"nodes", opened.annotator->document().trace.nodes().size()},
-               {"internodes", opened.annotator->document().trace.internodes().size()},
-               {"journal_bytes", opened.annotator->work().journal().bytes}});
+               {"nodes", annotator.document().trace.nodes().size()},
+               {"internodes", annotator.document().trace.internodes().size()},
+               {"journal_bytes", annotator.work().journal().bytes}});
 }
 
 /// Replays what a person did in the window, as `shvr view --log` wrote it, without a display.

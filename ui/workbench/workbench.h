@@ -35,8 +35,11 @@ std::string short_name(const std::filesystem::path& path);
 
 struct WorkbenchOptions {
     View::Options view{};
-    bool has_servo = true;     ///< guidance and haptic devices run; false: guidance is a setting that nobody follows
-    bool allow_force = false;  ///< lets a haptic device with a verified profile push the hand
+    bool has_servo = true;  ///< guidance and haptic devices run; false: guidance is a setting that nobody follows
+    /// For scripts, which do what they state and nothing else: no setting becomes a step or is kept, saves write
+    /// annotation alone, to the files that the session names, and what is selected stays so.
+    bool is_script = false;
+    bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};  ///< the file (preferences.h); empty: none are read or kept
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< of the program, for reports; empty: not told
@@ -59,6 +62,8 @@ public:
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings);
     /// The same, and waits until it is there; saves nothing before. Fails where it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {});
+    /// Takes what the caller has opened; the renderer's scene is of its volume.
+    void take(Document::Read read);
     void say(std::string text, Weight weight = Weight::done);
     /// After the graphics device was lost (DeviceLost, from any function here): drops what the workbench has on it,
     /// calls `make_anew`, and shows all again. What is recorded is all there; of a stroke under way, what was not
@@ -86,6 +91,10 @@ public:
     void advance();
     /// Turns until a running stroke is painted. Returns why part of it was not; empty if all was.
     std::string finish_stroke();
+    /// Waits for what is being saved. Returns what was written; fails with the reason where that is not all.
+    Work::Saved finish_save();
+    /// Waits until all that was done is on disk, in the journal; fails with the reason if that is not possible.
+    void flush();
     /// Whether another turn at once would find something to do.
     bool has_work() const;
     /// Whether there is a picture that does not yet show what was done last.
@@ -258,6 +267,7 @@ private:
     void save_to(const std::filesystem::path& path);
     void begin_save(bool is_asked_for, Document::Parts parts = Document::Parts::all);
     void begin_save_as(const std::filesystem::path& path);
+    void begin_save_to(const std::filesystem::path& path);
     void start_saving(std::shared_ptr<Document::Saving> saving, bool is_asked_for);
     void start_copy(const std::filesystem::path& path, bool opens_it);
     void end_save(const Jobs::Finished& job);
@@ -352,6 +362,7 @@ private:
     uint64_t stroke_uploads_ = 0;
     std::string unpainted_;            ///< why a part of the stroke before the save was not painted
     std::string save_failure_;         ///< of the last save; empty: it went well
+    Work::Saved saved_;                ///< by the last save
     bool has_tried_view_ = false;      ///< that alone is no reason to stay
     bool is_leaving_ = false;          ///< that a save fails is a reason to stay
     std::set<Jobs::Number> copies_;    ///< being written by a saver

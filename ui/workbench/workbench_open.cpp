@@ -283,6 +283,14 @@ void Workbench::finish_opening()
     if (opening->pictured) show_picture(*opening->pictured);
 }
 
+void Workbench::take(Document::Read read)
+{
+    read.is_script = options_.is_script;
+    document_ = std::make_unique<Document>(renderer_, std::move(read), options_.view);
+    document_->choose_thresholds(document_->session);
+    ++openings_;
+}
+
 /// Says what was opened, and what is not as it was left: that stays to be seen until it is dismissed.
 void Workbench::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses)
 {

@@ -62,7 +62,7 @@ void Workbench::save_to(const std::filesystem::path& path)
     extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
     stroke_progress_s_ = options_.now_s();
-    if (!save_ && !annotator.stroke_is_running()) return path.empty() ? begin_save(true) : begin_save_as(path);
+    if (!save_ && !annotator.stroke_is_running()) return begin_save_to(path);
     wanted_save_ = path;
     say(save_ ? "Saved once more when the save that is under way has ended"
               : "Saved when the stroke that is under way is painted");
@@ -78,11 +78,13 @@ void Workbench::follow_save()
         annotator.drop_stroke();
         unpainted_ = sentence("its bricks did not arrive within ", PATIENCE_S, " s");
     }
-    const std::filesystem::path path = *std::exchange(wanted_save_, std::nullopt);
-    if (path.empty())
-        begin_save(true);
-    else
-        begin_save_as(path);
+    begin_save_to(*std::exchange(wanted_save_, std::nullopt));
+}
+
+void Workbench::begin_save_to(const std::filesystem::path& path)
+{
+    if (!path.empty()) return begin_save_as(path);
+    begin_save(true, options_.is_script ? Document::Parts::work : Document::Parts::all);
 }
 
 void Workbench::begin_save(bool is_asked_for, Document::Parts parts)
@@ -144,7 +146,8 @@ void Workbench::end_save(const Jobs::Finished& job)
     }
     const std::unique_ptr<Save> save = std::move(save_);
     std::string kept;
-    for (const Notice& notice : document_->end_save(*save->saving)) kept += "; " + notice.text;
+    saved_ = document_->end_save(*save->saving);
+    for (const Notice& notice : saved_.notices) kept += "; " + notice.text;
     std::string unpainted = std::exchange(unpainted_, {});
     if (!unpainted.empty()) unpainted = "; the rest of the stroke was not painted: " + unpainted;
     if (!save->saving->is_written()) {
@@ -204,6 +207,22 @@ Workbench::Leave Workbench::leave(std::string& why)
     has_tried_view_ = false;
     is_leaving_ = true;
     return Leave::later;
+}
+
+Work::Saved Workbench::finish_save()
+{
+    while (is_saving()) {
+        follow_jobs();
+        follow_save();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!save_failure_.empty()) fail(save_failure_);
+    return saved_;
+}
+
+void Workbench::flush()
+{
+    document_->annotator.work().flush();
 }
 
 std::string Workbench::finish_stroke()

@@ -91,7 +91,7 @@ TraceOp Workbench::with_radius(TraceOp op) const
 
 void Workbench::trace(const TraceOp& asked)
 {
-    const TraceOp op = with_radius(asked);
+    const TraceOp op = options_.is_script ? asked : with_radius(asked);
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) fail("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
@@ -107,7 +107,7 @@ void Workbench::trace(const TraceOp& asked)
     const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
     document_->drags_node = false;
     if (done) show_changes(*done);
-    if (cut && done) return note_cut(cut);
+    if (cut && done && !options_.is_script) return note_cut(cut);
     const std::string said = said_of(op, effect.selection.has_value(), done, trace, before);
     const bool places = std::holds_alternative<NodeOp>(op) || std::holds_alternative<MoveOp>(op);
     if (done && places && lies_outside(trace, document_->volume()))

@@ -51,9 +51,8 @@ void Workbench::act(const RevertOp&)
 {
     record_settings();
     const Command* const command = document_->annotator.revert();
-    if (!command)
-        fail(document_->annotator.stroke_is_running() ? "A stroke is being painted"
-                                                      : "Nothing has changed since the last save");
+    if (!command && document_->annotator.stroke_is_running()) fail("A stroke is being painted");
+    if (!command) return say("Nothing has changed since the last save");
     show_changes(*command);
     say("Reverted to the last save; undo takes that back");
 }

@@ -78,6 +78,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
       touch(renderer),
       messages(std::move(read.notices)),
       holder(std::move(read.holder)),
+      is_script_(read.is_script),
       overridden_(std::move(read.overridden)),
       session_text_(std::move(read.session_text))
 {
@@ -87,7 +88,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     take_kept_settings();
     choose_for_volume(session);
     begin_with_turning();
-    annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
+    if (!is_script_) annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_saved();
@@ -135,7 +136,8 @@ void Document::choose_for_volume(Session& of) const
 
 void Document::keep_settings()
 {
-    if (!only_looks()) annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
+    if (!only_looks() && !is_script_)
+        annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
 }
 
 void Document::load_again(Renderer& renderer)
@@ -218,7 +220,7 @@ void Document::note_saved()
 
 bool Document::record_settings()
 {
-    if (only_looks()) return false;
+    if (only_looks() || is_script_) return false;
     const SettingValues now = lasting_settings(session);
     return annotator.change_settings(difference_of(annotator.work().settings(), now), now) != nullptr;
 }
@@ -247,7 +249,8 @@ PaintOp Document::dab() const
 TraceDefaults Document::trace_defaults() const
 {
     return {.spacing = volume().spacing,
-            .radius_voxels = session.probe.node_radius_voxels.value_or(brush().radius_voxels),
+            .radius_voxels =
+                is_script_ ? brush().radius_voxels : session.probe.node_radius_voxels.value_or(brush().radius_voxels),
             .group = brush().group,
             .size = volume().size};
 }

@@ -33,6 +33,7 @@ struct Document {
         std::vector<Notice> notices{};
         std::string holder{};
         std::optional<std::string> session_text{};
+        bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
     /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
     /// file. `hold`: of the document that this one replaces, which may be the same. Where another process writes the
@@ -98,6 +99,7 @@ struct Document {
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
     /// Nothing can be painted or saved: another process writes the work.
     bool only_looks() const { return annotator.work().only_looks(); }
+    bool is_script() const { return is_script_; }
     /// Call after anything that may have changed the session, except the camera and the probe's position: clears the
     /// cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
@@ -111,11 +113,11 @@ struct Document {
     /// A save beside the work: files as they are to be when it began. Each appears whole or not at all: the mask, the
     /// offsets and the trace, then the session. What others wrote there in the meantime is kept under other names.
     class Saving;
-    enum class Parts { all, session };
+    enum class Parts { all, session, work };
     /// Fails where nothing can be saved; writes nothing. `end_save` must follow, whatever became of it.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Returns the notices. After a save under another name the document has that.
-    std::vector<Notice> end_save(Saving& saving);
+    /// Returns what was written. After a save under another name the document has that.
+    Work::Saved end_save(Saving& saving);
     /// Only the camera and the probe's position changed, and the session has a file: saving them is worth no word. So
     /// just looking at a volume creates no file.
     bool has_view_to_keep() const;
@@ -136,6 +138,7 @@ private:
     Session edits() const;
     void note_saved();
 
+    bool is_script_ = false;
     std::vector<std::string> overridden_;      ///< settings that are not in the file
     std::optional<std::string> session_text_;  ///< of the file, as this process last read or wrote it
     Session saved_edits_;                      ///< edits() of the session last read or written

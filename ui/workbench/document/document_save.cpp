@@ -56,6 +56,10 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
         throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
                                     holder, "; expected it to be closed there, or a copy to work on"));
     std::shared_ptr<Saving> saving(new Saving);
+    if (parts == Parts::work) {
+        saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
+        return saving;
+    }
     if (parts == Parts::all) {
         if (session.density_path.empty() && annotator.document().density.voxels() > 0)
             session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
@@ -89,34 +93,36 @@ void Document::Saving::write_session()
 
 void Document::Saving::write(ProgressReporter& reporter)
 {
-    const Progress progress = reporter.begin("saving " + session_path_.filename().string());
+    const Progress progress =
+        reporter.begin(session_path_.empty() ? "saving" : "saving " + session_path_.filename().string());
     if (as_)
         as_->write([this] { write_session(); }, progress);
     else if (work_)
-        work_->write([this] { write_session(); }, progress);
+        work_->write(
+            session_path_.empty() ? std::function<void()>() : [this] { write_session(); }, progress);
     else
         write_session();
     is_written_ = true;
 }
 
-std::vector<Notice> Document::end_save(Saving& saving)
+Work::Saved Document::end_save(Saving& saving)
 {
-    std::vector<Notice> notices;
-    if (saving.work_) notices = annotator.work().end_save(*saving.work_).notices;
-    if (saving.as_) notices = annotator.work().end_save_as(*saving.as_).notices;
+    Work::Saved saved;
+    if (saving.work_) saved = annotator.work().end_save(*saving.work_);
+    if (saving.as_) saved = annotator.work().end_save_as(*saving.as_);
     if (saving.as_ && saving.is_written_) {
         session = renamed(std::move(session), saving.session_path_);
         session_path = saving.session_path_;
         overridden_.clear();  // what was set for this time only is in the new file
     }
-    if (saving.notice_) notices.push_back(*saving.notice_);
+    if (saving.notice_) saved.notices.push_back(*saving.notice_);
     if (saving.has_session_) session_text_ = saving.text_;
-    if (!saving.is_written_) return notices;
+    if (!saving.is_written_ || saving.session_path_.empty()) return saved;
     saved_edits_ = saving.edits_;
     edits_are_saved_.reset();
     saved_camera_ = saving.camera_;
     saved_probe_voxel_ = saving.probe_voxel_;
-    return notices;
+    return saved;
 }
 
 bool Document::has_view_to_keep() const
