@@ -33,6 +33,7 @@ Renderer::Renderer(const Options& options)
 void Renderer::restart()
 {
     scene_.reset();
+    const std::lock_guard lock(device_mutex_);
     on_device_.reset();
     on_device_ = std::make_unique<OnDevice>(device_options_, gpu::Budget{device_budget_, host_budget_ / 2});
 }
@@ -79,12 +80,18 @@ std::shared_ptr<const VolumeSource> Renderer::with_levels(std::shared_ptr<const 
                                                           const RenderSettings& settings, bool with_occlusion,
                                                           const Progress& progress) const
 {
-    if (!Scene::pages_alone(on_device_->memory, *source, scene_options(settings, with_occlusion))) return source;
+    {
+        const std::lock_guard lock(device_mutex_);
+        if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
+        if (!Scene::pages_alone(on_device_->memory, *source, scene_options(settings, with_occlusion))) return source;
+    }
     return shvr::with_levels(std::move(source), host_budget_, progress);
 }
 
 SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const
 {
+    const std::lock_guard lock(device_mutex_);
+    if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
     return estimate_scene(source, settings.paging, with_occlusion, on_device_->memory.device_budget(), host_budget_);
 }
 

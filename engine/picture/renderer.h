@@ -5,6 +5,7 @@
 // One thread, the one that owns the device.
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -119,6 +120,7 @@ private:
     gpu::DeviceOptions device_options_;
     uint64_t device_budget_, host_budget_;
     int threads_;
+    mutable std::mutex device_mutex_;  ///< of the next: a worker asks (with_levels) while restart() makes it anew
     std::unique_ptr<OnDevice> on_device_;
     uint64_t picture_bytes_ = 0, peak_picture_bytes_ = 0;
     std::unique_ptr<Scene> scene_;

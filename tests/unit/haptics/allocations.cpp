@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <new>
 
-thread_local bool counts_allocations = false;
-thread_local uint64_t allocations = 0;
+constinit thread_local bool counts_allocations = false;
+constinit thread_local uint64_t allocations = 0;
 
 namespace {
 

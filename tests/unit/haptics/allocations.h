@@ -4,5 +4,5 @@
 #include <cstdint>
 
 /// While set, `allocations` counts this thread's allocations.
-extern thread_local bool counts_allocations;
-extern thread_local uint64_t allocations;
+extern constinit thread_local bool counts_allocations;
+extern constinit thread_local uint64_t allocations;
