@@ -157,7 +157,7 @@ void Workbench::set_pixels(const glm::uvec2& pixels)
 
 bool Workbench::has_work() const
 {
-    if (!jobs_.is_idle() || !savers_.is_idle() || opening_ || is_saving()) return true;
+    if (!jobs_.is_idle() || !savers_.is_idle() || opening_ || reload_ || is_saving()) return true;
     return document_ &&
            (!document_->screen.complete() || document_->annotator.stroke_is_running() || document_->touch.servo() ||
             is_stirring() || screenshots_.is_writing() || screenshots_.has_large() ||
@@ -168,6 +168,7 @@ void Workbench::advance()
 {
     follow_jobs();
     follow_opening();
+    follow_reload();
     if (!document_) return;
     attempt(saving_, [this] { follow_save(); });
     attempt(touching_, [this] { follow_touch(); });
@@ -199,7 +200,7 @@ void Workbench::follow_touch()
 {
     Touch& touch = document_->touch;
     touch.advance(touch_settings());
-    if (const bool paints = touch.paint_button(); paints != std::exchange(device_paints_, paints)) apply(Paint{paints});
+    follow_buttons(touch.buttons());
 }
 
 void Workbench::follow_stroke()

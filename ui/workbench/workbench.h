@@ -110,7 +110,10 @@ public:
     Leave leave(std::string& why);
     bool is_saving() const { return save_ != nullptr || wanted_save_; }
     /// Whether anything is to be seen of jobs.
-    bool shows_jobs() const { return opening_ || is_saving() || !copies_.empty() || !jobs_.is_idle(); }
+    bool shows_jobs() const
+    {
+        return opening_ || is_saving() || !copies_.empty() || reload_ || screenshots_.has_large() || !jobs_.is_idle();
+    }
 
     // ---- What there is to see
 
@@ -136,6 +139,10 @@ public:
     uint64_t openings() const { return openings_; }
 
 private:
+    /// Of a turn, for the slices of a volume.
+    static constexpr double SLICE_S = 0.005;
+    /// Of what goes on beside the jobs: no job has these numbers.
+    static constexpr Jobs::Number RELOADING = Jobs::Number{1} << 49, DRAWING = RELOADING + 1;
     /// A part of a turn.
     struct Attempt {
         std::string said;       ///< message of the last failure
@@ -256,6 +263,16 @@ private:
     std::vector<Jobs::State> job_states() const;
     void stop_loading();
     void load_again();
+
+    // Loading once more (workbench_reload.cpp)
+    struct Reload;
+    void want_reload(const RenderSettings& before);
+    void begin_reload();
+    void follow_reload();
+    bool cancel_reload();
+    Jobs::State state_of_reload() const;
+    void drop_queries();
+
     void load_once_more();
     std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     std::filesystem::path screenshot_stem() const;
@@ -325,6 +342,7 @@ private:
     // Turns
     TouchSettings touch_settings() const;
     void follow_touch();
+    void follow_buttons(uint32_t buttons);
     void follow_settings();
     void follow_stroke();
     void follow_preview();
@@ -347,6 +365,7 @@ private:
     Jobs savers_{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< no save waits for other work
     std::shared_ptr<Opening> opening_;                                          ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< where `open` waits for what ends an opening
+    std::shared_ptr<Reload> reload_;                       ///< null: what is shown is as the settings say
     Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< so that it is no job's
     std::unique_ptr<Document> away_;  ///< what was open, without a scene, while the device has room for one only
     /// What is being saved.
@@ -387,9 +406,10 @@ private:
     std::optional<double> to_keep_since_s_;       ///< since when the journal does not hold the view as it is
     double last_change_s_ = 0.0;                  ///< of what is to be kept
     std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
-    bool device_paints_ = false;                  ///< its paint button is down
-    glm::dvec3 stroke_end_voxel_{0.0};            ///< where an open stroke was extended to
-    std::string journal_failure_;                 ///< as last reported
+    uint32_t buttons_ = 0;                        ///< of a stylus, as they were in the last turn
+    double buttons_at_s_ = 0.0;
+    glm::dvec3 stroke_end_voxel_{0.0};  ///< where an open stroke was extended to
+    std::string journal_failure_;       ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;
     bool shows_help_ = false, shows_messages_ = false, shows_passes_ = false, shows_palette_ = false,
          is_full_screen_ = false, quits_ = false;

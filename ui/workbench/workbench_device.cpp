@@ -16,6 +16,7 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
         document_->screen.drop();
     }
     stop_loading();
+    if (document_) reload_.reset();  // it is loaded as its settings now say
     make_anew();
     look_again();
     if (document_) load_again();

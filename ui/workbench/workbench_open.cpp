@@ -25,9 +25,6 @@ namespace shvr::ui {
 
 namespace {
 
-/// Of a turn, for the slices of a volume.
-constexpr double SLICE_S = 0.005;
-
 bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path& b)
 {
     return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
@@ -82,6 +79,11 @@ std::vector<Jobs::State> Workbench::job_states() const
 {
     std::vector<Jobs::State> states = savers_.states();
     if (opening_ && (opening_->read || opening_->comes_back)) states.push_back(state_of(*opening_));
+    if (document_ && reload_) states.push_back(state_of_reload());
+    if (document_ && screenshots_.has_large())
+        states.push_back({.number = DRAWING,
+                          .what = "drawing " + short_name(screenshots_.large_path()),
+                          .fraction = screenshots_.progress()});
     for (Jobs::State& state : jobs_.states()) states.push_back(std::move(state));
     return states;
 }
@@ -109,6 +111,7 @@ void Workbench::start_opening(Opening next)
         opening_.reset();
         follow_jobs();
     }
+    cancel_reload();
     open_failure_.clear();
     failed_path_.clear();
     next.name = short_name(next.path);

@@ -10,6 +10,9 @@ namespace shvr::ui {
 
 namespace {
 
+constexpr double TAPS_PER_SECOND = 5.0;  ///< of a held button, as of a held key
+constexpr double LONGEST_TURN_S = 0.5;   ///< after a hung turn it must not throw the view far away
+
 double depth_of(const Camera& camera, const glm::dvec3& point)
 {
     return glm::dot(point - camera.eye, axes_of(camera).forward);
@@ -186,6 +189,30 @@ void Workbench::follow_preview()
         document.previewer.want(std::nullopt);
         say(error.what(), Weight::error);
     }
+}
+
+/// Buttons of a stylus are keys without modifiers: Stylus1 is the first.
+void Workbench::follow_buttons(uint32_t buttons)
+{
+    const double now = options_.now_s(), elapsed = std::min(now - std::exchange(buttons_at_s_, now), LONGEST_TURN_S);
+    for (uint32_t button = 0; button < MAX_BUTTONS; ++button) {
+        const uint32_t bit = 1u << button;
+        const bool is_down = buttons & bit, was_down = buttons_ & bit;
+        if (!is_down && !was_down) continue;
+        const Chord chord{.key = sentence("Stylus", button + 1)};
+        if (is_down && !was_down && !awaits_key_.empty()) {
+            apply(BindKeys{awaits_key_, text_of(chord)});
+            continue;
+        }
+        for (const Shortcut* const shortcut : keymap_.shortcuts_for(chord)) {
+            const bool lasts = shortcut->mode == Shortcut::Mode::while_held;
+            if (is_down && was_down && shortcut->mode == Shortcut::Mode::hold)
+                apply(shortcut->action(model(), TAPS_PER_SECOND * elapsed));
+            else if (is_down != was_down && (is_down || lasts))
+                apply(shortcut->action(model(), is_down ? 1.0 : 0.0));
+        }
+    }
+    buttons_ = buttons;
 }
 
 }  // namespace shvr::ui

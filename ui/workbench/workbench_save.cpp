@@ -19,6 +19,11 @@ constexpr double PATIENCE_S = 20.0;
 void Workbench::act(const CancelJob& action)
 {
     if (opening_ && opening_number() == action.number) return cancel_opening();
+    if (action.number == RELOADING && cancel_reload()) return say("Cancelled: loading once more", Weight::warning);
+    if (action.number == DRAWING && screenshots_.has_large()) {
+        screenshots_.drop_large();
+        return say("Cancelled: the large screenshot", Weight::warning);
+    }
     jobs_.cancel(action.number);
     savers_.cancel(action.number);
 }

@@ -161,8 +161,7 @@ void Workbench::settings_changed(const Session& before)
     Document& document = *document_;
     const Session& after = document.session;
     if (before.render.sampling != after.render.sampling || before.render.paging != after.render.paging) {
-        document.screen.clear();
-        document.load_again(renderer_);
+        want_reload(before.render);
     } else if (before.groups != after.groups) {
         renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
     }

@@ -109,4 +109,19 @@ TEST_CASE_FIXTURE(OnDevice, "a button of a device that cannot do what it is for 
     bench.perform(Set{R"({"probe":{"group":4}})"});
     press(PAINT_BUTTON);
     CHECK(bench.model().trace.nodes().size() == 1);
+    press(0);
+    // A button means what a person binds to it, as a key does.
+    constexpr uint32_t SECOND = 1u << 1;
+    press(SECOND);
+    CHECK(bench.model().trace.nodes().size() == 1);
+    press(0);
+    bench.perform(AwaitKey{"undo"});
+    press(SECOND);
+    CHECK(bench.model().trace.nodes().size() == 1);
+    CHECK(bench.model().keymap.text_of(*shortcut_named("undo")) == "stylus button 2");
+    press(0);
+    press(SECOND);
+    CHECK(bench.model().trace.nodes().empty());
+    press(SECOND);  // held on: once
+    press(0);
 }

@@ -17,6 +17,14 @@ constexpr std::pair<const char*, const char*> NAMED_KEYS[] = {
     {"End", "End"},     {"PageUp", "Page Up"},      {"PageDown", "Page Down"}, {"Up", "Up"},
     {"Down", "Down"},   {"Left", "Left"},           {"Right", "Right"},        {"Tab", "Tab"},
     {"Enter", "Enter"}, {"Backspace", "Backspace"}, {"Escape", "Escape"},      {"Pause", "Pause"}};
+constexpr std::string_view STYLUS = "Stylus";
+
+/// "Stylus1" to "Stylus8"
+bool is_stylus_button(std::string_view text)
+{
+    return text.starts_with(STYLUS) && text.size() == STYLUS.size() + 1 && text.back() >= '1' &&
+           text.back() < char('1' + MAX_BUTTONS);
+}
 
 bool is_key(std::string_view text)
 {
@@ -24,7 +32,8 @@ bool is_key(std::string_view text)
     if (text[0] == 'F' && text.size() <= 3)
         return std::ranges::all_of(text.substr(1), [](char c) { return c >= '0' && c <= '9'; }) && text[1] != '0' &&
                std::stoi(std::string(text.substr(1))) <= 25;
-    return std::ranges::any_of(NAMED_KEYS, [&](const auto& named) { return text == named.first; });
+    return is_stylus_button(text) ||
+           std::ranges::any_of(NAMED_KEYS, [&](const auto& named) { return text == named.first; });
 }
 
 bool take(std::string_view& text, std::string_view prefix)
@@ -75,6 +84,7 @@ std::string in_words(const Chord& chord)
     if (chord.control) text += "Ctrl + ";
     if (chord.alt) text += "Alt + ";
     if (chord.shift) text += "Shift + ";
+    if (is_stylus_button(chord.key)) return text + "stylus button " + chord.key.back();
     const auto named = std::ranges::find_if(NAMED_KEYS, [&](const auto& each) { return chord.key == each.first; });
     return text + (named == std::end(NAMED_KEYS) ? chord.key : named->second);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Which keys mean which shortcuts: a set of keys as it ships, with a person's changes. Pure; any thread.
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,7 +12,11 @@
 
 namespace shvr::ui {
 
-/// A key with its modifiers. Keys are named: "A", "7", "[", "F5", "PageUp", "Space".
+/// Buttons of a stylus that can mean something.
+inline constexpr uint32_t MAX_BUTTONS = 8;
+
+/// A key with its modifiers. Keys are named: "A", "7", "[", "F5", "PageUp", "Space"; the first button of a stylus is
+/// "Stylus1".
 struct Chord {
     bool control = false, alt = false, shift = false;
     std::string key;

@@ -344,7 +344,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("tool_select", TOOL_KEYS, "Select with the mouse", Mode::tap, take<Tool::select>, "Alt+5"),
     both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
 
-    both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F"),
+    both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F Stylus1"),
     both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
     both("eraser", PAINTING_KEYS, "Eraser", Mode::tap, choose<0>, "0"),
     both("group_1", PAINTING_KEYS, "Group 1", Mode::tap, choose<1>, "1"),

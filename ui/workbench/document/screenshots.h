@@ -27,6 +27,9 @@ public:
     /// Abandons a large picture, since its volume changes or goes away.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
+    /// Of the large one: where it is written, and how much of it is drawn, 0 ... 1.
+    const std::filesystem::path& large_path() const { return large_path_; }
+    double progress() const { return large_ ? large_->progress() : 0.0; }
     bool is_writing() const { return written_.valid(); }
 
     struct Turn {

@@ -52,7 +52,6 @@ public:
     bool is_mouse() const { return is_mouse_; }
     /// Of the device, as the servo read them last; 0 for the mouse.
     uint32_t buttons() const { return is_mouse_ ? 0 : state_.device.buttons; }
-    bool paint_button() const { return (buttons() & PAINT_BUTTON) != 0; }
     /// Milliseconds from requesting relevance on the GPU until the servo has it; newest last.
     const std::vector<double>& mirror_ms() const { return mirror_ms_; }
     double relevance_age_ms() const;
