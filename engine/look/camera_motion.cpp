@@ -111,6 +111,20 @@ Camera looking_at(const Camera& camera, const glm::dvec3& target)
     return result;
 }
 
+Camera respaced(const Camera& camera, const glm::dvec3& ratio)
+{
+    const CameraAxes axes = axes_of(camera);
+    Camera result = camera;
+    result.eye = camera.eye * ratio;
+    result.target = camera.target * ratio;
+    result.up = glm::normalize(axes.up * ratio);
+    const double along = glm::length(axes.forward * ratio);
+    result.near_distance = camera.near_distance * along;
+    result.far_distance = camera.far_distance * along;
+    result.height = camera.height * glm::length(axes.up * ratio);
+    return result;
+}
+
 Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper)
 {
     constexpr double MARGIN = 1.05;

@@ -29,6 +29,9 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
 Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper);
 /// The same direction and distance, towards another point. Clip planes stay where they are.
 Camera looking_at(const Camera& camera, const glm::dvec3& target);
+/// The camera that sees the same voxels where the spacing of the volume is `ratio` times what it was: along the view
+/// and upwards exactly, to the right where the ratio is equal along all axes.
+Camera respaced(const Camera& camera, const glm::dvec3& ratio);
 
 /// Where a point is seen: pixel coordinates, and its distance from the eye along the view. Null for points beside or
 /// behind the eye of a perspective camera.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/look/camera_motion.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -268,11 +269,9 @@ void Workbench::act(const CorrectSpacing& action)
     const Session before = session;
     const Camera view = camera;
     const glm::dvec3 ratio = action.spacing / document_->volume().spacing;
-    camera.eye *= ratio;
-    camera.target *= ratio;
-    const double most = std::max({ratio.x, ratio.y, ratio.z});
-    camera.near_distance *= most;
-    camera.far_distance *= most;
+    camera = respaced(camera, ratio);
+    for (auto& [name, kept] : session.cameras)  // the others follow the volume
+        if (Camera* const placed = std::get_if<Camera>(&kept)) *placed = respaced(*placed, ratio);
     if (session.raw_layout) {
         session.raw_layout->spacing = action.spacing;
         if (!action.unit.empty()) session.raw_layout->unit = action.unit;

@@ -148,6 +148,7 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
     desk.open("scan.nrrd");
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     const glm::dvec3 eye = desk.bench.model().camera.eye;
+    desk.bench.perform(KeepCamera{"mine"});
     desk.bench.perform(CorrectSpacing{{0.5, 0.5, 2.0}, "um"});
     settle(desk.bench);
     for (const bool is_again : {false, true}) {
@@ -158,6 +159,8 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
         REQUIRE(desk.bench.model().trace.nodes().size() == 1);
         CHECK(desk.bench.model().trace.nodes().begin()->second.position == glm::dvec3(5, 6, 28));
         CHECK(glm::distance(desk.bench.model().camera.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
+        const auto kept = std::get<Camera>(desk.bench.model().session.cameras.at("mine"));
+        CHECK(glm::distance(kept.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
     }
 }
 

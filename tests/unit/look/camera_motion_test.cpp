@@ -41,6 +41,26 @@ bool is_near(const glm::dvec3& a, const glm::dvec3& b)
 
 }  // namespace
 
+TEST_CASE("a camera for another spacing sees the same voxels in the middle, and cuts them at the same depth")
+{
+    Camera camera{.eye = {40, -60, 25}, .target = {10, 12, 14}, .up = {0, 0, 1}, .near_distance = 30.0};
+    for (const Camera::Projection projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+        camera.projection = projection;
+        camera.height = 50.0;
+        for (const glm::dvec3& ratio : {glm::dvec3(0.25), glm::dvec3(0.5, 0.5, 2.0), glm::dvec3(3.0, 1.0, 0.2)}) {
+            const Camera other = respaced(camera, ratio);
+            const CameraAxes before = axes_of(camera), after = axes_of(other);
+            const glm::dvec3 cut = camera.eye + camera.near_distance * before.forward;
+            CHECK(glm::dot(cut * ratio - other.eye, after.forward) == doctest::Approx(other.near_distance));
+            CHECK(glm::distance(project(other, {80, 60}, camera.target * ratio)->pixel, glm::dvec2(40, 30)) < 1e-9);
+            if (ratio.x != ratio.y || ratio.y != ratio.z) continue;
+            const glm::dvec3 beside = camera.target + 5.0 * before.right + 3.0 * before.up;
+            const glm::dvec2 seen = project(camera, {80, 60}, beside)->pixel;
+            CHECK(glm::distance(project(other, {80, 60}, beside * ratio)->pixel, seen) < 1e-9);
+        }
+    }
+}
+
 TEST_CASE("a point goes to a pixel and back")
 {
     std::mt19937 random(91);  // seed 91
