@@ -85,7 +85,9 @@ std::shared_ptr<const VolumeSource> Renderer::with_levels(std::shared_ptr<const 
 
 SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const
 {
-    return estimate_scene(source, settings.paging, with_occlusion, on_device_->memory.device_budget(), host_budget_);
+    const gpu::Memory& memory = on_device_->memory;
+    return estimate_scene(source, settings.paging, with_occlusion, memory.device_budget(), host_budget_,
+                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)));
 }
 
 Scene& Renderer::scene() const
