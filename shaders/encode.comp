@@ -8,12 +8,12 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint ENLARGED = 0u;
 layout(push_constant, scalar) uniform Push { EncodeParams params; };
-layout(binding = 0, rgba32f) uniform readonly image3D color;
-layout(binding = 1, rgba8) uniform writeonly image3D display;
+layout(binding = 0, rgba32f) uniform readonly image2D color;
+layout(binding = 1, rgba8) uniform writeonly image2D display;
 
 vec4 light_at(ivec2 texel)
 {
-    return imageLoad(color, ivec3(clamp(texel, ivec2(0), ivec2(params.last)), 0));
+    return imageLoad(color, clamp(texel, ivec2(0), ivec2(params.last)));
 }
 
 // Linear interpolation between texel centres.
@@ -42,5 +42,5 @@ void main()
     const vec3 seen = clamp(light.rgb + (1.0 - light.a) * params.behind, 0.0, 1.0);
     vec4 shown = vec4(encoded(seen.r), encoded(seen.g), encoded(seen.b), 1.0);
     if (params.swap_red_blue != 0u) shown = shown.bgra;
-    imageStore(display, ivec3(params.target + at, 0), shown);
+    imageStore(display, ivec2(params.target + at), shown);
 }

@@ -10,15 +10,15 @@ layout(push_constant, scalar) uniform Push
 {
     MixParams params;
 };
-layout(binding = 0, rgba32f) uniform readonly image3D other;
-layout(binding = 1, rgba32f) uniform image3D color;
+layout(binding = 0, rgba32f) uniform readonly image2D other;
+layout(binding = 1, rgba32f) uniform image2D color;
 
 void main()
 {
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, params.size))) return;
-    const ivec3 texel = ivec3(params.target + at, 0);
+    const ivec2 texel = ivec2(params.target + at);
     const vec4 light = imageLoad(color, texel);
-    precise vec4 mixed = light + params.share * (imageLoad(other, ivec3(at, 0)) - light);
+    precise vec4 mixed = light + params.share * (imageLoad(other, ivec2(at)) - light);
     imageStore(color, texel, mixed);
 }

@@ -22,10 +22,10 @@ layout(constant_id = 3) const uint SLICE = 0u;
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Preview { PreviewParams data; } preview_params;
 layout(binding = 2, scalar) readonly buffer Words { uint words[]; } preview_words;
-layout(binding = 3, rgba32f) uniform writeonly image3D nearest;   // linear RGB, length along the ray
-layout(binding = 4, rgba32f) uniform writeonly image3D seen;      // linear RGB, 1; or 0
+layout(binding = 3, rgba32f) uniform writeonly image2D nearest;   // linear RGB, length along the ray
+layout(binding = 4, rgba32f) uniform writeonly image2D seen;      // linear RGB, 1; or 0
 #ifdef SURFACED
-layout(binding = 5, rgba32f) uniform readonly image3D surfaces;
+layout(binding = 5, rgba32f) uniform readonly image2D surfaces;
 #endif
 
 #include "library/counters.glsl"
@@ -65,7 +65,7 @@ void main()
     if (SLICE != 0u) {
         const ivec3 voxel = ivec3(floor(0.5 * (near + far)));
         const bool is_hit = is_inside(preview, voxel) && is_set(preview, voxel);
-        imageStore(seen, ivec3(in_part, 0), is_hit ? vec4(color_of(preview, voxel), 1.0) : vec4(0.0));
+        imageStore(seen, ivec2(in_part), is_hit ? vec4(color_of(preview, voxel), 1.0) : vec4(0.0));
         return;
     }
 
@@ -106,19 +106,19 @@ void main()
     count(COUNTER_CUT_SHORT, uint(goes_on));   // where a device ends loops
 
 #ifdef SURFACED
-    const vec4 behind = imageLoad(surfaces, ivec3(in_part, 0));
+    const vec4 behind = imageLoad(surfaces, ivec2(in_part));
 #else
     const vec4 behind = vec4(0.0, 0.0, 0.0, NO_SURFACE);
 #endif
     if (!is_hit || at >= behind.a) {
-        imageStore(nearest, ivec3(in_part, 0), behind);
-        imageStore(seen, ivec3(in_part, 0), vec4(0.0));
+        imageStore(nearest, ivec2(in_part), behind);
+        imageStore(seen, ivec2(in_part), vec4(0.0));
         return;
     }
     const vec3 to_eye = -physical / length_to_far;
     const vec3 normal = face == ivec3(0) ? to_eye : -vec3(face * direction_sign);
     vec3 color = lit(params, params.ambient, color_of(preview, voxel), normal, 1.0, half_way(params.light, to_eye));
     if (DISTANCE_BLEND != 0u) color = blended(params, color, near + at * direction + preview.lower);
-    imageStore(nearest, ivec3(in_part, 0), vec4(color, at));
-    imageStore(seen, ivec3(in_part, 0), vec4(color, 1.0));
+    imageStore(nearest, ivec2(in_part), vec4(color, at));
+    imageStore(seen, ivec2(in_part), vec4(color, 1.0));
 }

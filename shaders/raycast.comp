@@ -39,7 +39,7 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 // Stores where the ray's opacity rises most (voxel space) and the ray's opacity instead of a colour, or 0 where it
-// rises too little to be seen. The target has PICK_LAYERS layers.
+// rises too little to be seen. The target has PICK_ROWS rows.
 layout(constant_id = 4) const uint PICK = 0u;
 // Records which bricks rays visit. Pictures that are complete do without.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
@@ -65,13 +65,13 @@ layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 // Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after
 // another.
 // linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
-layout(binding = 3, rgba32f) uniform readonly image3D table;
-layout(binding = 4, rgba32f) uniform image3D color;
+layout(binding = 3, rgba32f) uniform readonly image2D table;
+layout(binding = 4, rgba32f) uniform image2D color;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 6
 // By number: linear RGB, opacity of a full step; in the second row, the optical depth of a full step.
-layout(binding = 7, rgba32f) uniform readonly image3D groups;
+layout(binding = 7, rgba32f) uniform readonly image2D groups;
 #endif
 
 #ifdef OCCLUDED
@@ -79,12 +79,18 @@ layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
 layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
 #endif
 #ifdef SURFACED
-layout(binding = 12, rgba32f) uniform readonly image3D surfaces;   // linear RGB, length along the ray
+layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB, length along the ray
 #endif
 
 #if defined(PAGED) || defined(SHELLED)
 #define KEEPS
-layout(binding = 13, rgba32f) uniform image3D rays;   // raycast.h, KEPT; without it, one texel
+layout(binding = 13, rgba32f) uniform image2D rays;   // raycast.h, KEPT; without it, one texel
+
+// The second half of what a ray keeps lies below the first.
+ivec2 beside(const RaycastParams params, uvec2 in_part)
+{
+    return ivec2(in_part.x, in_part.y + (params.pixel_end.y - params.pixel_begin.y));
+}
 #endif
 
 #include "library/rays.glsl"
@@ -125,6 +131,7 @@ Place place_at(const RaycastParams params, vec3 position)
 
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
+const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
@@ -163,9 +170,9 @@ vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
     if (slot == 0u) return look;
     const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
     if (group == 0u) return look;
-    vec4 of_group = imageLoad(groups, ivec3(group, 0, 0));
+    vec4 of_group = imageLoad(groups, ivec2(group, 0));
     if (SLICE == 0u) {
-        if (part < 1.0) of_group.a = opacity_of_depth(part * imageLoad(groups, ivec3(group, 1, 0)).x);
+        if (part < 1.0) of_group.a = opacity_of_depth(part * imageLoad(groups, ivec2(group, 1)).x);
         return of_group;
     }
     return vec4(mix(look.rgb, of_group.rgb, of_group.a > 0.0 ? params.slice_paint : 0.0), 1.0);
@@ -261,7 +268,8 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
     const vec3 lengths = (bound - position) * ray.inverse;
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
     // The guard keeps rays from leaping over a sample that rounding puts on the border.
-    return 1u + uint(max(exit / params.step - 0.01, 0.0));
+    const float steps = exit / params.step - 0.01;
+    return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not of what is no number
 }
 
 void note(const Place place, inout Work work)
@@ -363,11 +371,11 @@ void main()
     const float begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
     float end = misses ? begin : min(min(exit.x, exit.y), min(exit.z, length_to_far));
 #ifdef SURFACED
-    const vec4 surface = imageLoad(surfaces, ivec3(in_part, 0));
+    const vec4 surface = imageLoad(surfaces, ivec2(in_part));
     end = min(end, max(surface.a, begin));
 #endif
 
-    const ivec3 texel = ivec3(params.target + in_part, 0);
+    const ivec2 texel = ivec2(params.target + in_part);
     vec4 sum = vec4(0.0);
     bool begins_inside = false;   // of the iso-surface
     Rises rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -377,16 +385,16 @@ void main()
         sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
         if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
         if (PICK != 0u) {
-            const vec4 runs = imageLoad(color, texel + ivec3(0, 0, 1)), run = imageLoad(color, texel + ivec3(0, 0, 2));
+            const vec4 runs = imageLoad(color, texel + ivec2(0, 1)), run = imageLoad(color, texel + ivec2(0, 2));
             rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
         }
     }
     vec4 kept = vec4(NO_SHELL, -1.0, 0.0, 0.0);
     uint state = 0u;
 #ifdef KEEPS
-    if (params.first_step > 0u && KEPT != KEPT_NOTHING) kept = imageLoad(rays, ivec3(in_part, 0));
+    if (params.first_step > 0u && KEPT != KEPT_NOTHING) kept = imageLoad(rays, ivec2(in_part));
     if (params.first_step > 0u && KEPT == KEPT_ALL) {
-        sum = imageLoad(rays, ivec3(in_part, 1));
+        sum = imageLoad(rays, beside(params, in_part));
         state = uint(kept.w) >> 16u;
         begins_inside = (state & RAY_IS_INSIDE) != 0u;
     }
@@ -400,7 +408,7 @@ void main()
     }
     if (SLICE != 0u) end = begin;
 
-    const float extent = max(end - begin, 0.0);
+    const float extent = end > begin ? end - begin : 0.0;   // of what is no number, too
     const uint steps = uint(min(extent / params.step, MAX_STEPS));
     uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
     bool is_last = params.is_last_block != 0u;
@@ -503,8 +511,8 @@ void main()
         state = 0u;
 #endif
         state |= (has_ended ? RAY_HAS_ENDED : 0u) | (is_done ? RAY_IS_DONE : 0u);
-        imageStore(rays, ivec3(in_part, 0), vec4(kept.xy, float(i & 0xffffu), float(i >> 16u | state << 16u)));
-        if (KEPT == KEPT_ALL) imageStore(rays, ivec3(in_part, 1), sum);
+        imageStore(rays, ivec2(in_part), vec4(kept.xy, float(i & 0xffffu), float(i >> 16u | state << 16u)));
+        if (KEPT == KEPT_ALL) imageStore(rays, beside(params, in_part), sum);
     }
 #endif
     if (!is_last && KEPT != KEPT_ALL && (PICK == 0u || !is_stopped)) {
@@ -513,8 +521,8 @@ void main()
 #endif
         imageStore(color, texel, sum);
         if (PICK != 0u) {
-            imageStore(color, texel + ivec3(0, 0, 1), vec4(rises.most, rises.most_at, rises.run, rises.steepest));
-            imageStore(color, texel + ivec3(0, 0, 2), vec4(rises.steepest_at, rises.peak, rises.trough, 0.0));
+            imageStore(color, texel + ivec2(0, 1), vec4(rises.most, rises.most_at, rises.run, rises.steepest));
+            imageStore(color, texel + ivec2(0, 2), vec4(rises.steepest_at, rises.peak, rises.trough, 0.0));
         }
         return;
     }

@@ -28,15 +28,15 @@ SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
-/// The specialization constant PICK: layer 0 of the target is the answer; between blocks the others hold what is known
+/// The specialization constant PICK: the target's first row is the answer; between blocks the others hold what is known
 /// of the runs so far. A rise of less than LEAST_SEEN is not seen.
-SHARED_CONST uint PICK_LAYERS = 3u;
+SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float LEAST_SEEN = 0.015625f;
 
 /// The specialization constant KEPT: what a ray leaves in `rays` between two dispatches, beside what it has gathered in
-/// its pixel. Of layer 0, x: where the next iso-surface is; y: from where on the search goes on, below 0 before the
-/// region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step in two halves, and
-/// RAY_* times 65536 in w; layer 1: what it has gathered. Pixels then have their final look in every dispatch.
+/// its pixel. Of the upper half, x: where the next iso-surface is; y: from where on the search goes on, below 0 before
+/// the region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step in two halves, and
+/// RAY_* times 65536 in w; lower half: what it has gathered. Pixels then have their final look in every dispatch.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;

@@ -10,13 +10,13 @@ layout(push_constant, scalar) uniform Push
 {
     SaturationParams params;
 };
-layout(binding = 0, rgba32f) uniform image3D color;
+layout(binding = 0, rgba32f) uniform image2D color;
 
 void main()
 {
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, params.size))) return;
-    const ivec3 texel = ivec3(params.target + at, 0);
+    const ivec2 texel = ivec2(params.target + at);
     const vec4 light = imageLoad(color, texel);
     // Relative to green, so that rounding leaves equal channels equal.
     precise float grey = light.g + LUMINANCE_OF_RED * (light.r - light.g) + LUMINANCE_OF_BLUE * (light.b - light.g);

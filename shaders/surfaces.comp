@@ -23,7 +23,7 @@ layout(constant_id = 3) const uint PROBE = 0u;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
-layout(binding = 2, rgba32f) uniform image3D surfaces;
+layout(binding = 2, rgba32f) uniform image2D surfaces;
 #ifdef LISTED
 layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
 layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
@@ -128,15 +128,15 @@ void main()
         consider(ball_range(scene.probe_center - line.origin, line.direction, scene.probe_radius), begin, PROBE_INDEX,
                  PROBE_INDEX, hit);
 #ifdef LISTED
-    if (scene.first_node > 0u) hit = unpacked_hit(imageLoad(surfaces, ivec3(in_part, 0)));
+    if (scene.first_node > 0u) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
     search(scene, line, begin, hit);
     if (scene.is_last_block == 0u) {
-        imageStore(surfaces, ivec3(in_part, 0), packed_hit(hit));
+        imageStore(surfaces, ivec2(in_part), packed_hit(hit));
         return;
     }
 #endif
     if (!(hit.at < end)) {
-        imageStore(surfaces, ivec3(in_part, 0), vec4(0.0, 0.0, 0.0, NO_SURFACE));
+        imageStore(surfaces, ivec2(in_part), vec4(0.0, 0.0, 0.0, NO_SURFACE));
         return;
     }
 
@@ -157,5 +157,5 @@ void main()
     normal = hit.is_inside ? -line.direction : normalize(normal);
     vec3 seen = lit(params, params.ambient, color, normal, 1.0, half_way(params.light, -line.direction));
     if (DISTANCE_BLEND != 0u) seen = blended(params, seen, (at + scene.origin) * params.inverse_spacing);
-    imageStore(surfaces, ivec3(in_part, 0), vec4(seen, hit.at + scene.middle * length_to_far));
+    imageStore(surfaces, ivec2(in_part), vec4(seen, hit.at + scene.middle * length_to_far));
 }

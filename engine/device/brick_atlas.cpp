@@ -36,6 +36,7 @@ uint32_t BrickAtlas::packed(uint32_t slot) const
 
 void BrickAtlas::stage(uint32_t slot, const BrickTexels& texels)
 {
+    if (staged_.size() == BATCH) flush();  // which failed when the last one came
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();

@@ -66,6 +66,21 @@ void DeviceMask::clear()
 
 void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
 {
+    try {
+        if (is_stale_)
+            send(mask, mask.painted_bricks());
+        else
+            send(mask, bricks);
+        is_stale_ = false;
+    } catch (...) {
+        is_stale_ = true;
+        clear();
+        throw;
+    }
+}
+
+void DeviceMask::send(const Mask& mask, std::span<const int64_t> bricks)
+{
     const bool all_moved = give_slots(mask, bricks);
     if (slots_.empty()) return clear();
     if (all_moved)

@@ -22,12 +22,13 @@ public:
     /// Device memory that a mask with so many painted bricks takes at least.
     static uint64_t bytes_for(uint64_t painted_bricks);
     /// Uploads `bricks` of `mask` (the changed ones); grows the atlas where they do not fit. Does not wait: frames
-    /// submitted later see them.
+    /// submitted later see them. Where it fails nothing is on the device, and the next update uploads all.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
+    bool is_stale() const { return is_stale_; }  ///< an update failed
     /// Boxes of voxels, one for each painted brick of a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
     /// Handles for a graph; nothing while nothing is painted.
@@ -35,6 +36,7 @@ public:
 
 private:
     void clear();
+    void send(const Mask& mask, std::span<const int64_t> bricks);
     bool give_slots(const Mask& mask, std::span<const int64_t> bricks);
     void send_bricks(const Mask& mask, std::span<const int64_t> bricks);
     void send_table(const Mask& mask);
@@ -50,6 +52,7 @@ private:
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;
     std::vector<gpu::Submission> in_flight_;
+    bool is_stale_ = false;
 };
 
 }  // namespace shvr

@@ -40,17 +40,33 @@ uint32_t slot_at(uint32_t index, const glm::uvec3& slots)
     return gpu::pack_slot(glm::uvec3(position_of(index, slots)));
 }
 
+namespace {
+
+uint64_t max_slots_a_side(uint32_t brick_texels, uint32_t max_side)
+{
+    return std::min<uint64_t>(max_side / brick_texels, 255);  // pack_slot's 8 bits
+}
+
+}  // namespace
+
+uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side)
+{
+    const uint64_t most = max_slots_a_side(brick_texels, max_side);
+    return most * most * most;
+}
+
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow)
 {
-    const uint64_t most = std::min<uint64_t>(max_side / brick_texels, 255);  // pack_slot's 8 bits
+    const uint64_t most = max_slots_a_side(brick_texels, max_side);
     const auto ceil_div = [](uint64_t a, uint64_t b) { return (a + b - 1) / b; };
-    uint64_t x = narrow ? 8 : std::min<uint64_t>(most, uint64_t(std::ceil(std::cbrt(double(slots)))));
+    uint64_t x =
+        narrow ? std::min<uint64_t>(8, most) : std::min<uint64_t>(most, uint64_t(std::ceil(std::cbrt(double(slots)))));
     while (x < most && ceil_div(slots, x) > most * most) ++x;
     x = std::min(x, slots);
     const uint64_t rows = ceil_div(slots, x);
     const uint64_t y = std::min<uint64_t>(most, uint64_t(std::ceil(std::sqrt(double(rows)))));
     const uint64_t z = ceil_div(rows, y);
-    if (z > most) fail("the volume needs ", slots, " bricks on the device; its textures hold ", most * most * most);
+    if (z > most) fail("what is shown needs ", slots, " bricks on the device; its images hold ", most * most * most);
     return {uint32_t(x), uint32_t(y), uint32_t(z)};
 }
 

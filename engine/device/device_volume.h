@@ -23,6 +23,8 @@ namespace shvr {
 /// How many bricks an atlas holds along each axis, at least `slots` in all. Slots fill a row of bricks first; narrow
 /// rows keep a brick's texels close in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
+/// The most slots that it has an answer for.
+uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
 
 /// The packed address of the slot with that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);

@@ -41,12 +41,24 @@ void EmptySpace::want(const LeapGridInput& look, const glm::uvec3& cell_counts)
     holds_ = false;
     patch_ = {};
     stage_ = 0;
+    cell_counts_ = cell_counts;
     changed_ = {glm::uvec3(0), cell_counts};
+}
+
+void EmptySpace::forget_unless_submitted(FrameGraph& graph)
+{
+    graph.unless_submitted([this] {
+        holds_ = false;
+        patch_ = {};
+        stage_ = 0;
+        changed_ = {glm::uvec3(0), cell_counts_};
+    });
 }
 
 void EmptySpace::prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look)
 {
     SHVR_CHECK(is_due());
+    forget_unless_submitted(graph);
     if (!holds_) {
         look.changed = changed_;
         leap_grid_stage(graph, volume, look, stage_++);
@@ -60,6 +72,7 @@ void EmptySpace::prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput
 void EmptySpace::refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look)
 {
     SHVR_CHECK(is_worth_refining());
+    forget_unless_submitted(graph);
     look.changed = changed_;
     leap_grid_stage(graph, volume, look, stage_++);
     if (stage_ == LEAP_STAGES) patch_ = {};

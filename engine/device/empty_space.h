@@ -19,16 +19,20 @@ public:
     /// Whether there is work left to do before a picture, and after it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each adds one pass of its work, and may only be called while there is some.
+    /// Each adds one pass of its work, and may only be called while there is some. All is built anew where the graph is
+    /// not submitted.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 
 private:
+    void forget_unless_submitted(FrameGraph& graph);
+
     std::optional<LeapGridInput> look_;  ///< what the grid is built from, except paint
     bool holds_ = false;                 ///< pictures are correct, except for the patch
     CellBox patch_;                      ///< changed cells that the grid does not reflect yet
     uint32_t stage_ = 0;                 ///< the next of LEAP_STAGES
     CellBox changed_;                    ///< the cells that the running stages cover
+    glm::uvec3 cell_counts_{0};          ///< all of them
 };
 
 }  // namespace shvr

@@ -213,7 +213,7 @@ std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels
 Resource DeviceTable::upload(FrameGraph& graph, std::span<const glm::vec4> texels)
 {
     const uint32_t width = gpu::TABLE_WIDTH;
-    const ResourceDesc desc = image_desc(Format::rgba32_float, {width, uint32_t(texels.size()) / width, 1});
+    const ResourceDesc desc = picture_desc(Format::rgba32_float, {width, uint32_t(texels.size()) / width});
     if (!image_ || image_.desc() != desc) {
         image_.reset();
         image_ = memory_.create(name_, desc);
@@ -221,6 +221,7 @@ Resource DeviceTable::upload(FrameGraph& graph, std::span<const glm::vec4> texel
     }
     const Resource on_device = graph.import(name_, image_.import());
     if (std::exchange(is_sent_, true)) return on_device;
+    graph.unless_submitted([this] { is_sent_ = false; });
     return graph.copy_to_image(graph.upload<glm::vec4>(name_ + " entries", texels), on_device,
                                {{0, glm::uvec3(0), desc.texels}}, "upload " + name_);
 }

@@ -78,7 +78,8 @@ uint64_t Occlusion::scratch_bytes(uint64_t device_budget)
 
 void Occlusion::create(const glm::uvec3& slots)
 {
-    slice_ = slice_for(memory_.device_budget());
+    const uint32_t most = memory_.device().traits().limits.maxImageDimension3D / occlusion_near_desc(1, true).texels.z;
+    slice_ = std::max(std::min(slice_for(memory_.device_budget()), most), 1u);
     const auto create_image = [&](const char* name, const ResourceDesc& desc) {
         return memory_.create(name, desc, gpu::Placement::device, "ambient occlusion");
     };
@@ -99,10 +100,28 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
     for (size_t size = 0; size < cells_.size(); ++size)
         binding.cells[size] = graph.import("occlusion cells", cells_[size].import());
     std::vector<uint32_t> slots;
-    for (auto& [key, entry] : entries_)
-        if (std::exchange(entry.is_new, false)) slots.push_back(entry.slot);
-    occlusion_reset(graph, binding, slots, std::exchange(images_are_new_, false));
+    std::vector<BrickKey> keys;
+    for (auto& [key, entry] : entries_) {
+        if (!std::exchange(entry.is_new, false)) continue;
+        slots.push_back(entry.slot);
+        keys.push_back(key);
+    }
+    const bool were_new = std::exchange(images_are_new_, false);
+    if (were_new || !keys.empty())
+        graph.unless_submitted([this, keys = std::move(keys), were_new] {
+            images_are_new_ = images_are_new_ || were_new;
+            mark(keys, [](Entry& entry) { entry.is_new = true; });
+        });
+    occlusion_reset(graph, binding, slots, were_new);
     return binding;
+}
+
+/// Those that are still there.
+template <class Set>
+void Occlusion::mark(const std::vector<BrickKey>& keys, const Set& set)
+{
+    for (const BrickKey& key : keys)
+        if (const auto found = entries_.find(key); found != entries_.end()) set(found->second);
 }
 
 // ---- Invalidation ---------------------------------------------------------------------------------------------------
@@ -347,8 +366,11 @@ std::vector<VoxelBox> Occlusion::next(FrameGraph& graph, const VolumeBinding& vo
         entries_.at(stale.back()).needs_cells = true;
         stale.pop_back();
     }
+    graph.unless_submitted([this, stale] { mark(stale, [](Entry& entry) { entry.needs_cells = true; }); });
     add_cells(graph, volume, images, mask, stale);
     if (!is_enough) return {};
+    graph.unless_submitted(
+        [this, keys] { mark(keys, [](Entry& entry) { entry.needs_values = true, entry.is_exact = false; }); });
     add_values(graph, volume, images, mask, keys);
     std::vector<VoxelBox> renewed;
     for (const BrickKey& key : keys) {

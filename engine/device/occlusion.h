@@ -55,6 +55,7 @@ public:
     static uint64_t scratch_bytes(uint64_t device_budget);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
+    bool has_memory() const { return bool(values_); }
     /// For each level: how many bricks on each side of a brick its light comes from.
     std::vector<int> reach() const;
     /// Whether anything is stale.
@@ -89,6 +90,8 @@ private:
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
     void create(const glm::uvec3& slots);
+    template <class Set>
+    void mark(const std::vector<BrickKey>& keys, const Set& set);
     void sync();
     void mark_all(bool cells);
     void mark_cut(const CutBox& before, const CutBox& after);

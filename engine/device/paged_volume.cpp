@@ -25,14 +25,16 @@ uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int 
     uint64_t useful = 1;
     for (int level = 0; level < levels; ++level)
         useful += uint64_t(std::min<int64_t>(brick_total(info.size, level), int64_t{1} << 40));
-    const uint64_t most = bytes / BrickAtlas::slot_bytes();
+    // Paging is for what does not fit: the atlas is as large as one image of the device can be.
+    const uint64_t most = std::min({bytes / BrickAtlas::slot_bytes(), traits.max_volume_bytes / BrickTexels::CODE_BYTES,
+                                    max_atlas_slots(gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D)});
     const auto made = [&](uint64_t slots) {
         const glm::u64vec3 layout(
             atlas_layout(slots, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu));
         return layout.x * layout.y * layout.z;
     };
     uint64_t slots = std::min(useful, most);
-    while (slots > PagedVolume::MIN_SLOTS && made(slots) > most) --slots;
+    while (slots > std::min(PagedVolume::MIN_SLOTS, most) && made(slots) > most) --slots;
     if (slots < std::min(useful, PagedVolume::MIN_SLOTS))
         fail(info.name, ": ", gpu::mebibytes(bytes), " of device memory are left for its bricks; expected at least ",
              gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes()), ", as a larger --budget-device gives");
@@ -272,7 +274,9 @@ void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const Devi
 {
     if (leap_jobs_.empty()) return;
     std::vector<gpu::BrickLeapJob> jobs;
-    for (const BrickKey& key : std::exchange(leap_jobs_, {})) {
+    const auto keys = std::make_shared<const std::vector<BrickKey>>(std::exchange(leap_jobs_, {}));
+    graph.unless_submitted([this, keys] { leap_jobs_.insert(leap_jobs_.end(), keys->begin(), keys->end()); });
+    for (const BrickKey& key : *keys) {
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot) continue;
         jobs.push_back(job_of(key, *slot));
@@ -284,6 +288,7 @@ void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const Devi
 Resource PagedVolume::upload_directory(FrameGraph& graph)
 {
     if (!std::exchange(directory_is_stale_, false)) return graph.import("page directory", directory_.import());
+    graph.unless_submitted([this] { directory_is_stale_ = true; });
     fill_directory();
     // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
     entries_.resize(std::bit_ceil(entries_.size()));

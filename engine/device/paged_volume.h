@@ -103,6 +103,7 @@ private:
                    const std::optional<MaskBinding>& painted);
     Resource upload_directory(FrameGraph& graph);
     void update_wants();
+    void take_bricks(std::vector<VoxelBox>& changed);
     std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
     void fill_directory();

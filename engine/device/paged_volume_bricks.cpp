@@ -116,10 +116,10 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
 
 void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels)
 {
-    atlas_.stage(slot, texels);
     ++places_revision_;
     leap_jobs_.push_back(key);
     directory_is_stale_ = true;
+    atlas_.stage(slot, texels);
 }
 
 void PagedVolume::renew(std::span<const VoxelBox> changed)
@@ -196,25 +196,35 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
     update_wants();
     const size_t wanted = std::max<size_t>(pending_, 1);
     std::vector<VoxelBox> changed;
-    do {
-        for (const BrickStore::Finished& finished : store_.take(BrickAtlas::BATCH)) {
-            pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
-            const bool for_region =
-                region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
-            if (!finished.texels) {
-                directory_is_stale_ = true;
-                continue;
-            }
-            if (!place(finished.key, *finished.texels, for_region)) {
-                is_limited_ = true;
-                continue;
-            }
-            changed.push_back(voxels_of(finished.key, info().size));
-        }
-        tell(progress, 1.0 - double(pending_) / double(wanted));
-    } while (wait && store_.wait());
-    atlas_.flush();
+    try {
+        do {
+            take_bricks(changed);
+            tell(progress, 1.0 - double(pending_) / double(wanted));
+        } while (wait && store_.wait());
+        atlas_.flush();
+    } catch (...) {
+        needs_changed();  // what was taken and not placed is requested again
+        throw;
+    }
     return changed;
+}
+
+void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
+{
+    for (const BrickStore::Finished& finished : store_.take(BrickAtlas::BATCH)) {
+        pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
+        const bool for_region =
+            region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
+        if (!finished.texels) {
+            directory_is_stale_ = true;
+            continue;
+        }
+        if (!place(finished.key, *finished.texels, for_region)) {
+            is_limited_ = true;
+            continue;
+        }
+        changed.push_back(voxels_of(finished.key, info().size));
+    }
 }
 
 PagedVolume::State PagedVolume::state() const

@@ -186,25 +186,46 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
 
 ResidentVolume::~ResidentVolume() = default;
 
+/// Null where no atlas has so many slots.
+std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts,
+                                                              bool filtered)
+{
+    const gpu::DeviceTraits& traits = memory.traits();
+    const uint64_t bricks = uint64_t(brick_counts.x) * brick_counts.y * brick_counts.z;
+    // Slot 0 stays unused: in the page table it stands for a missing brick.
+    const uint32_t max_side = traits.limits.maxImageDimension3D;
+    if (bricks + 1 > max_atlas_slots(gpu::BRICK_TEXELS, max_side)) return std::nullopt;
+    const glm::uvec3 slots = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, max_side, traits.is_cpu);
+    const glm::uvec3 codes = slots * gpu::BRICK_TEXELS, codes_per_texel(filtered ? 1 : 2, 1, 1);
+    return Shape{.atlas_slots = slots,
+                 .atlas = image_desc(filtered ? Format::r16_unorm : Format::r32_uint, codes / codes_per_texel),
+                 .page_table = buffer_desc(bricks * sizeof(uint32_t)),
+                 .cells = image_desc(Format::r32_uint, brick_counts * gpu::BRICK_CELLS)};
+}
+
+bool ResidentVolume::is_possible(const gpu::Memory& memory, const VolumeInfo& info, bool filtered)
+{
+    const std::optional<Shape> shape = shape_of(memory, glm::uvec3(shvr::brick_counts(info.size)), filtered);
+    return shape && memory.can_create(shape->atlas) && memory.can_create(shape->page_table) &&
+           memory.can_create(shape->cells);
+}
+
 void ResidentVolume::create_images()
 {
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
-    const gpu::DeviceTraits& traits = memory_.device().traits();
-    const uint64_t bricks = brick_count();
-    // Slot 0 stays unused: in the page table it stands for a missing brick.
-    atlas_slots_ = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu);
-    const glm::uvec3 codes = atlas_slots_ * gpu::BRICK_TEXELS;
-    const uint32_t codes_per_texel = filtered_ ? 1 : 2;
+    const std::optional<Shape> shape = shape_of(memory_, brick_counts_, filtered_);
+    if (!shape)
+        fail(info().name, ": the volume has ", brick_count(), " bricks, more than an image of the device holds; ",
+             "expected render.paging automatic");
+    atlas_slots_ = shape->atlas_slots;
     const auto create = [&](const char* name, const ResourceDesc& desc) {
         return memory_.create(name, desc, gpu::Placement::device, "the volume");
     };
-    atlas_ = create("atlas", image_desc(filtered_ ? Format::r16_unorm : Format::r32_uint,
-                                        codes / glm::uvec3(codes_per_texel, 1, 1)));
-    page_table_ = create("page table", buffer_desc(bricks * sizeof(uint32_t)));
-    cell_ranges_ = create("cell ranges", image_desc(Format::r32_uint, cell_counts_));
-    leap_ = create("leap grid", image_desc(Format::r32_uint, cell_counts_));
-    for (gpu::Storage& scratch : leap_scratch_)
-        scratch = create("leap scratch", image_desc(Format::r32_uint, cell_counts_));
+    atlas_ = create("atlas", shape->atlas);
+    page_table_ = create("page table", shape->page_table);
+    cell_ranges_ = create("cell ranges", shape->cells);
+    leap_ = create("leap grid", shape->cells);
+    for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
 void ResidentVolume::upload_page_table()

@@ -25,6 +25,8 @@ public:
 
     /// Device memory that such a volume takes, cells and leap grid included.
     static uint64_t bytes_for(const VolumeInfo& info);
+    /// Whether the device has such large images and buffers, however much memory is free.
+    static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, bool filtered);
 
     uint64_t brick_count() const;
     /// Handles for a new frame graph.
@@ -71,6 +73,11 @@ public:
 
 private:
     class Builder;
+    struct Shape {
+        glm::uvec3 atlas_slots;
+        ResourceDesc atlas, page_table, cells;  ///< the last one of cell ranges, leap grid and scratch
+    };
+    static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, bool filtered);
     void create_images();
     void upload_page_table();
     struct Renewal {

@@ -70,7 +70,8 @@ bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::O
            uint64_t reserved_bytes = 0)
 {
     if (options.paging != Paging::automatic) return options.paging == Paging::always;
-    return source.levels() > 1 || !fits_resident(memory, source, options, reserved_bytes);
+    return source.levels() > 1 || !fits_resident(memory, source, options, reserved_bytes) ||
+           !Scene::can_be_resident(memory, source, options);
 }
 
 int64_t finest_bricks(const VolumeInfo& info)
@@ -142,18 +143,9 @@ void Scene::load(uint64_t reserved_bytes)
     memory_.free_idle();
     const IntensityWindow window = window_for(source_->info().type, statistics_);
     const bool filtered = filters(traits(), options_.sampling);
-    const bool is_paged = pages(memory_, *source_, options_, reserved_bytes);
+    const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window, filtered);
     mask_.emplace(executor_, memory_, is_paged);
-    if (!is_paged) {
-        offsets_ = std::make_shared<OffsetSource>(source_);
-        if (options_.in_slices)
-            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
-                                                       ResidentVolume::InSlices{});
-        else
-            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
-                                                       options_.progress);
-        return;
-    }
+    if (!is_paged) return;
     const PagedVolume::Options paged{
         .filtered = filtered,
         .threads = options_.threads,
@@ -163,6 +155,24 @@ void Scene::load(uint64_t reserved_bytes)
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
     volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
+}
+
+/// False: the driver has less memory than it says, or other programs have it, and bricks can be paged instead.
+bool Scene::load_resident(const IntensityWindow& window, bool filtered)
+{
+    offsets_ = std::make_shared<OffsetSource>(source_);
+    try {
+        if (options_.in_slices)
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+                                                       ResidentVolume::InSlices{});
+        else
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+                                                       options_.progress);
+        return true;
+    } catch (const gpu::MemoryError&) {
+        if (options_.paging == Paging::never) throw;
+        return false;
+    }
 }
 
 /// Keeps `bytes` of device memory free, beside what pictures need, by loading the volume with fewer bricks.
@@ -178,7 +188,7 @@ void Scene::make_room(uint64_t bytes)
     mask_.reset();
     try {
         load(bytes);
-    } catch (const gpu::BudgetError&) {
+    } catch (const gpu::MemoryError&) {
         load(0);  // the scene stays, without what it has no room for
         throw;
     }
@@ -195,10 +205,17 @@ uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
     return std::min(MAX_ATLAS_BYTES, device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS));
 }
 
+/// Some devices have images of 256 texels a side, or allocations of 2 GiB.
+bool Scene::can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
+{
+    return ResidentVolume::is_possible(memory, source.info(), filters(memory.traits(), options.sampling));
+}
+
 bool Scene::pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     if (options.paging != Paging::automatic) return options.paging == Paging::always;
-    return source.levels() > 1 || ResidentVolume::bytes_for(source.info()) > memory.device_budget();
+    return source.levels() > 1 || ResidentVolume::bytes_for(source.info()) > memory.device_budget() ||
+           !can_be_resident(memory, source, options);
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
@@ -215,6 +232,9 @@ void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const O
         const uint64_t atlas = atlas_bytes(memory, source.info(), options.with_occlusion, 0);
         const int levels = planned_levels(source, options.host_bytes);
         PagedVolume::check_room(memory.device().traits(), source.info(), levels, atlas);
+    } else if (!can_be_resident(memory, source, options)) {
+        fail(source.info().name, ": render.paging is never, and an image of device ", memory.traits().name,
+             " cannot hold all of its bricks; expected render.paging automatic");
     } else if (bytes > left) {
         throw gpu::BudgetError(sentence(source.info().name, ": render.paging is never, and its bricks need ",
                                         gpu::mebibytes(bytes), " of device memory, of which ", gpu::mebibytes(left),
@@ -247,8 +267,10 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
 {
+    const std::vector<int64_t> all = mask_->is_stale() ? mask.painted_bricks() : std::vector<int64_t>();
     mask_->update(mask, bricks);
     volume_->note_painted(mask, bricks);
+    if (!all.empty()) volume_->note_painted(mask, all);
     for (const int64_t brick : bricks) {
         VoxelBox voxels = voxels_of({0, position_of(brick, mask.brick_counts())}, info().size);
         occlusion_.changed(voxels);
@@ -275,8 +297,9 @@ void Scene::update_density(const DensityField& field, std::span<const VoxelBox> 
     for (const int64_t brick : bricks) offsets.push_back({field.position_of(brick), field.brick(brick)});
     offsets_->set(offsets);
 
-    volume_->renew(changed);
-    for (const VoxelBox& box : changed) {
+    unshown_density_.insert(unshown_density_.end(), changed.begin(), changed.end());
+    volume_->renew(unshown_density_);
+    for (const VoxelBox& box : std::exchange(unshown_density_, {})) {
         occlusion_.changed(box, gpu::BRICK_APRON);
         note_changed({glm::max(box.lower - RAISED_REACH, Size3(0)), glm::min(box.upper + RAISED_REACH, info().size)},
                      Cause::edit);
@@ -380,12 +403,27 @@ bool Scene::has_occlusion(const Look& look)
     if (occlusion_.exists_for(*volume_)) return true;
     try {
         occlusion_.look(occlusion_look(look), *volume_, *mask_);
+    } catch (const gpu::DeviceLost&) {
+        throw;
     } catch (const Error& error) {
-        occlusion_.clear();
-        occlusion_has_no_room_ = true;
-        messages_.push_back(std::string("ambient occlusion is not drawn: ") + error.what());
+        drop_occlusion(error.what());
     }
     return !occlusion_has_no_room_;
+}
+
+void Scene::drop_occlusion(const std::string& why)
+{
+    occlusion_.clear();
+    occlusion_has_no_room_ = true;
+    messages_.push_back("ambient occlusion is not drawn: " + why);
+}
+
+bool Scene::give_way(const std::string& why)
+{
+    if (!occlusion_.has_memory()) return false;
+    volume_->want_around({});
+    drop_occlusion(why);
+    return true;
 }
 
 void Scene::want_occlusion(const Look& look)

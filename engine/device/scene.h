@@ -49,6 +49,8 @@ public:
     static uint64_t bytes_to_show(const Document& document);
     /// The most that the atlas of paged bricks takes of a budget.
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
+    /// Whether an image of the device could hold all bricks of the source, however much memory is free.
+    static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be paged, even if nothing else were on the device.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be resident and fits beside everything on the device now. Fails where the device
@@ -124,6 +126,9 @@ public:
     /// without it until it is switched off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
+    /// Frees what pictures can do without, and notes a message that says `why`; false: there is nothing. No graph that
+    /// uses the scene may be under construction.
+    bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);
     /// The next slice of ambient occlusion in a graph that must be submitted.
@@ -136,7 +141,9 @@ public:
 
 private:
     void load(uint64_t reserved_bytes);
+    bool load_resident(const IntensityWindow& window, bool filtered);
     void make_room(uint64_t bytes);
+    void drop_occlusion(const std::string& why);
     Occlusion::Look occlusion_look(const Look& look);
     void note_changed(const VoxelBox& voxels, Cause cause);
 
@@ -160,6 +167,7 @@ private:
     std::optional<TraceLook> trace_look_;
     LookTables tables_;
     std::vector<Changed> changed_;
+    std::vector<VoxelBox> unshown_density_;  ///< whose bricks could not be renewed
     std::vector<std::string> messages_;
 };
 

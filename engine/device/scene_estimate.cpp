@@ -25,12 +25,13 @@ std::string size_text(uint64_t bytes)
 }  // namespace
 
 SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
-                             uint64_t host_budget)
+                             uint64_t host_budget, bool can_be_resident)
 {
     SceneEstimate estimate{.device_budget = device_budget, .host_budget = host_budget};
     const uint64_t all = ResidentVolume::bytes_for(source.info()) * (with_occlusion ? 2 : 1);
-    estimate.is_paged = paging == Paging::always ||
-                        (paging == Paging::automatic && (source.levels() > 1 || all > device_budget / 16 * 15));
+    estimate.is_paged =
+        paging == Paging::always ||
+        (paging == Paging::automatic && (!can_be_resident || source.levels() > 1 || all > device_budget / 16 * 15));
     if (!estimate.is_paged) {
         estimate.device_bytes = all;
         estimate.host_bytes = TRANSFER_BYTES;

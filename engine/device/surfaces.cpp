@@ -76,6 +76,8 @@ std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)
     const Resource nodes = graph.import("surface nodes", nodes_.import());
     const Resource list = graph.import("surface list", list_.import());
     SurfaceForest::Written written = forest_.take_written();
+    if (!is_sent_ || !written.nodes.empty() || !written.list.empty())
+        graph.unless_submitted([this] { is_sent_ = false; });
     if (!std::exchange(is_sent_, true))
         return SurfaceList{send_all(graph, "surface nodes", forest_.nodes(), nodes),
                            send_all(graph, "surface list", forest_.list(), list)};

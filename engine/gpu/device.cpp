@@ -17,6 +17,8 @@ const char* name_of(VkResult result)
     switch (result) {
         case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of host memory";
         case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory";
+        case VK_ERROR_MEMORY_MAP_FAILED: return "memory cannot be mapped";
+        case VK_ERROR_TOO_MANY_OBJECTS: return "too many objects";
         case VK_ERROR_INITIALIZATION_FAILED: return "initialization failed";
         case VK_ERROR_DEVICE_LOST: return "device lost";
         case VK_ERROR_SURFACE_LOST_KHR: return "surface lost";
@@ -41,6 +43,16 @@ bool instance_extension_is_present(const char* name, const char* layer)
 {
     const auto extensions = enumerate<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* items) {
         return vkEnumerateInstanceExtensionProperties(layer, count, items);
+    });
+    return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
+        return std::strcmp(extension.extensionName, name) == 0;
+    });
+}
+
+bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
+{
+    const auto extensions = enumerate<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* items) {
+        return vkEnumerateDeviceExtensionProperties(physical, nullptr, count, items);
     });
     return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
         return std::strcmp(extension.extensionName, name) == 0;
@@ -80,7 +92,14 @@ void check(VkResult result, const char* call)
         throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
                                   "): its driver was reset or it was taken away; start again, or choose another device "
                                   "with --device"));
-    fail("Vulkan: ", call, " returned ", int(result), " (", name_of(result), ")");
+    const std::string said = sentence("Vulkan: ", call, " returned ", int(result), " (", name_of(result), ")");
+    switch (result) {
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        case VK_ERROR_MEMORY_MAP_FAILED:
+        case VK_ERROR_TOO_MANY_OBJECTS: throw MemoryError(said);
+        default: throw Error(said);
+    }
 }
 
 Device::Device(const DeviceOptions& options)
@@ -203,9 +222,14 @@ void Device::choose_physical(const std::string& wanted)
              "; found ", names);
     physical_ = best->physical;
     queue_family_ = *compute_family(physical_);
+    read_traits();
+}
 
-    VkPhysicalDeviceMaintenance3Properties maintenance{.sType =
-                                                           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+void Device::read_traits()
+{
+    VkPhysicalDeviceMaintenance4Properties buffers{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
+    VkPhysicalDeviceMaintenance3Properties maintenance{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES, .pNext = &buffers};
     VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
                                             .pNext = &maintenance};
     VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
@@ -216,7 +240,10 @@ void Device::choose_physical(const std::string& wanted)
     traits_.driver = sentence(driver.driverName, " ", driver.driverInfo);
     traits_.is_cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     traits_.limits = properties.properties.limits;
+    traits_.is_integrated = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     traits_.max_allocation_bytes = maintenance.maxMemoryAllocationSize;
+    traits_.max_buffer_bytes = buffers.maxBufferSize;
+    traits_.tells_memory_left = device_extension_is_present(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical_, count, items);
     });
@@ -226,9 +253,33 @@ void Device::choose_physical(const std::string& wanted)
     vkGetPhysicalDeviceFormatProperties(physical_, VK_FORMAT_R16_UNORM, &r16);
     traits_.linear_r16 = r16.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
     traits_.storage_r16 = r16.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-    for (uint32_t i = 0; i < memory_properties_.memoryHeapCount; ++i)
-        if (memory_properties_.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
-            traits_.device_bytes = std::max(traits_.device_bytes, uint64_t(memory_properties_.memoryHeaps[i].size));
+    traits_.max_volume_bytes = traits_.max_allocation_bytes;
+    for (const VkFormat codes : {VK_FORMAT_R16_UNORM, VK_FORMAT_R32_UINT}) {
+        VkImageFormatProperties image;
+        if (vkGetPhysicalDeviceImageFormatProperties(
+                physical_, codes, VK_IMAGE_TYPE_3D, VK_IMAGE_TILING_OPTIMAL,
+                VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, 0,
+                &image) == VK_SUCCESS)
+            traits_.max_volume_bytes = std::min(traits_.max_volume_bytes, uint64_t(image.maxResourceSize));
+    }
+    for (uint32_t i = 0; i < memory_properties_.memoryHeapCount; ++i) {
+        const VkMemoryHeap& heap = memory_properties_.memoryHeaps[i];
+        if (!(heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && !traits_.is_integrated) continue;
+        if (heap.size <= traits_.device_bytes) continue;
+        traits_.device_bytes = heap.size;
+        heap_ = i;
+    }
+}
+
+std::optional<uint64_t> Device::heap_bytes_left() const
+{
+    if (!traits_.tells_memory_left) return std::nullopt;
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
+    VkPhysicalDeviceMemoryProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
+                                                 .pNext = &budget};
+    vkGetPhysicalDeviceMemoryProperties2(physical_, &properties);
+    return budget.heapBudget[heap_] - std::min(budget.heapBudget[heap_], budget.heapUsage[heap_]);
 }
 
 void Device::create_device(bool presents)
@@ -262,13 +313,15 @@ void Device::create_device(bool presents)
                                         .queueFamilyIndex = queue_family_,
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
-    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    std::vector<const char*> extensions;
+    if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    if (traits_.tells_memory_left) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &want,
                                   .queueCreateInfoCount = 1,
                                   .pQueueCreateInfos = &queue,
-                                  .enabledExtensionCount = presents ? 1u : 0u,
-                                  .ppEnabledExtensionNames = &swapchain};
+                                  .enabledExtensionCount = uint32_t(extensions.size()),
+                                  .ppEnabledExtensionNames = extensions.data()};
     SHVR_VK(vkCreateDevice(physical_, &info, nullptr, &device_));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     set_name(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<uint64_t>(queue_), "queue");

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,14 @@ public:
     using Error::Error;
 };
 
-/// Throws `Error`, naming the call and the result, if `result` is a failure; `DeviceLost`, if it is that.
+/// There is not the memory that is needed: the driver has none left, or a budget (memory.h) does not hold it.
+class MemoryError : public Error {
+public:
+    using Error::Error;
+};
+
+/// Throws `Error`, naming the call and the result, if `result` is a failure; `DeviceLost` or `MemoryError`, if it is
+/// that.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
@@ -37,13 +45,18 @@ struct DeviceTraits {
     std::string name;
     std::string driver;              ///< name and version
     bool is_cpu = false;             ///< lavapipe and other software devices
+    bool is_integrated = false;      ///< it shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
-    bool linear_r16 = false;    ///< R16_UNORM can be filtered by the sampler
-    bool storage_r16 = false;   ///< R16_UNORM can be read with imageLoad
-    uint64_t device_bytes = 0;  ///< the largest device-local heap, as reported
+    bool linear_r16 = false;   ///< R16_UNORM can be filtered by the sampler
+    bool storage_r16 = false;  ///< R16_UNORM can be read with imageLoad
+    /// The largest device-local heap, as reported; where the device is integrated, the largest heap.
+    uint64_t device_bytes = 0;
     VkPhysicalDeviceLimits limits{};
-    uint64_t max_allocation_bytes = 0;
+    uint64_t max_allocation_bytes = 0;  ///< of one buffer or image, as its memory is one allocation
+    uint64_t max_buffer_bytes = 0;
+    uint64_t max_volume_bytes = 0;   ///< of a 3-D image of codes; no more than one allocation holds
+    bool tells_memory_left = false;  ///< VK_EXT_memory_budget
 };
 
 /// For Vulkan calls that are made twice, first for the count and then for the items: returns the items.
@@ -72,6 +85,9 @@ public:
     uint32_t queue_family() const { return queue_family_; }
     const DeviceTraits& traits() const { return traits_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
+    /// How much of the heap of `device_bytes` the driver would still give this program, beside all others; null where
+    /// it does not tell.
+    std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.
     void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;
@@ -86,6 +102,7 @@ public:
 private:
     void create_instance(const DeviceOptions& options);
     void choose_physical(const std::string& wanted);
+    void read_traits();
     void create_device(bool presents);
     void destroy() noexcept;
     static VkBool32 on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -99,6 +116,7 @@ private:
     uint32_t queue_family_ = 0;
     DeviceTraits traits_;
     VkPhysicalDeviceMemoryProperties memory_properties_{};
+    uint32_t heap_ = 0;  ///< that of traits_.device_bytes
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;

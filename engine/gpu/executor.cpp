@@ -1,9 +1,12 @@
 #include "engine/gpu/executor.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstring>
 #include <utility>
+
+#include "engine/graph/copy_parts.h"
 
 namespace shvr::gpu {
 
@@ -52,6 +55,15 @@ void record_barrier(VkCommandBuffer commands, const Barrier& barrier)
 uint64_t aligned(uint64_t bytes, uint64_t alignment)
 {
     return (bytes + alignment - 1) / alignment * alignment;
+}
+
+/// To one of two sizes for each power of two: what a brush uploads grows and shrinks by a voxel, and is to find the
+/// buffer that the last one left.
+uint64_t rounded(uint64_t bytes)
+{
+    constexpr uint64_t LEAST = 1024;
+    const uint64_t power = std::bit_ceil(std::max(bytes, LEAST));
+    return bytes <= power / 4 * 3 ? power / 4 * 3 : power;
 }
 
 glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
@@ -130,6 +142,13 @@ struct Submission::Frame {
     void record();
     void record_pass(const Step& step, Prepared& state);
     void record_dispatches(const PassData& pass, Prepared& state);
+    template <class Part, class Copy>
+    void record_parts(const std::string& name, const std::vector<Part>& parts, const Copy& copy);
+    void record_copy(const PassData& pass);
+    void record_copy_to_image(const PassData& pass);
+    void record_read_back(const PassData& pass);
+    void record_fill(const PassData& pass);
+    void note_unknown_states() const;
     void transition_new_images();
     void submit();
     bool done() const;
@@ -209,7 +228,7 @@ void Submission::Frame::write_descriptors(const PassData& data, const Prepared& 
             std::find_if(data.blocks.begin(), data.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
         if (binding != data.bindings.end()) {
             const Memory::Object& bound = object(binding->resource);
-            buffers[i] = {bound.buffer, 0, VK_WHOLE_SIZE};
+            buffers[i] = {bound.buffer, 0, graph.resources()[binding->resource].desc.bytes};
             images[i] = {executor.sampler_, bound.view, VK_IMAGE_LAYOUT_GENERAL};
         } else if (block != data.blocks.end()) {
             std::memcpy(blocks->mapped().data() + block_offset, block->second.data(), block->second.size());
@@ -294,7 +313,9 @@ void Submission::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        if (queries) vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, queries, uint32_t(2 * i));
+        // Once all that was submitted before has ended: its rest would be taken for this pass's time.
+        if (queries)
+            vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
         if (queries)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i + 1));
@@ -307,47 +328,84 @@ void Submission::Frame::record_pass(const Step& step, Prepared& state)
 {
     const PassData& data = pass(step);
     if (data.kind == PassData::Kind::compute) return record_dispatches(data, state);
-
-    const VkCommandBuffer commands = chunks.back();
-    executor.device_.begin_label(commands, data.name);
-    const Memory::Object& first = object(data.bindings[0].resource);
     switch (data.kind) {
         case PassData::Kind::compute: break;
-        case PassData::Kind::fill: vkCmdFillBuffer(commands, first.buffer, 0, VK_WHOLE_SIZE, data.fill_value); break;
-        case PassData::Kind::copy_buffer: {
-            std::vector<VkBufferCopy> regions;
-            for (const BufferRegion& r : data.buffer_regions)
-                regions.push_back({r.source_offset, r.target_offset, r.bytes});
-            vkCmdCopyBuffer(commands, first.buffer, object(data.bindings[1].resource).buffer, uint32_t(regions.size()),
-                            regions.data());
-            break;
-        }
-        case PassData::Kind::copy_to_image: {
-            std::vector<VkBufferImageCopy> regions;
-            for (const ImageRegion& r : data.image_regions)
-                regions.push_back({.bufferOffset = r.buffer_offset,
-                                   .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                   .imageOffset = {int32_t(r.texel.x), int32_t(r.texel.y), int32_t(r.texel.z)},
-                                   .imageExtent = {r.texels.x, r.texels.y, r.texels.z}});
-            vkCmdCopyBufferToImage(commands, first.buffer, object(data.bindings[1].resource).image,
-                                   VK_IMAGE_LAYOUT_GENERAL, uint32_t(regions.size()), regions.data());
-            break;
-        }
-        case PassData::Kind::read_back: {
-            const VkBuffer target = executor.memory_.object(read_backs[data.read_back]->import().id).buffer;
-            if (first.image) {
-                const glm::uvec3 texels = first.desc.texels;
-                const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                               .imageExtent = {texels.x, texels.y, texels.z}};
-                vkCmdCopyImageToBuffer(commands, first.image, VK_IMAGE_LAYOUT_GENERAL, target, 1, &region);
-            } else {
-                const VkBufferCopy region{0, 0, first.desc.bytes};
-                vkCmdCopyBuffer(commands, first.buffer, target, 1, &region);
-            }
-            break;
-        }
+        case PassData::Kind::fill: return record_fill(data);
+        case PassData::Kind::copy_buffer: return record_copy(data);
+        case PassData::Kind::copy_to_image: return record_copy_to_image(data);
+        case PassData::Kind::read_back: return record_read_back(data);
     }
-    executor.device_.end_label(commands);
+}
+
+/// Each part is a submission of its own.
+template <class Part, class Copy>
+void Submission::Frame::record_parts(const std::string& name, const std::vector<Part>& parts, const Copy& copy)
+{
+    for (const Part& part : parts) {
+        if (&part != &parts.front()) end_chunk(), begin_chunk();
+        executor.device_.begin_label(chunks.back(), name);
+        copy(chunks.back(), part);
+        executor.device_.end_label(chunks.back());
+    }
+}
+
+void Submission::Frame::record_fill(const PassData& data)
+{
+    const Memory::Object& buffer = object(data.bindings[0].resource);
+    record_parts(data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
+        const BufferRegion& r = part[0];
+        const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // whose size may be no multiple of 4
+        vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes, data.fill_value);
+    });
+}
+
+void Submission::Frame::record_copy(const PassData& data)
+{
+    const VkBuffer from = object(data.bindings[0].resource).buffer, to = object(data.bindings[1].resource).buffer;
+    record_parts(data.name, copy_parts(data.buffer_regions), [&](VkCommandBuffer commands, const auto& part) {
+        std::vector<VkBufferCopy> regions;
+        for (const BufferRegion& r : part) regions.push_back({r.source_offset, r.target_offset, r.bytes});
+        vkCmdCopyBuffer(commands, from, to, uint32_t(regions.size()), regions.data());
+    });
+}
+
+void Submission::Frame::record_copy_to_image(const PassData& data)
+{
+    const VkBuffer from = object(data.bindings[0].resource).buffer;
+    const Memory::Object& to = object(data.bindings[1].resource);
+    const auto parts = copy_parts(data.image_regions, to.desc.format);
+    record_parts(data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
+        std::vector<VkBufferImageCopy> regions;
+        for (const ImageRegion& r : part)
+            regions.push_back({.bufferOffset = r.buffer_offset,
+                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                               .imageOffset = {int32_t(r.texel.x), int32_t(r.texel.y), int32_t(r.texel.z)},
+                               .imageExtent = {r.texels.x, r.texels.y, r.texels.z}});
+        vkCmdCopyBufferToImage(commands, from, to.image, VK_IMAGE_LAYOUT_GENERAL, uint32_t(regions.size()),
+                               regions.data());
+    });
+}
+
+void Submission::Frame::record_read_back(const PassData& data)
+{
+    const Memory::Object& from = object(data.bindings[0].resource);
+    const VkBuffer to = executor.memory_.object(read_backs[data.read_back]->import().id).buffer;
+    if (!from.image)
+        return record_parts(data.name, copy_parts({{0, 0, from.desc.bytes}}),
+                            [&](VkCommandBuffer commands, const auto& part) {
+                                const VkBufferCopy region{part[0].source_offset, part[0].target_offset, part[0].bytes};
+                                vkCmdCopyBuffer(commands, from.buffer, to, 1, &region);
+                            });
+    const auto parts = copy_parts({{0, glm::uvec3(0), from.desc.texels}}, from.desc.format);
+    record_parts(data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
+        for (const ImageRegion& r : part) {
+            const VkBufferImageCopy region{.bufferOffset = r.buffer_offset,
+                                           .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                           .imageOffset = {0, 0, int32_t(r.texel.z)},
+                                           .imageExtent = {r.texels.x, r.texels.y, r.texels.z}};
+            vkCmdCopyImageToBuffer(commands, from.image, VK_IMAGE_LAYOUT_GENERAL, to, 1, &region);
+        }
+    });
 }
 
 void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
@@ -377,7 +435,11 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                     vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
                                        uint32_t(data.push.size()), data.push.data());
                 const glm::uvec3 count = glm::min(tile, groups - at);
-                vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
+                // Validation of hazards does not look at dispatches with a base, so the first tile stands for all.
+                if (at == glm::uvec3(0))
+                    vkCmdDispatch(commands, count.x, count.y, count.z);
+                else
+                    vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
                 executor.device_.end_label(commands);
             }
 }
@@ -399,6 +461,7 @@ void Submission::Frame::submit()
         if (result < 0) {
             vkDeviceWaitIdle(device);
             vkDestroyFence(device, created, nullptr);
+            if (i > 0) note_unknown_states();
             check(result, "vkQueueSubmit2");
         }
         if (i == 0)
@@ -408,6 +471,13 @@ void Submission::Frame::submit()
     // Barriers are global, so they also affect imports that no kept pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
+}
+
+/// A part of the frame ran, and nobody knows which.
+void Submission::Frame::note_unknown_states() const
+{
+    for (uint32_t i = 0; i < compiled.used.size(); ++i)
+        if (compiled.used[i]) object(i).state = UNKNOWN_STATE;
 }
 
 bool Submission::Frame::done() const
@@ -429,9 +499,13 @@ FrameResult Submission::Frame::collect()
     wait();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
     FrameResult result{.wall_ms = wall.count()};
-    for (Storage* storage : read_backs) {
-        const std::span<const std::byte> bytes = storage->mapped();
-        result.read_backs.emplace_back(bytes.begin(), bytes.end());
+    result.read_backs.resize(read_backs.size());
+    for (const Step& step : compiled.steps) {
+        const PassData& data = pass(step);
+        if (data.kind != PassData::Kind::read_back) continue;
+        const uint64_t size = graph.resources()[data.bindings[0].resource].desc.bytes;
+        const std::span<const std::byte> bytes = read_backs[data.read_back]->mapped().first(size);
+        result.read_backs[data.read_back].assign(bytes.begin(), bytes.end());
     }
     const DeviceTraits& traits = executor.device_.traits();
     std::vector<uint64_t> ticks(compiled.steps.size() * 2);
@@ -443,6 +517,7 @@ FrameResult Submission::Frame::collect()
     const auto milliseconds = [&](uint64_t from, uint64_t to) {
         return double((to - from) & mask) * double(traits.nanoseconds_per_tick) * 1e-6;
     };
+    if (queries && !ticks.empty()) result.gpu_ms = milliseconds(ticks.front(), ticks.back());
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const PassData& data = pass(compiled.steps[i]);
         PassReport report{.name = data.name, .kernel = data.kernel, .dispatches = prepared[i].dispatches};
@@ -492,8 +567,10 @@ Executor::~Executor()
     vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
-Storage& Executor::take_transient(const std::string& name, const ResourceDesc& desc, Placement placement)
+Storage& Executor::take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement)
 {
+    ResourceDesc desc = wanted;
+    if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
         transient->taken = true;
@@ -525,6 +602,7 @@ Submission Executor::submit(FrameGraph graph, const Options& options)
         frame->record();
         frame->submit();
     }
+    frame->graph.note_submitted();
     return Submission(std::move(frame));
 }
 

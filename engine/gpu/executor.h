@@ -6,8 +6,9 @@
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
 // Frames run on the device in submission order, and each knows what earlier frames left in flight. Long passes are
-// split by their tile into several queue submissions, so that none takes long. Callers that must let other work run in
-// between make several small frames and keep few of them in flight. One thread at a time.
+// split by their tile into several queue submissions, and copies by regions and bytes, so that none takes long. Callers
+// that must let other work run in between make several small frames and keep few of them in flight. One thread at a
+// time.
 
 #include <memory>
 #include <string>
@@ -36,6 +37,7 @@ struct PassReport {
 struct FrameResult {
     std::vector<std::vector<std::byte>> read_backs;  ///< by the index FrameGraph::read_back gave
     std::vector<PassReport> passes;                  ///< in order of execution
+    double gpu_ms = 0.0;                             ///< from the first pass's start to the last one's end; 0: untimed
     double wall_ms = 0.0;                            ///< from first submission to completion, on the host's clock
 };
 
@@ -76,7 +78,8 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave.
+    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave. Where it
+    /// fails nothing is kept of the frame, and the graph's undoing is left to run (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
     /// Submits and waits.
@@ -95,7 +98,8 @@ private:
         bool taken = false;
         Storage storage;
     };
-    Storage& take_transient(const std::string& name, const ResourceDesc& desc, Placement placement);
+    /// Where the host reads or writes, the storage may be larger than that.
+    Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement);
 
     Device& device_;
     Memory& memory_;

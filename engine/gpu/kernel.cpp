@@ -41,6 +41,9 @@ void check_bindings(const PassData& pass, const KernelInterface& interface,
         if (is_buffer != (desc.kind == ResourceDesc::Kind::buffer))
             fail("pass '", pass.name, "' binds '", binding.name, "' to '", resources[binding.resource].name, "', ",
                  is_buffer ? "an image; the kernel expects a buffer" : "a buffer; the kernel expects an image");
+        if (!is_buffer && slot->is_flat != desc.is_flat)
+            fail("pass '", pass.name, "' binds '", binding.name, "' to '", resources[binding.resource].name, "', a ",
+                 desc.is_flat ? 2 : 3, "-D image; the kernel expects a ", slot->is_flat ? 2 : 3, "-D one");
         if (binding.writes && !slot->writable)
             fail("pass '", pass.name, "' writes '", binding.name, "', which kernel '", pass.kernel, "' only reads");
         if (!binding.writes && slot->writable)

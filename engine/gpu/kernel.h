@@ -22,6 +22,7 @@ struct KernelInterface {
         VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         bool readable = true;
         bool writable = true;
+        bool is_flat = false;  ///< images: 2-D
     };
     struct Constant {
         std::string name;

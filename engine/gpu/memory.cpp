@@ -8,30 +8,64 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Memory types in order of preference; every implementation has the last one.
-std::optional<uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
-                                    std::initializer_list<VkMemoryPropertyFlags> wishes)
+VkImageUsageFlags usage_of(Format format)
 {
-    for (VkMemoryPropertyFlags wish : wishes)
-        for (uint32_t i = 0; i < properties.memoryTypeCount; ++i)
-            if ((allowed >> i & 1) && (properties.memoryTypes[i].propertyFlags & wish) == wish) return i;
-    return std::nullopt;
+    const bool is_filtered = format == Format::r16_unorm;
+    return VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+           (is_filtered ? VkImageUsageFlags(VK_IMAGE_USAGE_SAMPLED_BIT) : 0u);
 }
 
-std::optional<uint32_t> memory_type(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
-                                    Placement placement)
+VkImageType type_of(const ResourceDesc& desc)
 {
-    const VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    switch (placement) {
-        case Placement::device: return memory_type(properties, allowed, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
-        case Placement::upload: return memory_type(properties, allowed, {mapped});
-        case Placement::download:
-            return memory_type(properties, allowed, {mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, mapped});
+    return desc.is_flat ? VK_IMAGE_TYPE_2D : VK_IMAGE_TYPE_3D;
+}
+
+std::string sides(uint32_t x, uint32_t y, uint32_t z)
+{
+    return sentence(x, " x ", y, " x ", z);
+}
+
+/// Whether there is no memory, whatever some drivers call it.
+bool is_shortage(VkResult result)
+{
+    switch (result) {
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+        case VK_ERROR_TOO_MANY_OBJECTS:
+        case VK_ERROR_UNKNOWN: return true;
+        default: return false;
     }
-    return std::nullopt;
 }
 
 }  // namespace
+
+/// Every implementation has a type with the last wish.
+std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
+                                   Placement placement)
+{
+    const VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    VkMemoryPropertyFlags wish = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = 0;
+    if (placement == Placement::upload) wish = must = mapped;
+    if (placement == Placement::download) wish = mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, must = mapped;
+    // Types of these properties are for special uses, and not all may be used at all.
+    const VkMemoryPropertyFlags never = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
+                                        VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD |
+                                        VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
+    std::vector<uint32_t> types;
+    for (const VkMemoryPropertyFlags flags : {wish, must})
+        for (uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
+            const VkMemoryPropertyFlags has = properties.memoryTypes[i].propertyFlags;
+            if (!(allowed >> i & 1) || (has & flags) != flags || (has & never)) continue;
+            if (std::ranges::find(types, i) == types.end()) types.push_back(i);
+        }
+    return types;
+}
+
+uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left)
+{
+    const uint64_t share = traits.is_integrated ? traits.device_bytes / 2 : traits.device_bytes / 4 * 3;
+    return left ? std::min(share, *left) : share;
+}
 
 std::string mebibytes(uint64_t bytes)
 {
@@ -96,7 +130,8 @@ std::span<std::byte> Storage::mapped() const
 
 Memory::Memory(Device& device, const Budget& budget) : device_(device), budget_(budget)
 {
-    if (budget_.device_bytes == 0) budget_.device_bytes = device.traits().device_bytes / 4 * 3;
+    if (budget_.device_bytes == 0)
+        budget_.device_bytes = automatic_device_bytes(device.traits(), device.heap_bytes_left());
     if (budget_.host_bytes == 0) budget_.host_bytes = uint64_t(1) << 30;
 }
 
@@ -104,6 +139,7 @@ Memory::~Memory()
 {
     SHVR_CHECK(objects_.empty(), objects_.size(), " storages outlive their memory, one is '",
                objects_.begin()->second.name, "'");
+    for (const auto& block : blocks_) vkFreeMemory(device_.handle(), block->memory, nullptr);
 }
 
 Memory::Object& Memory::object(uint32_t id)
@@ -118,53 +154,44 @@ void Memory::free_idle()
     if (free_idle_) free_idle_();
 }
 
+std::optional<std::string> Memory::why_not(const std::string& name, const ResourceDesc& desc, Placement placement) const
+{
+    const DeviceTraits& traits = device_.traits();
+    const auto too_large = [&](const char* kind, uint64_t allowed) {
+        return sentence(kind, " '", name, "' takes ", mebibytes(desc.bytes), "; the device allows ",
+                        mebibytes(allowed));
+    };
+    if (desc.kind == ResourceDesc::Kind::buffer) {
+        uint64_t allowed = std::min(traits.max_allocation_bytes, traits.max_buffer_bytes);
+        if (placement == Placement::device) allowed = std::min(allowed, uint64_t(traits.limits.maxStorageBufferRange));
+        return desc.bytes > allowed ? std::optional(too_large("buffer", allowed)) : std::nullopt;
+    }
+    const glm::uvec3& texels = desc.texels;
+    VkImageFormatProperties image{};
+    const VkResult result =
+        vkGetPhysicalDeviceImageFormatProperties(device_.physical(), vulkan_format(desc.format), type_of(desc),
+                                                 VK_IMAGE_TILING_OPTIMAL, usage_of(desc.format), 0, &image);
+    if (result == VK_ERROR_FORMAT_NOT_SUPPORTED)
+        return sentence("image '", name, "' is of the format ", name_of(desc.format),
+                        ", which the device does not have for ", desc.is_flat ? 2 : 3, "-D images");
+    check(result, "vkGetPhysicalDeviceImageFormatProperties");
+    const VkExtent3D& most = image.maxExtent;
+    if (texels.x > most.width || texels.y > most.height || texels.z > most.depth)
+        return sentence("image '", name, "' is ", sides(texels.x, texels.y, texels.z), " texels; the device allows ",
+                        sides(most.width, most.height, most.depth));
+    const uint64_t allowed = std::min(uint64_t(image.maxResourceSize), traits.max_allocation_bytes);
+    return desc.bytes > allowed ? std::optional(too_large("image", allowed)) : std::nullopt;
+}
+
 Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placement placement, const char* purpose)
 {
-    const VkPhysicalDeviceLimits& limits = device_.traits().limits;
+    if (const std::optional<std::string> why = why_not(name, desc, placement)) throw Error(*why);
     Object object{.name = name, .desc = desc, .placement = placement};
     try {
-        VkMemoryRequirements needs{};
-        if (desc.kind == ResourceDesc::Kind::buffer) {
-            const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                          .size = desc.bytes,
-                                          .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-            SHVR_VK(vkCreateBuffer(device_.handle(), &info, nullptr, &object.buffer));
-            device_.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(object.buffer), name);
-            vkGetBufferMemoryRequirements(device_.handle(), object.buffer, &needs);
-        } else {
-            if (glm::any(glm::greaterThan(desc.texels, glm::uvec3(limits.maxImageDimension3D))))
-                fail("image '", name, "' is ", desc.texels.x, " x ", desc.texels.y, " x ", desc.texels.z,
-                     " texels; the device allows ", limits.maxImageDimension3D, " a side");
-            const bool filtered = desc.format == Format::r16_unorm;
-            const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                                         .imageType = VK_IMAGE_TYPE_3D,
-                                         .format = vulkan_format(desc.format),
-                                         .extent = {desc.texels.x, desc.texels.y, desc.texels.z},
-                                         .mipLevels = 1,
-                                         .arrayLayers = 1,
-                                         .samples = VK_SAMPLE_COUNT_1_BIT,
-                                         .tiling = VK_IMAGE_TILING_OPTIMAL,
-                                         .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                                  VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                                                  (filtered ? VkImageUsageFlags(VK_IMAGE_USAGE_SAMPLED_BIT) : 0u)};
-            SHVR_VK(vkCreateImage(device_.handle(), &info, nullptr, &object.image));
-            device_.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(object.image), name);
-            vkGetImageMemoryRequirements(device_.handle(), object.image, &needs);
-        }
-        allocate(object, needs, purpose);
-        if (object.image) {
-            SHVR_VK(vkBindImageMemory(device_.handle(), object.image, object.memory, 0));
-            const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                             .image = object.image,
-                                             .viewType = VK_IMAGE_VIEW_TYPE_3D,
-                                             .format = vulkan_format(desc.format),
-                                             .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-            SHVR_VK(vkCreateImageView(device_.handle(), &info, nullptr, &object.view));
-            device_.set_name(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(object.view), name);
-        } else {
-            SHVR_VK(vkBindBufferMemory(device_.handle(), object.buffer, object.memory, 0));
-        }
+        if (desc.kind == ResourceDesc::Kind::buffer)
+            create_buffer(object, purpose);
+        else
+            create_image(object, purpose);
     } catch (...) {
         destroy(object);
         throw;
@@ -172,6 +199,47 @@ Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placem
     const uint32_t id = next_id_++;
     objects_.emplace(id, std::move(object));
     return {*this, id};
+}
+
+void Memory::create_buffer(Object& object, const char* purpose)
+{
+    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                  .size = object.desc.bytes,
+                                  .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+    SHVR_VK(vkCreateBuffer(device_.handle(), &info, nullptr, &object.buffer));
+    device_.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(object.buffer), object.name);
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(device_.handle(), object.buffer, &needs);
+    allocate(object, needs, purpose);
+    SHVR_VK(vkBindBufferMemory(device_.handle(), object.buffer, object.memory, object.offset));
+}
+
+void Memory::create_image(Object& object, const char* purpose)
+{
+    const ResourceDesc& desc = object.desc;
+    const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                 .imageType = type_of(desc),
+                                 .format = vulkan_format(desc.format),
+                                 .extent = {desc.texels.x, desc.texels.y, desc.texels.z},
+                                 .mipLevels = 1,
+                                 .arrayLayers = 1,
+                                 .samples = VK_SAMPLE_COUNT_1_BIT,
+                                 .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                 .usage = usage_of(desc.format)};
+    SHVR_VK(vkCreateImage(device_.handle(), &info, nullptr, &object.image));
+    device_.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(object.image), object.name);
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device_.handle(), object.image, &needs);
+    allocate(object, needs, purpose);
+    SHVR_VK(vkBindImageMemory(device_.handle(), object.image, object.memory, object.offset));
+    const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                     .image = object.image,
+                                     .viewType = desc.is_flat ? VK_IMAGE_VIEW_TYPE_2D : VK_IMAGE_VIEW_TYPE_3D,
+                                     .format = vulkan_format(desc.format),
+                                     .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    SHVR_VK(vkCreateImageView(device_.handle(), &view, nullptr, &object.view));
+    device_.set_name(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(object.view), object.name);
 }
 
 void Memory::refuse(bool on_device, uint64_t bytes, const char* purpose) const
@@ -198,23 +266,96 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     const auto fits = [&] { return needs.size <= budget && used <= budget - needs.size; };
     if (!fits()) free_idle();
     if (!fits()) refuse(on_device, needs.size, purpose);
-    const auto type = memory_type(device_.memory_properties(), needs.memoryTypeBits, object.placement);
-    if (!type) fail("device ", device_.traits().name, " has no memory type for '", object.name, "'");
-    const VkMemoryAllocateInfo info{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = *type};
-    const VkResult result = vkAllocateMemory(device_.handle(), &info, nullptr, &object.memory);
-    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        fail("the device is out of memory: ", purpose, " needs ", mebibytes(needs.size), "; SHVR uses ",
-             mebibytes(used), "; a smaller --budget-device may help");
-    check(result, "vkAllocateMemory");
+    if (!allocate_in_block(object, needs)) {
+        const auto from_driver = [&] {
+            uint32_t type = 0;
+            return allocate_from_driver(needs.size, needs.memoryTypeBits, object.placement, &object.memory, &type);
+        };
+        VkResult result = from_driver();
+        if (is_shortage(result)) {
+            free_idle();
+            result = from_driver();
+        }
+        if (is_shortage(result))
+            throw MemoryError(sentence("the device is out of memory: ", purpose, " needs ", mebibytes(needs.size),
+                                       "; SHVR uses ", mebibytes(device_bytes_ + host_bytes_), " of it in ",
+                                       allocations_, " pieces; expected less beside it, or a smaller --budget-device"));
+        check(result, "vkAllocateMemory");
+    }
     object.bytes = needs.size;
     used += needs.size;
     peak = std::max(peak, used);
+    if (object.block) return;
     device_.set_name(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(object.memory), object.name);
-    if (on_device) return;
+    if (!on_device) object.mapped = map(object.memory);
+}
+
+/// Where the device is integrated, all its heaps are the same memory, and another type will do.
+VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, Placement placement, VkDeviceMemory* memory,
+                                      uint32_t* type)
+{
+    std::vector<uint32_t> types = memory_types(device_.memory_properties(), allowed, placement);
+    if (types.empty()) fail("device ", device_.traits().name, " has no memory for what the host reads or writes");
+    if (placement == Placement::device && !device_.traits().is_integrated) types.resize(1);
+    VkResult result = VK_SUCCESS;
+    for (const uint32_t candidate : types) {
+        const VkMemoryAllocateInfo info{
+            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = bytes, .memoryTypeIndex = candidate};
+        result = vkAllocateMemory(device_.handle(), &info, nullptr, memory);
+        if (result == VK_SUCCESS) {
+            ++allocations_;
+            ++allocations_made_;
+            *type = candidate;
+            return result;
+        }
+        *memory = VK_NULL_HANDLE;
+        if (!is_shortage(result)) return result;
+    }
+    return result;
+}
+
+/// Small buffers alone: images beside buffers have to keep a distance that devices choose. False: it gets its own.
+bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
+{
+    if (object.image || needs.size > MemoryBlock::MAX_SHARE) return false;
+    const auto take = [&](MemoryBlock& block) {
+        if (block.placement != object.placement || !(needs.memoryTypeBits >> block.type & 1)) return false;
+        const std::optional<uint64_t> offset = block.take(needs.size, needs.alignment);
+        if (!offset) return false;
+        object.memory = block.memory;
+        object.offset = *offset;
+        object.block = &block;
+        if (block.mapped) object.mapped = block.mapped + *offset;
+        return true;
+    };
+    for (const auto& block : blocks_)
+        if (take(*block)) return true;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    uint32_t type = 0;
+    if (allocate_from_driver(MemoryBlock::BYTES, needs.memoryTypeBits, object.placement, &memory, &type) != VK_SUCCESS)
+        return false;
+    try {
+        std::byte* const mapped = object.placement == Placement::device ? nullptr : map(memory);
+        blocks_.push_back(std::make_unique<MemoryBlock>(memory, object.placement, type, mapped));
+    } catch (...) {
+        free_to_driver(memory);
+        throw;
+    }
+    device_.set_name(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), "small buffers");
+    return take(*blocks_.back());
+}
+
+std::byte* Memory::map(VkDeviceMemory memory) const
+{
     void* mapped = nullptr;
-    SHVR_VK(vkMapMemory(device_.handle(), object.memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-    object.mapped = static_cast<std::byte*>(mapped);
+    SHVR_VK(vkMapMemory(device_.handle(), memory, 0, VK_WHOLE_SIZE, 0, &mapped));
+    return static_cast<std::byte*>(mapped);
+}
+
+void Memory::free_to_driver(VkDeviceMemory memory) noexcept
+{
+    vkFreeMemory(device_.handle(), memory, nullptr);
+    --allocations_;
 }
 
 void Memory::destroy(Object& object) noexcept
@@ -222,10 +363,18 @@ void Memory::destroy(Object& object) noexcept
     if (object.view) vkDestroyImageView(device_.handle(), object.view, nullptr);
     if (object.image) vkDestroyImage(device_.handle(), object.image, nullptr);
     if (object.buffer) vkDestroyBuffer(device_.handle(), object.buffer, nullptr);
-    if (object.memory) {
-        vkFreeMemory(device_.handle(), object.memory, nullptr);
-        (object.placement == Placement::device ? device_bytes_ : host_bytes_) -= object.bytes;
-    }
+    if (!object.memory) return;
+    (object.placement == Placement::device ? device_bytes_ : host_bytes_) -= object.bytes;
+    if (!object.block) return free_to_driver(object.memory);
+    object.block->give_back(object.offset);
+    if (!object.block->is_empty()) return;
+    // One empty block of a kind is kept: the next small buffer would bring it back.
+    const auto is_spare = [&](const auto& other) {
+        return other.get() != object.block && other->is_empty() && other->placement == object.block->placement;
+    };
+    if (std::ranges::none_of(blocks_, is_spare)) return;
+    free_to_driver(object.block->memory);
+    std::erase_if(blocks_, [&](const auto& block) { return block.get() == object.block; });
 }
 
 void Memory::wait_idle() const noexcept

@@ -1,37 +1,44 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, idle
-// memory is freed.
+// (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, or where
+// the driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), of which drivers
+// allow few.
 //
 // One thread at a time.
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/gpu/memory_block.h"
 #include "engine/graph/frame_graph.h"
 
 namespace shvr::gpu {
 
-enum class Placement {
-    device,    ///< where the device is fastest; counts against the device budget
-    upload,    ///< mapped, written by the host; host budget
-    download,  ///< mapped and cached, read by the host; host budget
-};
-
 struct Budget {
-    uint64_t device_bytes = 0;  ///< 0: three quarters of the device's memory
+    uint64_t device_bytes = 0;  ///< 0: automatic_device_bytes()
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
 
+/// Three quarters of the device's memory, or half of it where it is the host's as well; never more than the driver says
+/// is left beside other programs.
+uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left);
+
 /// A budget does not hold what is needed; the message names the budget and a remedy.
-class BudgetError : public Error {
+class BudgetError : public MemoryError {
 public:
-    using Error::Error;
+    using MemoryError::MemoryError;
 };
+
+/// Memory types for a placement, the best one first; of those that a resource allows.
+std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
+                                   Placement placement);
 
 /// "1.5 MiB", rounded up to a tenth.
 std::string mebibytes(uint64_t bytes);
@@ -70,7 +77,12 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// Throws BudgetError if the budget cannot hold it. `purpose`: what it is for, in the user's words.
+    /// Why the device cannot hold such a resource however much memory is free, in words; null: it can.
+    std::optional<std::string> why_not(const std::string& name, const ResourceDesc& desc,
+                                       Placement placement = Placement::device) const;
+    bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
+    /// Throws BudgetError if the budget cannot hold it, MemoryError if the driver cannot, and Error where the device
+    /// never could (`why_not`). `purpose`: what it is for, in the user's words.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
     /// Set a function that frees memory which is allocated and idle; it is called before a budget refuses.
@@ -86,7 +98,9 @@ public:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        uint64_t bytes = 0;  ///< as counted by the device
+        uint64_t offset = 0;           ///< in `memory`
+        MemoryBlock* block = nullptr;  ///< that `memory` belongs to; null: to this object alone
+        uint64_t bytes = 0;            ///< as counted by the device
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
         ResourceState state;  ///< what the last submitted frame left in flight
@@ -101,19 +115,32 @@ public:
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes_; }
     uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes_; }
     std::map<std::string, uint64_t> bytes_by_name() const;
+    /// Allocations of the driver's memory that there are, and that were made so far.
+    uint64_t allocations() const { return allocations_; }
+    uint64_t allocations_made() const { return allocations_made_; }
     Device& device() { return device_; }
+    const DeviceTraits& traits() const { return device_.traits(); }
 
 private:
     friend class Storage;
     void wait_idle() const noexcept;
     void release(uint32_t id) noexcept;
+    void create_buffer(Object& object, const char* purpose);
+    void create_image(Object& object, const char* purpose);
     void allocate(Object& object, const VkMemoryRequirements& needs, const char* purpose);
+    VkResult allocate_from_driver(uint64_t bytes, uint32_t allowed, Placement placement, VkDeviceMemory* memory,
+                                  uint32_t* type);
+    bool allocate_in_block(Object& object, const VkMemoryRequirements& needs);
+    std::byte* map(VkDeviceMemory memory) const;
+    void free_to_driver(VkDeviceMemory memory) noexcept;
     [[noreturn]] void refuse(bool on_device, uint64_t bytes, const char* purpose) const;
     void destroy(Object& object) noexcept;
 
     Device& device_;
     Budget budget_;
     std::unordered_map<uint32_t, Object> objects_;
+    std::vector<std::unique_ptr<MemoryBlock>> blocks_;
+    uint64_t allocations_ = 0, allocations_made_ = 0;
     uint32_t next_id_ = 1;
     uint64_t device_bytes_ = 0, host_bytes_ = 0;
     uint64_t peak_device_bytes_ = 0, peak_host_bytes_ = 0;

@@ -88,6 +88,9 @@ struct Reflector {
             }
             slot.writable = !read_only && type != VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
             slot.readable = !write_only;
+            if (type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)
+                slot.is_flat = spvc_type_get_image_dimension(
+                                   spvc_compiler_get_type_handle(compiler, resource.type_id)) == SpvDim2D;
             interface.slots.push_back(slot);
         }
     }

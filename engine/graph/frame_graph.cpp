@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace shvr {
 
@@ -70,6 +71,13 @@ ResourceDesc image_desc(Format format, const glm::uvec3& texels)
     return {.kind = ResourceDesc::Kind::image, .format = format, .texels = texels, .bytes = bytes};
 }
 
+ResourceDesc picture_desc(Format format, const glm::uvec2& texels)
+{
+    ResourceDesc desc = image_desc(format, glm::uvec3(texels, 1));
+    desc.is_flat = true;
+    return desc;
+}
+
 std::string names_of(Stages stages)
 {
     std::string names;
@@ -119,6 +127,28 @@ void Pass::dispatch(const glm::uvec3& threads, const glm::uvec3& tile)
 {
     graph_.passes_[index_].threads = threads;
     graph_.passes_[index_].tile = tile;
+}
+
+struct FrameGraph::Undo {
+    std::vector<std::function<void()>> steps;
+    Undo() = default;
+    Undo(const Undo&) = delete;
+    Undo& operator=(const Undo&) = delete;
+    ~Undo()
+    {
+        for (size_t i = steps.size(); i-- > 0;) steps[i]();
+    }
+};
+
+void FrameGraph::unless_submitted(std::function<void()> undo)
+{
+    if (!undo_) undo_ = std::make_shared<Undo>();
+    undo_->steps.push_back(std::move(undo));
+}
+
+void FrameGraph::note_submitted() const
+{
+    if (undo_) undo_->steps.clear();
 }
 
 Resource FrameGraph::import(const std::string& name, const Import& import)

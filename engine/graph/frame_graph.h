@@ -15,6 +15,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <source_location>
 #include <span>
@@ -37,12 +39,15 @@ struct ResourceDesc {
     enum class Kind : uint8_t { buffer, image };
     Kind kind = Kind::buffer;
     Format format = Format::r32_uint;  ///< images
-    glm::uvec3 texels{1};              ///< images; z == 1 is still a 3-D image
+    bool is_flat = false;              ///< images: 2-D, whose sides may be longer than those of a 3-D one; z is 1
+    glm::uvec3 texels{1};              ///< images; z == 1 may still be a 3-D image
     uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
     bool operator==(const ResourceDesc&) const = default;
 };
 ResourceDesc buffer_desc(uint64_t bytes);
 ResourceDesc image_desc(Format format, const glm::uvec3& texels);
+/// A 2-D image: a picture, or a table in rows.
+ResourceDesc picture_desc(Format format, const glm::uvec2& texels);
 
 /// A version of a resource. Cheap to copy; valid only in the graph that made it.
 struct Resource {
@@ -205,6 +210,13 @@ public:
 
     CompiledGraph compile() const;
 
+    /// Whoever counts on what this graph will do, as soon as it is declared, says here how to forget that: called, the
+    /// last one first, if the graph and its copies go without having been submitted. `undo` must not fail, and what it
+    /// refers to must outlive the graph.
+    void unless_submitted(std::function<void()> undo);
+    /// It will run: for executors.
+    void note_submitted() const;
+
     struct ResourceData {
         std::string name;
         ResourceDesc desc;
@@ -229,6 +241,8 @@ private:
     std::vector<PassData> passes_;
     std::vector<ResourceData> resources_;
     uint32_t read_backs_ = 0;
+    struct Undo;
+    std::shared_ptr<Undo> undo_;  ///< shared by copies
 };
 
 }  // namespace shvr

@@ -96,7 +96,8 @@ void View::mark_due(const PixelBox& pixels, bool is_urgent)
 void View::reset_tiles()
 {
     const glm::uvec2 counts = tile_counts();
-    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = base_.shown.share < 1.0});
+    const bool is_due = base_.shown.share < 1.0 && unsharp_sight_ != shown_sight_;
+    tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = is_due});
 }
 
 void View::reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels)
@@ -104,7 +105,30 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
     if (image && glm::all(glm::greaterThanEqual(glm::uvec2(image.desc().texels), pixels))) return;
     const glm::uvec2 before = image ? glm::uvec2(image.desc().texels) : glm::uvec2(0);
     image.reset();
-    image = renderer_.memory().create(name, image_desc(format, glm::uvec3(glm::max(before, pixels), 1)));
+    try {
+        image = renderer_.memory().create(name, picture_desc(format, glm::max(before, pixels)), gpu::Placement::device,
+                                          "the picture on the screen");
+    } catch (...) {
+        forget();
+        throw;
+    }
+}
+
+/// Nothing is shown or under way any more, and no memory is held: the next picture begins anew.
+void View::forget()
+{
+    for (const Running& running : running_) running.submission.wait();
+    running_.clear();
+    in_flight_ms_ = 0.0;
+    base_ = {};
+    patch_ = {};
+    work_.reset();
+    sharp_.reset();
+    tiles_.clear();
+    changed_during_base_.clear();
+    shown_sight_.reset();
+    finer_sight_.reset();
+    ++revision_;
 }
 
 // ---- What comes next ------------------------------------------------------------------------------------------------
@@ -123,13 +147,24 @@ void View::advance()
 
 void View::submit_due()
 {
-    while (in_flight_ms_ < options_.in_flight_ms && submit_next(false)) {
+    while (in_flight_ms_ < options_.in_flight_ms && submit_or_give_way(false)) {
     }
 }
 
 void View::submit_sketches()
 {
-    while (in_flight_ms_ < options_.in_flight_ms && submit_next(true)) {
+    while (in_flight_ms_ < options_.in_flight_ms && submit_or_give_way(true)) {
+    }
+}
+
+/// Where memory is short, the light gives way to the picture.
+bool View::submit_or_give_way(bool sketches_alone)
+{
+    try {
+        return submit_next(sketches_alone);
+    } catch (const gpu::MemoryError& error) {
+        if (!scene().give_way(error.what())) throw;
+        return false;  // the next turn tries again
     }
 }
 
@@ -274,6 +309,35 @@ bool View::may_draw(const Tile& tile) const
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
+/// Whether there is memory for sharp tiles. If not, that is said once for each view.
+bool View::has_room_for_tiles()
+{
+    if (unsharp_sight_ == shown_sight_) return false;
+    const glm::uvec2 pixels = shown_sight_->pixels;
+    if (sharp_ && glm::all(glm::greaterThanEqual(glm::uvec2(sharp_.desc().texels), pixels))) return true;
+    for (Tile& tile : tiles_) tile.is_shown = false;
+    ++revision_;
+    sharp_.reset();
+    try {
+        sharp_ = renderer_.memory().create("sharp picture", picture_desc(Format::rgba8_unorm, pixels),
+                                           gpu::Placement::device, "the sharp picture on the screen");
+        return true;
+    } catch (const gpu::MemoryError& error) {
+        if (scene().give_way(error.what())) return has_room_for_tiles();
+        unsharp_sight_ = shown_sight_;
+        scene().note_message(sentence("pictures stay coarse: ", error.what()));
+        return false;
+    }
+}
+
+/// What changed is sketched anew.
+bool View::submit_sketch_instead()
+{
+    start(base_, shown_sight_, std::nullopt, options_.motion_ms);
+    for (Tile& tile : tiles_) tile = {};
+    return submit_sketch(base_, Purpose::base);
+}
+
 bool View::submit_tiles()
 {
     const glm::uvec2 counts = tile_counts(), pixels = shown_sight_->pixels;
@@ -291,6 +355,7 @@ bool View::submit_tiles()
             if (!nearest || square < best) nearest = glm::uvec2(x, y), best = square;
         }
     if (!nearest) return false;
+    if (!has_room_for_tiles()) return submit_sketch_instead();
     if (submit_preparation(*shown_sight_)) return true;
 
     // As many neighbours in its row as fit in one step.
@@ -301,7 +366,6 @@ bool View::submit_tiles()
     while (affords_more() && end < counts.x && is_due(end)) ++end;
     while (affords_more() && begin > 0 && is_due(begin - 1)) --begin;
 
-    reserve(sharp_, "sharp picture", Format::rgba8_unorm, pixels);
     Running running{.purpose = Purpose::tiles, .sight = shown_sight_};
     for (uint32_t x = begin; x < end; ++x) running.tiles.push_back(x + counts.x * nearest->y);
     PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
@@ -362,12 +426,10 @@ void View::account(const gpu::FrameResult& result, uint64_t pixels)
     const auto now = std::chrono::steady_clock::now();
     const double host_ms = std::chrono::duration<double, std::milli>(now - busy_since_).count();
     busy_since_ = now;
-    double gpu_ms = 0.0;
-    for (const gpu::PassReport& pass : result.passes) {
-        gpu_ms += pass.gpu_ms;
-        if (!host_tells_time()) note(pass.name, pass.gpu_ms);
-    }
-    const double ms = host_tells_time() ? host_ms : gpu_ms;
+    if (!host_tells_time())
+        for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms);
+    // Passes may overlap, so their sum is more than they take.
+    const double ms = host_tells_time() ? host_ms : result.gpu_ms;
     // If only the host can measure time, all of it is assigned to the pass that takes most.
     if (host_tells_time() && !result.passes.empty()) note(pixels > 0 ? "raycast" : result.passes.back().name, ms);
     if (pixels == 0) return;

@@ -149,6 +149,10 @@ private:
     };
 
     bool submit_next(bool sketches_alone);
+    bool submit_or_give_way(bool sketches_alone);
+    void forget();
+    bool has_room_for_tiles();
+    bool submit_sketch_instead();
     bool may_draw(const Tile& tile) const;
     bool submit_preparation(const Sight& sight);
     bool submit_refinement();
@@ -185,7 +189,11 @@ private:
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * ms_per_pixel_; }
     /// Timestamps of lavapipe are wrong beside a window's render passes, so the host's clock is used there.
-    bool host_tells_time() const { return renderer_.device().traits().is_cpu; }
+    bool host_tells_time() const
+    {
+        const gpu::DeviceTraits& traits = renderer_.device().traits();
+        return traits.is_cpu || traits.timestamp_bits == 0;
+    }
     glm::uvec2 tile_counts() const;
 
     Renderer& renderer_;
@@ -200,7 +208,8 @@ private:
     gpu::Storage sharp_;           ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
-    SightRef finer_sight_;  ///< the last one of which a finer sketch was begun
+    SightRef finer_sight_;    ///< the last one of which a finer sketch was begun
+    SightRef unsharp_sight_;  ///< the last one for whose sharp tiles there was no memory
     bool occlusion_is_asked_for_ = false;
     bool occlusion_was_renewed_ = false;  ///< and the pixels under the probe do not show it yet
     std::deque<Running> running_;

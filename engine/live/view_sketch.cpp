@@ -77,6 +77,7 @@ void View::drop_finer_sketch()
 {
     base_.job.reset();
     changed_during_base_.clear();  // their tiles are marked
+    if (unsharp_sight_ == shown_sight_) mark_due({glm::uvec2(0), shown_sight_->pixels}, false);
 }
 
 /// Submits the next graph of a sketch; false if all are in flight.
@@ -107,12 +108,12 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     FrameGraph graph;
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, running);
-    sketch.next_row += rows;
-    if (job.share == 1.0) {  // otherwise rows are enlarged together with their neighbours, once all are drawn
-        encode_rows(graph, light, sketch, sketch.next_encoded, sketch.next_row);
-        sketch.next_encoded = sketch.next_row;
-    }
+    const uint32_t end = sketch.next_row + rows;
+    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged beside their neighbours, once all are drawn
+    if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
     submit(std::move(graph), std::move(running));
+    sketch.next_row = end;
+    if (encodes) sketch.next_encoded = end;
     ++sketch.running;
 }
 

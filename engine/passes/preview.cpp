@@ -8,7 +8,7 @@ namespace shvr {
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(pixels, 1));
+    const ResourceDesc desc = picture_desc(Format::rgba32_float, pixels);
     Pass pass = graph.compute("preview", {{"SURFACED", input.surfaces.has_value()}});
     pass.block("params_block", std::span(&input.params, 1));
     pass.block("preview_params", std::span(&input.preview, 1));

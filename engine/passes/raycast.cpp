@@ -87,7 +87,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         pass.constant("KEPT", input.waiting ? gpu::KEPT_ALL : rays ? gpu::KEPT_SHELL : gpu::KEPT_NOTHING);
         const bool is_first = input.params.first_step == 0;
         if (!rays) {
-            static_cast<void>(pass.write("rays", graph.create("rays", image_desc(Format::rgba32_float, {1, 1, 1}))));
+            static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
         } else {
             rays = is_first ? pass.write("rays", *rays) : pass.modify("rays", *rays);
         }
@@ -109,8 +109,8 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     std::optional<Resource> rays;
     if (input.waiting) rays = input.waiting->state;
     if (!input.waiting && is_shelled && blocks > 1)
-        rays = graph.create(
-            "rays", image_desc(Format::rgba32_float, glm::uvec3(input.params.pixel_end - input.params.pixel_begin, 1)));
+        rays =
+            graph.create("rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
     const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
     RaycastInput block = input;
     for (uint64_t i = before; i < before + blocks; ++i) {

@@ -23,7 +23,7 @@ uint32_t shininess_squarings(float shininess);
 
 /// Rays that wait where a brick is not on the device, and go on in a later graph (shaders/raycast.h, KEPT_ALL).
 struct RaysInWaiting {
-    Resource state;           ///< rgba32f image of the drawn pixels, two layers; updated by raycast()
+    Resource state;           ///< rgba32f picture of the drawn pixels, twice as high; updated by raycast()
     bool have_begun = false;  ///< `state` holds what an earlier graph left
 };
 
@@ -45,7 +45,7 @@ struct RaycastInput {
     RaysInWaiting* waiting = nullptr;  ///< of paged bricks; null: rays wait for nothing
 };
 
-/// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float image: linear light, premultiplied,
+/// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float picture: linear light, premultiplied,
 /// over the background. Returns its new version, and updates `volume.pages->reached`. Long rays take a pass for each
 /// block of their steps; of a ray that is longer than the largest number of blocks reaches, and of one that the device
 /// stops, COUNTER_CUT_SHORT tells. Rays in waiting mark only the bricks that they wait for; the picture is what it

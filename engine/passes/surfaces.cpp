@@ -38,7 +38,7 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const uint32_t nodes = input.listed ? input.scene.node_count : 0;
-    Resource target = graph.create("surfaces", image_desc(Format::rgba32_float, glm::uvec3(pixels, 1)));
+    Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
     SurfacesInput block = input;
     for (uint32_t first = 0; first == 0 || first < nodes; first += NODES_OF_BLOCK) {
         block.scene.first_node = first;

@@ -121,9 +121,9 @@ Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, 
     const Resource opaque = draw_contents(graph, scene, prepared, input, camera, part, target, rays, 2 * eye);
     RaycastInput bare = input;
     bare.params.target = glm::uvec2(0);
-    const Resource without = draw_contents(
-        graph, scene, prepared, bare, camera, without_ball(part),
-        graph.create("without the probe", image_desc(Format::rgba32_float, glm::uvec3(size, 1))), rays, 2 * eye + 1);
+    const Resource without =
+        draw_contents(graph, scene, prepared, bare, camera, without_ball(part),
+                      graph.create("without the probe", picture_desc(Format::rgba32_float, size)), rays, 2 * eye + 1);
     return mix(graph, without, opaque,
                {.target = input.params.target, .size = size, .share = float(1.0 - part.probe->ball_opacity)});
 }
@@ -146,7 +146,7 @@ Resource draw_eye(FrameGraph& graph, Scene& scene, const Look& look, Prepared& p
 WaitingRays::WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int pictures)
 {
     for (int picture = 0; picture < pictures; ++picture)
-        pictures_.push_back(memory.create("waiting rays", image_desc(Format::rgba32_float, glm::uvec3(pixels, 2)),
+        pictures_.push_back(memory.create("waiting rays", picture_desc(Format::rgba32_float, {pixels.x, 2 * pixels.y}),
                                           gpu::Placement::device, "the picture"));
 }
 
@@ -172,7 +172,7 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
         drawn.target = draw_eye(graph, scene, look, prepared, prepared.input, shot.camera, part, target, waiting, 0);
     } else {
         const glm::uvec2 size = part.end - part.begin;
-        const ResourceDesc desc = image_desc(Format::rgba32_float, glm::uvec3(size, 1));
+        const ResourceDesc desc = picture_desc(Format::rgba32_float, size);
         RaycastInput left = prepared.input, right = prepared.input;
         left.params.target = right.params.target = glm::uvec2(0);
         set_rays(right.params, look, *shot.right_eye, scene.info(), part.pixels);
@@ -203,7 +203,7 @@ Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& sho
     input.pick = true;
     input.shaded = false;
     return raycast(graph, prepared.volume, input,
-                   graph.create("seen voxel", image_desc(Format::rgba32_float, {1, 1, gpu::PICK_LAYERS})));
+                   graph.create("seen voxel", picture_desc(Format::rgba32_float, {1, gpu::PICK_ROWS})));
 }
 
 uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes)

@@ -63,7 +63,7 @@ struct Drawn {
     Resource target;
     DeviceVolume::Feedback feedback;
 };
-/// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float image: linear light,
+/// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float picture: linear light,
 /// premultiplied, over the background. The graph must be submitted before any graph made later. `waiting`: rays go on
 /// where they waited for bricks in the graph before; it is the same part, and the volume lets rays wait.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,

@@ -224,11 +224,27 @@ void PictureJob::step()
     SHVR_CHECK(!is_done());
     const PicturePart part = parts_.back();
     parts_.pop_back();
-    draw_completely(part);
+    try {
+        draw_completely(part);
+    } catch (const gpu::MemoryError& error) {
+        if (!has_given_way(part, error.what())) throw;
+    }
     if (!parts_.empty()) return;
     ++pane_;
     begin_parts();
     if (parts_.empty()) end_band();
+}
+
+/// Where memory is short: without ambient light, then in smaller parts.
+bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
+{
+    if (scene().give_way(why)) {
+        parts_.push_back(part);
+        return true;
+    }
+    if (area_of(part) <= MAX_WAITING_PIXELS) return false;
+    for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
+    return true;
 }
 
 /// Draws a part with the bricks on the device; stores its pixels, and reports the visited bricks to the volume.
@@ -236,7 +252,7 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
     const glm::uvec2 size = part.end - part.begin, origin = pane().box.begin + part.begin;
-    const Resource color = graph.create("color", image_desc(Format::rgba32_float, glm::uvec3(size, 1)));
+    const Resource color = graph.create("color", picture_desc(Format::rgba32_float, size));
     const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work, waiting);
     const uint32_t pixels = graph.read_back(drawn.target);
     gpu::FrameResult result =

@@ -43,6 +43,7 @@ private:
     uint32_t part_side();
     std::vector<gpu::PassReport> draw(const PicturePart& part, WaitingRays* waiting = nullptr);
     void draw_completely(const PicturePart& part);
+    bool has_given_way(const PicturePart& part, const std::string& why);
     void draw_waiting(const PicturePart& part);
     void note_limited();
     void finish(const PicturePart& part, std::vector<gpu::PassReport> passes);

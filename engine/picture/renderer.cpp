@@ -92,7 +92,9 @@ SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSetting
 {
     const std::lock_guard lock(device_mutex_);
     if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
-    return estimate_scene(source, settings.paging, with_occlusion, on_device_->memory.device_budget(), host_budget_);
+    const gpu::Memory& memory = on_device_->memory;
+    return estimate_scene(source, settings.paging, with_occlusion, memory.device_budget(), host_budget_,
+                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)));
 }
 
 Scene& Renderer::scene() const

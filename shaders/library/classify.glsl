@@ -1,9 +1,9 @@
 // What the transfer function's table says of a step, or of a part of one. Needs `table`, and PREINTEGRATED. The layout
 // of the table is in raycast.h.
 
-ivec3 table_texel(uint index)
+ivec2 table_texel(uint index)
 {
-    return ivec3(index % TABLE_WIDTH, index / TABLE_WIDTH, 0);
+    return ivec2(index % TABLE_WIDTH, index / TABLE_WIDTH);
 }
 
 // 1 - exp(-depth). The plain form loses small opacities to cancellation; the series does not, and converges fast.
@@ -44,9 +44,8 @@ vec4 classify_change(const RaycastParams params, float front, float back, float 
     const vec2 at = clamp((ends - params.table_lower) * params.table_scale, 0.0, last);
     const ivec2 entry = ivec2(min(at, last - 1.0));
     const vec2 share = at - vec2(entry);
-    const vec4 near = mix(imageLoad(table, ivec3(entry, 0)), imageLoad(table, ivec3(entry + ivec2(1, 0), 0)), share.x);
-    const vec4 far =
-        mix(imageLoad(table, ivec3(entry + ivec2(0, 1), 0)), imageLoad(table, ivec3(entry + 1, 0)), share.x);
+    const vec4 near = mix(imageLoad(table, entry), imageLoad(table, entry + ivec2(1, 0)), share.x);
+    const vec4 far = mix(imageLoad(table, entry + ivec2(0, 1)), imageLoad(table, entry + 1), share.x);
     const vec4 sum = mix(near, far, share.y);
     const float whole = abs(back - front), inside = abs(ends.y - ends.x);
     const bool is_inside = front >= params.table_lower && front <= params.table_upper;

@@ -7,8 +7,13 @@
 // of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
 // through the loop, since lanes that leave early keep no other.
 
-// Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored.
-const float SHELL_HAIR = 1e-3;
+// Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored. Far
+// along a ray two ulps at least, so that every search goes on.
+float hair_at(float s)
+{
+    const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
+    return max(HAIR, s * TWO_ULPS);
+}
 
 // Cells are always searched whole, also where a block of the ray's steps ends in one, so that crossings do not depend
 // on how rays are divided.
@@ -104,8 +109,8 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
     while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits) {
-        const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + SHELL_HAIR));
-        const float to = min(max(cell.exit, shell.from + 2.0 * SHELL_HAIR), shell.end);
+        const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + hair_at(shell.from)));
+        const float to = min(max(cell.exit, shell.from + 2.0 * hair_at(shell.from)), shell.end);
         const float extent = to - shell.from;
         bool is_inside = false;
         float found = NO_SHELL;
@@ -132,7 +137,7 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
         const float at = shell.from + found * extent;
         shell.next = is_found ? at : NO_SHELL;
         shell.is_inside = is_found ? !shell.is_inside : shell.is_inside;
-        shell.from = cell.is_missing ? shell.from : is_found ? at + SHELL_HAIR : to;
+        shell.from = cell.is_missing ? shell.from : is_found ? at + hair_at(at) : to;
         shell.known = shell.from;
         shell.waits = cell.is_missing;
     }
@@ -173,7 +178,7 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     shell.is_inside = is_inside;
     shell.waits = false;
     if (shell.from < 0.0 && start < shell.limit) {
-        const Cell cell = cell_at(params, ray, position_at(params, ray, start + SHELL_HAIR));
+        const Cell cell = cell_at(params, ray, position_at(params, ray, start + hair_at(start)));
         shell.is_inside = cell.is_there && above_threshold(params, ray, cell, start) >= 0.0;
         shell.waits = cell.is_missing;
         shell.from = cell.is_missing ? -1.0 : start;

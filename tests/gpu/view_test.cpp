@@ -51,7 +51,7 @@ public:
         FrameGraph graph;
         const Resource light =
             shvr::draw(graph, renderer().scene(), session.look(), camera, {.pixels = size, .end = size, .probe = probe},
-                       graph.create("light", image_desc(Format::rgba32_float, glm::uvec3(size, 1))))
+                       graph.create("light", picture_desc(Format::rgba32_float, size)))
                 .target;
         gpu::EncodeParams params{};
         params.size = size;
@@ -59,8 +59,7 @@ public:
         params.step = glm::vec2(1.0f);
         params.last = size - 1u;
         params.behind = glm::vec3(0.05f);
-        graph.read_back(encode(graph, light,
-                               graph.create("display", image_desc(Format::rgba8_unorm, glm::uvec3(size, 1))), params));
+        graph.read_back(encode(graph, light, graph.create("display", picture_desc(Format::rgba8_unorm, size)), params));
         const std::vector<std::byte> bytes = renderer().executor().run(std::move(graph)).read_backs[0];
         ScreenPixels texels(bytes.size() / 4);
         std::memcpy(texels.data(), bytes.data(), bytes.size());

@@ -10,7 +10,8 @@
 // SHVR_FAULTS_NOW names a file: when it appears, the faults that it lists are added, counted from then on, and it is
 // removed. It must appear whole, by renaming.
 //
-// SHVR_FAULTS_LOG names a file for the faults that fired, and at the end how often each entry point was called.
+// SHVR_FAULTS_LOG names a file for the faults that fired, and at the end how often each entry point was called, and
+// "leaked CALL N" for what was made by it and never destroyed.
 //
 // Sits between the loader and whatever comes next (vk_layer.h, interface version 2). Any thread.
 
@@ -25,10 +26,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include <vulkan/vk_layer.h>
-#include <vulkan/vulkan.h>
+#include "chain.h"
 
 namespace {
+
+using layers::link_in;
+using layers::table_of;
 
 // Entry points that return a VkResult and that the program or Dear ImGui calls.
 #define SHVR_DEVICE_CALLS(X)                                                                                           \
@@ -72,6 +75,23 @@ namespace {
     X(vkGetPhysicalDeviceSurfaceSupportKHR)                                                                            \
     X(vkGetPhysicalDeviceSurfaceCapabilitiesKHR)                                                                       \
     X(vkGetPhysicalDeviceSurfaceFormatsKHR)
+
+// What destroys what those made.
+#define SHVR_ENDS(X)                                                                                                   \
+    X(vkFreeMemory, VkDeviceMemory, vkAllocateMemory)                                                                  \
+    X(vkDestroyBuffer, VkBuffer, vkCreateBuffer)                                                                       \
+    X(vkDestroyImage, VkImage, vkCreateImage)                                                                          \
+    X(vkDestroyImageView, VkImageView, vkCreateImageView)                                                              \
+    X(vkDestroySampler, VkSampler, vkCreateSampler)                                                                    \
+    X(vkDestroyShaderModule, VkShaderModule, vkCreateShaderModule)                                                     \
+    X(vkDestroyDescriptorSetLayout, VkDescriptorSetLayout, vkCreateDescriptorSetLayout)                                \
+    X(vkDestroyPipelineLayout, VkPipelineLayout, vkCreatePipelineLayout)                                               \
+    X(vkDestroyPipeline, VkPipeline, vkCreateComputePipelines)                                                         \
+    X(vkDestroyDescriptorPool, VkDescriptorPool, vkCreateDescriptorPool)                                               \
+    X(vkDestroyCommandPool, VkCommandPool, vkCreateCommandPool)                                                        \
+    X(vkDestroyQueryPool, VkQueryPool, vkCreateQueryPool)                                                              \
+    X(vkDestroyFence, VkFence, vkCreateFence)                                                                          \
+    X(vkDestroySemaphore, VkSemaphore, vkCreateSemaphore)
 
 enum Call : size_t {
 #define SHVR_NUMBER(name) CALL_##name,
@@ -118,17 +138,20 @@ struct State {
         PFN_vkGetInstanceProcAddr next = nullptr;
         VkInstance handle = VK_NULL_HANDLE;
         PFN_vkVoidFunction calls[CALLS]{};  ///< from DEVICE_CALLS on
+        PFN_vkDestroyInstance destroy = nullptr;
     };
     struct Device {
         PFN_vkGetDeviceProcAddr next = nullptr;
         VkDevice handle = VK_NULL_HANDLE;
         bool is_lost = false;
         PFN_vkVoidFunction calls[DEVICE_CALLS]{};
+        PFN_vkVoidFunction ends[DEVICE_CALLS]{};  ///< of what the call makes
     };
-    std::unordered_map<void*, Instance> instances;  ///< by dispatch table, which physical devices share
-    std::unordered_map<void*, Device> devices;      ///< likewise, for queues and command buffers
+    std::vector<Instance> instances;            ///< the last one made is meant: tests make one after another
+    std::unordered_map<void*, Device> devices;  ///< likewise, for queues and command buffers
     std::vector<Fault> faults;
     uint64_t counts[CALLS]{};
+    int64_t alive[CALLS]{};  ///< made by that call, and not destroyed
 };
 State& state()
 {
@@ -166,12 +189,6 @@ std::vector<Fault> faults_of(const std::string& text)
         faults.push_back(fault);
     }
     return faults;
-}
-
-template <class Handle>
-void* table_of(Handle handle)
-{
-    return *reinterpret_cast<void**>(handle);
 }
 
 void look_for_faults(State& known)
@@ -230,7 +247,25 @@ VKAPI_ATTR VkResult VKAPI_CALL device_call(First first, Rest... rest)
     }
     if (fault < 0) return fault;
     const VkResult result = reinterpret_cast<VkResult(VKAPI_PTR*)(First, Rest...)>(next)(first, rest...);
-    return result == VK_SUCCESS ? fault : result;
+    if (result != VK_SUCCESS) return result;
+    const std::lock_guard lock(known.mutex);
+    // Dear ImGui's pipeline, too.
+    ++known.alive[CALL == CALL_vkCreateGraphicsPipelines ? size_t{CALL_vkCreateComputePipelines} : CALL];
+    return fault;
+}
+
+template <class Handle, size_t MADE_BY>
+VKAPI_ATTR void VKAPI_CALL end_call(VkDevice device, Handle handle, const VkAllocationCallbacks* allocator)
+{
+    State& known = state();
+    PFN_vkVoidFunction next = nullptr;
+    {
+        const std::lock_guard lock(known.mutex);
+        State::Device& owner = known.devices[table_of(device)];
+        next = owner.ends[MADE_BY];
+        if (handle) --known.alive[MADE_BY];
+    }
+    reinterpret_cast<void(VKAPI_PTR*)(VkDevice, Handle, const VkAllocationCallbacks*)>(next)(device, handle, allocator);
 }
 
 template <size_t CALL, class First, class... Rest>
@@ -241,7 +276,7 @@ VKAPI_ATTR VkResult VKAPI_CALL instance_call(First first, Rest... rest)
     VkResult fault = VK_SUCCESS;
     {
         const std::lock_guard lock(known.mutex);
-        next = known.instances[table_of(first)].calls[CALL];
+        next = known.instances.back().calls[CALL];
         fault = fault_for(CALL);
     }
     if (fault < 0) return fault;
@@ -265,21 +300,14 @@ PFN_vkVoidFunction hook_named(const char* name)
     SHVR_DEVICE_CALLS(SHVR_HOOK)
     SHVR_INSTANCE_CALLS(SHVR_HOOK)
 #undef SHVR_HOOK
+#define SHVR_END(call, handle, made_by)                                                                                \
+    if (std::strcmp(name, #call) == 0) return reinterpret_cast<PFN_vkVoidFunction>(&end_call<handle, CALL_##made_by>);
+    SHVR_ENDS(SHVR_END)
+#undef SHVR_END
     return nullptr;
 }
 
 // ---- What makes it a layer ------------------------------------------------------------------------------------------
-
-/// The loader's record of who is next, which each layer advances.
-template <class Record>
-Record* link_in(const void* chain, VkStructureType type)
-{
-    for (const auto* at = static_cast<const VkBaseInStructure*>(chain); at; at = at->pNext) {
-        auto* const record = reinterpret_cast<Record*>(const_cast<VkBaseInStructure*>(at));
-        if (at->sType == type && record->function == VK_LAYER_LINK_INFO) return record;
-    }
-    return nullptr;
-}
 
 VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                                VkInstance* instance)
@@ -293,9 +321,11 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
     if (result != VK_SUCCESS) return result;
     State& known = state();
     const std::lock_guard lock(known.mutex);
-    State::Instance& made = known.instances[table_of(*instance)];
+    State::Instance& made = known.instances.emplace_back();
     made = {.next = next, .handle = *instance};
+    // Now: asked later, the loader gives the last layer the first one's calls.
     for (size_t call = DEVICE_CALLS; call < CALLS; ++call) made.calls[call] = next(*instance, NAMES[call]);
+    made.destroy = reinterpret_cast<PFN_vkDestroyInstance>(next(*instance, "vkDestroyInstance"));
     // A program that makes its device anew makes an instance anew: what has fired stays so.
     static const bool is_first = [&] {
         const char* const text = std::getenv("SHVR_FAULTS");
@@ -315,8 +345,13 @@ VKAPI_ATTR void VKAPI_CALL destroy_instance(VkInstance instance, const VkAllocat
         const std::lock_guard lock(known.mutex);
         for (size_t call = 0; call < CALLS; ++call)
             if (known.counts[call] > 0) write_log(std::string(NAMES[call]) + ' ' + std::to_string(known.counts[call]));
-        const auto found = known.instances.find(table_of(instance));
-        destroy = reinterpret_cast<PFN_vkDestroyInstance>(found->second.next(instance, "vkDestroyInstance"));
+#define SHVR_LEAK(call, handle, made_by)                                                                               \
+    if (known.alive[CALL_##made_by] != 0)                                                                              \
+        write_log("leaked " #made_by " " + std::to_string(known.alive[CALL_##made_by]));
+        SHVR_ENDS(SHVR_LEAK)
+#undef SHVR_LEAK
+        const auto found = std::ranges::find(known.instances, instance, &State::Instance::handle);
+        destroy = found->destroy;
         known.instances.erase(found);
     }
     destroy(instance, allocator);
@@ -334,7 +369,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     VkInstance instance = VK_NULL_HANDLE;
     {
         const std::lock_guard lock(known.mutex);
-        instance = known.instances[table_of(physical)].handle;
+        instance = known.instances.back().handle;
     }
     const auto create = reinterpret_cast<PFN_vkCreateDevice>(next_of_instance(instance, "vkCreateDevice"));
     const VkResult result = create(physical, info, allocator, device);
@@ -343,6 +378,9 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     State::Device& made = known.devices[table_of(*device)];
     made = {.next = next, .handle = *device};
     for (size_t call = 0; call < DEVICE_CALLS; ++call) made.calls[call] = next(*device, NAMES[call]);
+#define SHVR_NEXT_END(call, handle, made_by) made.ends[CALL_##made_by] = next(*device, #call);
+    SHVR_ENDS(SHVR_NEXT_END)
+#undef SHVR_NEXT_END
     return result;
 }
 
@@ -390,8 +428,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_call(VkInstance instance, 
     {
         State& known = state();
         const std::lock_guard lock(known.mutex);
-        const auto found = known.instances.find(table_of(instance));
-        if (found != known.instances.end()) next = found->second.next;
+        const auto found = std::ranges::find(known.instances, instance, &State::Instance::handle);
+        if (found != known.instances.end()) next = found->next;
     }
     const PFN_vkVoidFunction there = next ? next(instance, name) : nullptr;
     const PFN_vkVoidFunction hooked = hook_named(name);
@@ -400,7 +438,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_call(VkInstance instance, 
 
 }  // namespace
 
-extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface)
+extern "C" VKAPI_ATTR VkResult VKAPI_CALL faults_negotiate(VkNegotiateLayerInterface* interface)
 {
     interface->loaderLayerInterfaceVersion = 2;
     interface->pfnGetInstanceProcAddr = get_instance_call;

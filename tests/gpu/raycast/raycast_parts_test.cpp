@@ -26,7 +26,7 @@ TEST_CASE_FIXTURE(OnDevice, "a picture drawn in parts has the bits of one drawn 
     for (const auto& [begin, end] : parts) {
         FrameGraph graph;
         const glm::uvec2 extent = end - begin;
-        const Resource target = graph.create("part", image_desc(Format::rgba32_float, glm::uvec3(extent, 1)));
+        const Resource target = graph.create("part", picture_desc(Format::rgba32_float, extent));
         graph.read_back(shvr::draw(graph, renderer().scene(), session.look(), camera,
                                    {.pixels = size, .begin = begin, .end = end, .probe = probe}, target)
                             .target);

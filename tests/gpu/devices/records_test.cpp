@@ -1,0 +1,128 @@
+// The engine on devices with other limits (tests/layers/records.h): views wider than 3-D images, and automatic budgets.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/image_metrics.h"
+#include "engine/live/view.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+/// A device of the record; it must not be asked for what it does not have.
+class On {
+public:
+    explicit On(const char* record)
+        : log_(std::filesystem::temp_directory_path() / sentence("shvr-limits-", getpid(), "-", record))
+    {
+        setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_limits", 1);
+        setenv("SHVR_LIMITS", record, 1);
+        setenv("SHVR_LIMITS_LOG", log_.c_str(), 1);
+        renderer_.emplace(Renderer::Options{.device = {.device = "", .validation = true}, .threads = 1});
+    }
+    On(const On&) = delete;
+    ~On()
+    {
+        for (const std::string& message : renderer_->device().take_validation_messages()) FAIL_CHECK(message);
+        renderer_.reset();
+        unsetenv("VK_INSTANCE_LAYERS");
+        std::ifstream log(log_);
+        for (std::string line; std::getline(log, line);) FAIL_CHECK(line);
+        std::filesystem::remove(log_);
+    }
+    Renderer* operator->() { return &*renderer_; }
+    Renderer& operator*() { return *renderer_; }
+
+private:
+    std::filesystem::path log_;
+    std::optional<Renderer> renderer_;
+};
+
+constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
+constexpr uint64_t MIB = uint64_t{1} << 20;
+
+}  // namespace
+
+TEST_CASE("a view wider than a 3-D image of the device can be comes to rest on the picture of render")
+{
+    for (const char* record : {"amd", "intel", "minimum"}) {
+        CAPTURE(std::string(record));
+        On device(record);
+        Session session = plain_session(busy_points(0.02), {2300, 24});
+        const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "sphere", .size = {30, 30, 30}});
+        device->load(source, BYTES, session.render);
+        const Camera camera = camera_looking("front", source->info());
+        View view(*device, {});
+        view.look(session.look(), session.interaction, Shot(camera), session.render.size);
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 10'000'000);
+            view.advance();
+        }
+        const Image8 rendered = to_image8(device->render(session, camera).image);
+        CHECK(compare_pixels(view.read_back(), rendered).max_abs <= 1.0);
+    }
+}
+
+TEST_CASE("the automatic budget is what the device can spare")
+{
+    const std::pair<const char*, uint64_t> expected[] = {
+        {"nvidia", 9 * 1024 * MIB},                // three quarters of its 12 GiB
+        {"amd", 6 * 1024 * MIB},                   // of its 8 GiB, not of the 256 MiB that the host sees
+        {"apu", uint64_t{7} * 1024 * MIB / 2},     // half of what it shares with the host, not of its own 8 MiB
+        {"intel", uint64_t{12} * 1024 * MIB / 2},  // likewise
+        {"minimum", 192 * MIB / 4 * 3}};
+    for (const auto& [record, bytes] : expected) {
+        CAPTURE(std::string(record));
+        On device(record);
+        CHECK(device->memory().device_budget() == bytes);
+    }
+    CHECK(gpu::automatic_device_bytes({.device_bytes = 400 * MIB}, 100 * MIB) == 100 * MIB);
+    CHECK(gpu::automatic_device_bytes({.device_bytes = 400 * MIB}, std::nullopt) == 300 * MIB);
+}
+
+TEST_CASE("an integrated device takes memory of another heap where its own is full")
+{
+    On device("apu");
+    std::vector<gpu::Storage> kept;
+    for (int i = 0; i < 3; ++i) kept.push_back(device->memory().create("large", buffer_desc(6 * MIB)));
+    CHECK(device->memory().device_bytes() >= 18 * MIB);
+}
+
+TEST_CASE("small buffers share allocations, of which a device may allow few")
+{
+    On device("minimum");
+    std::vector<gpu::Storage> kept;
+    const uint64_t before = device->memory().allocations();
+    for (int i = 0; i < 500; ++i) kept.push_back(device->memory().create("small", buffer_desc(1000 + 16 * i)));
+    CHECK(device->memory().allocations() - before <= 5);
+    const uint64_t made = device->memory().allocations_made();
+    for (int i = 0; i < 500; i += 2) kept[size_t(i)].reset();
+    for (int i = 0; i < 500; i += 2)
+        kept[size_t(i)] = device->memory().create("small", buffer_desc(1000 + 16 * i), gpu::Placement::device);
+    CHECK(device->memory().allocations_made() == made);
+    kept.clear();
+    CHECK(device->memory().allocations() - before <= 1);  // one is kept for the next small buffer
+}
+
+TEST_CASE("what is larger than the device allows is refused in words, and can be asked before")
+{
+    On device("minimum");
+    gpu::Memory& memory = device->memory();
+    CHECK(memory.can_create(image_desc(Format::r8_uint, {256, 256, 256})));
+    CHECK_FALSE(memory.can_create(image_desc(Format::r8_uint, {257, 1, 1})));
+    CHECK_FALSE(memory.can_create(image_desc(Format::rgba32_float, {256, 256, 256})));
+    CHECK(memory.can_create(picture_desc(Format::rgba8_unorm, {4096, 16})));
+    CHECK_FALSE(memory.can_create(picture_desc(Format::rgba8_unorm, {4097, 16})));
+    CHECK_FALSE(memory.can_create(buffer_desc(64 * MIB + 1)));
+    CHECK(*memory.why_not("sketch", picture_desc(Format::rgba8_unorm, {4370, 360})) ==
+          "image 'sketch' is 4370 x 360 x 1 texels; the device allows 4096 x 4096 x 1");
+    CHECK(*memory.why_not("all", buffer_desc(65 * MIB)) == "buffer 'all' takes 65 MiB; the device allows 64 MiB");
+}
