@@ -17,6 +17,8 @@ namespace shvr {
 inline constexpr uint32_t PAINT_BUTTON = 1u << 0;
 inline constexpr uint32_t MOVE_BUTTON = 1u << 1;  ///< moves the volume
 
+inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from its origin along an axis
+
 struct DeviceState {
     uint64_t time_ns = 0;         ///< time of the position, by the device's own steady clock: only differences count
     uint32_t sequence = 0;        ///< of this state, counting up; a gap means lost states
@@ -29,7 +31,7 @@ struct DeviceState {
 };
 
 struct DeviceCaps {
-    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< the workspace
+    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< where its forces are right
     glm::dvec3 usable_upper_m{0.08, 0.06, 0.035};
     double peak_force_n = 3.3;
     double continuous_force_n = 0.88;
@@ -37,6 +39,7 @@ struct DeviceCaps {
     double latency_s = 0.002;
     bool senses_rotation = false;
     bool outputs_force = false;
+    bool tells_force_sequence = false;  ///< its states tell which force is in effect; otherwise `latency_s` must do
 };
 
 enum class ReadResult : uint8_t {

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/finite.h"
+
 namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// Fades treat a longer pause of the servo as one of this length.
 constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
+/// Interval at which the thesis's damping, which has none, is what `damping` says.
+constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
 {
@@ -28,21 +32,41 @@ void disengage(ForceMemory& memory)
 {
     memory.has_begun = false;
     memory.engagement = 0.0;
+    memory.energy = {};
+}
+
+/// A person switched assistance on again: a fault is forgotten. Numbers of forces go on, and motors are as warm as they
+/// were.
+void clear_fault(uint32_t reset, ForceMemory& memory)
+{
+    if (memory.reset == reset) return;
+    if (memory.flags & FORCE_FAULT) {
+        ForceMemory fresh;
+        fresh.sent = memory.sent;
+        fresh.heat = memory.heat;
+        fresh.last_tick_ns = memory.last_tick_ns;
+        memory = fresh;
+    }
+    memory.reset = reset;
 }
 
 /// No force from this tick on, ignoring the limit on its change.
-ForceStep stop(const ForceSettings& settings, ForceMemory& memory, uint32_t flags)
+ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, ForceMemory& memory)
 {
     memory.flags = (memory.flags & FORCE_FAULT) | flags;
     memory.has_last = false;
     memory.glitches = 0;
-    memory.velocity = glm::dvec3(0.0);
-    memory.force_n = glm::dvec3(0.0);
+    memory.velocity = memory.moved_m = glm::dvec3(0.0);
+    memory.force_n = memory.spring_n = memory.crossed_n = glm::dvec3(0.0);
     memory.contact_fade = 0.0;
+    memory.cross = 1.0;
+    memory.rate = {};
+    memory.surface = {};
     disengage(memory);
+    add_sent(memory.force_n, now_ns, memory.sent);
     const glm::dvec3 place = settings.workspace.to_point(memory.last.position_m);
     const glm::dvec3 probe = is_finite(place) ? place : glm::dvec3(0.0);
-    return {.probe = probe, .proxy = probe, .flags = memory.flags};
+    return {.probe = probe, .proxy = probe, .flags = memory.flags, .sequence = memory.sent.sequence};
 }
 
 void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
@@ -50,7 +74,7 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
     memory.has_last = true;
     memory.last = state;
     memory.glitches = 0;
-    memory.velocity = glm::dvec3(0.0);
+    memory.velocity = memory.moved_m = glm::dvec3(0.0);
     disengage(memory);
 }
 
@@ -64,6 +88,7 @@ void accept_next(const DeviceState& state, ForceMemory& memory)
         const double share = 1.0 - std::exp(-2.0 * std::numbers::pi * VELOCITY_CUTOFF_HZ * dt);
         memory.velocity += share * ((state.position_m - memory.last.position_m) / dt - memory.velocity);
     }
+    memory.moved_m = state.position_m - memory.last.position_m;
     memory.last = state;
     memory.glitches = 0;
 }
@@ -85,103 +110,179 @@ double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
     return std::clamp(value + (rises ? change : -change), 0.0, 1.0);
 }
 
+double share_of_one(double value)
+{
+    return value > 0.0 ? std::min(value, 1.0) : 0.0;  // 0 for NaN
+}
+
 glm::dvec3 shortened(const glm::dvec3& v, double most)
 {
     const double length = glm::length(v);
     return length > most ? v * (most / length) : v;
 }
 
+/// What eq. 3.7 divides by: the probe's size in the hand and the scale of its moves.
+double scaling(const ForceSettings& settings)
+{
+    const double in_hand_m = settings.probe_radius / settings.workspace.scale();
+    return in_hand_m / PROBE_M * settings.movement_scale;
+}
+
 /// The proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so its inverse is its transpose
 /// divided by the scale squared.
-glm::dvec3 spring(const ForceSettings& settings, const DeviceCaps& caps, const glm::dvec3& offset)
+glm::dvec3 spring(const ForceSettings& settings, double stiffness, const glm::dvec3& offset)
 {
     const double scale = settings.workspace.scale();
     if (!(scale > 0.0)) return glm::dvec3(0.0);
-    const double stiffness = std::clamp(settings.stiffness, 0.0, caps.stiffness_limit);
     return stiffness * (glm::transpose(settings.workspace.to_volume) * offset) / (scale * scale);
-}
-
-bool is_usable(const RelevancePatch& patch, const glm::dvec3& probe, double radius, uint64_t now_ns)
-{
-    const bool is_fresh = now_ns <= patch.time_ns || now_ns - patch.time_ns <= RELEVANCE_FRESH_NS;
-    return patch.sequence != 0 && is_fresh && patch.covers(probe, radius);
 }
 
 struct Moment {
     uint64_t now_ns = 0, dt_ns = 0;
+    bool is_fresh = false;
 };
+
+/// From the pull of one mode, law or object to that of the next without a step.
+glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, const glm::dvec3& wanted, uint64_t dt_ns,
+                       ForceMemory& memory)
+{
+    if (settings.mode != memory.mode || settings.law != memory.law || pull.object != memory.object) {
+        memory.mode = settings.mode;
+        memory.law = settings.law;
+        memory.object = pull.object;
+        memory.cross = 0.0;
+        memory.crossed_n = memory.spring_n;
+    }
+    memory.cross = faded(memory.cross, true, dt_ns, MODE_FADE_NS);
+    memory.spring_n = memory.cross * wanted + (1.0 - memory.cross) * memory.crossed_n;
+    return memory.spring_n;
+}
+
+glm::dvec3 damping_of(const ForceSettings& settings, const ForceMemory& memory)
+{
+    const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MAX_DAMPING);
+    if (settings.law != ProxyLaw::thesis) return damping * memory.velocity;
+    const double divided = std::max(scaling(settings), 1.0);  // never stronger than is stable
+    return damping / divided * memory.moved_m / THESIS_TICK_S;
+}
 
 /// Spring and damping, faded, before the limits.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
-               ForceMemory& memory)
+               ForceMemory& memory, GrowthMemory& growth)
 {
     const glm::dvec3 probe = settings.workspace.to_point(memory.last.position_m);
-    const bool usable = is_usable(patch, probe, settings.probe_radius, moment.now_ns);
-    const Proxy proxy = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, settings.law);
-    const glm::dvec3 pull = spring(settings, caps, proxy.offset);
+    const ModePull pull = pull_of(settings, patch, probe, moment.now_ns, memory.surface, growth);
+    const double rate_share = caps.outputs_force ? share_for_rate(moment.now_ns, memory.rate) : 1.0;
+    const double stiffness = rate_share * stiffness_at_hand(settings, caps, memory.sent);
+    const glm::dvec3 wanted = spring(settings, stiffness, pull.offset);
 
     // An unknown force cannot count as small.
-    const bool may_begin = !caps.outputs_force || (usable && glm::length(pull) < ENGAGE_BELOW_N);
+    const bool may_begin = !caps.outputs_force || (pull.is_usable && glm::length(wanted) < ENGAGE_BELOW_N);
     memory.has_begun = memory.has_begun || may_begin;
+    if (rate_share == 0.0) disengage(memory);
     const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
     if (memory.has_begun) memory.engagement = faded(memory.engagement, true, moment.dt_ns, engage_ns);
-    memory.relevance_fade = faded(memory.relevance_fade, usable, moment.dt_ns, RELEVANCE_FADE_NS);
-    memory.contact_fade = faded(memory.contact_fade, proxy.in_contact, moment.dt_ns, CONTACT_FADE_NS);
-    if (!usable) memory.flags |= FORCE_NO_REGION;
+    memory.relevance_fade = faded(memory.relevance_fade, pull.is_usable, moment.dt_ns, RELEVANCE_FADE_NS);
+    memory.contact_fade = faded(memory.contact_fade, pull.in_contact, moment.dt_ns, CONTACT_FADE_NS);
+    const double box = share_in_box(caps, memory.last.position_m);
+    if (!pull.is_usable) memory.flags |= FORCE_NO_REGION;
     if (memory.engagement < 1.0) memory.flags |= FORCE_ENGAGING;
+    if (rate_share < 1.0) memory.flags |= FORCE_SLOW;
+    if (box < 1.0) memory.flags |= FORCE_OUTSIDE;
+    if (pull.has_lost) memory.flags |= FORCE_OFF_OBJECT;
 
-    const double damping = memory.contact_fade * std::clamp(settings.damping, 0.0, MAX_DAMPING);
-    return {.force_n = memory.engagement * memory.relevance_fade * (pull - damping * memory.velocity),
+    const double fade = box * memory.strength * memory.engagement * memory.relevance_fade;
+    const glm::dvec3 pulled = fade * cross_faded(settings, pull, wanted, moment.dt_ns, memory);
+    if (caps.outputs_force && moment.is_fresh) {
+        const SentForce effect = force_in_effect(caps, memory.last, moment.now_ns, memory.sent);
+        observe_energy(memory.last.position_m, pulled, effect.force_n, memory.energy);
+    }
+    if (memory.contact_fade == 0.0) memory.energy.made_j = 0.0;  // nothing to take it from
+    const glm::dvec3 taken = take_energy(memory.velocity, double(moment.dt_ns) * 1e-9, memory.energy);
+    return {.force_n = pulled - fade * rate_share * damping_of(settings, memory) + memory.engagement * taken,
             .probe = probe,
-            .proxy = probe + proxy.offset,
-            .in_contact = proxy.in_contact,
-            .relevant_share = proxy.relevant_share};
+            .proxy = probe + pull.offset,
+            .in_contact = pull.in_contact,
+            .relevant_share = pull.relevant_share,
+            .objects = growth.contacts};
+}
+
+/// The limits: a ball around 0, and a ball around the last force, whose centre lies in the first.
+void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory)
+{
+    const double held = caps.outputs_force ? force_allowed(caps, memory.heat) : caps.peak_force_n;
+    const double most = std::min(held, caps.peak_force_n);
+    const glm::dvec3 target = shortened(wanted, most);
+    if (glm::length(wanted) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
+    if (most < caps.peak_force_n && glm::length(wanted) > most) memory.flags |= FORCE_WARM;
+    memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), most);
 }
 
 }  // namespace
 
-ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult result, const DeviceState& state,
-               const RelevancePatch& patch, uint64_t now_ns, ForceMemory& memory) noexcept
+double stiffness_at_hand(const ForceSettings& settings, const DeviceCaps& caps, const SentForces& sent)
 {
+    const double stiffness = settings.stiffness / scaling(settings);
+    return stiffness > 0.0 ? std::min(stiffness, stable_stiffness(caps, sent)) : 0.0;  // 0 for NaN
+}
+
+ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResult result, const DeviceState& state,
+               const RelevancePatch& patch, uint64_t now_ns, ForceMemory& memory, GrowthMemory& growth) noexcept
+{
+    const DeviceCaps caps = sane(stated);
+    clear_fault(settings.reset, memory);
     const uint64_t dt_ns = memory.last_tick_ns == 0 || now_ns < memory.last_tick_ns
                                ? 0
                                : std::min(now_ns - memory.last_tick_ns, LONGEST_TICK_NS);
+    const double dt_s = double(dt_ns) * 1e-9;
     memory.last_tick_ns = now_ns;
+    add_heat(memory.force_n, dt_s, memory.heat);  // of the last tick, which ends now
 
     // ---- The hand's position ----
-    if (result == ReadResult::lost) return stop(settings, memory, FORCE_NO_DEVICE);
+    if (result == ReadResult::lost) return stop(settings, FORCE_NO_DEVICE, now_ns, memory);
     if (result == ReadResult::fresh) {
         if (!is_place(state)) memory.flags |= FORCE_FAULT;
-        if (!(memory.flags & FORCE_FAULT)) believe_or_not(state, memory);
+        if (!(memory.flags & FORCE_FAULT)) {
+            believe_or_not(state, memory);
+            measure_latency(caps, state, now_ns, dt_s, memory.sent);
+            add_state(now_ns, memory.rate);
+        }
         memory.last_fresh_ns = now_ns;
     }
-    if (memory.flags & FORCE_FAULT) return stop(settings, memory, 0);
-    if (!memory.has_last) return stop(settings, memory, FORCE_NO_DEVICE);
+    if (memory.flags & FORCE_FAULT) return stop(settings, 0, now_ns, memory);
+    if (!memory.has_last) return stop(settings, FORCE_NO_DEVICE, now_ns, memory);
+    if (settings.let_go) return stop(settings, FORCE_LET_GO, now_ns, memory);
 
     // ---- The force it should feel ----
     memory.flags = 0;
     const bool is_there = memory.last.calibrated && now_ns - memory.last_fresh_ns <= SILENCE_NS;
+    const double strength = share_of_one(settings.strength);
+    const double change = memory.engagement > 0.0 ? double(dt_ns) / double(STRENGTH_FADE_NS) : 1.0;
+    memory.strength += std::clamp(strength - memory.strength, -change, change);
     ForceStep now;
     now.probe = now.proxy = settings.workspace.to_point(memory.last.position_m);
     if (is_there && settings.assistance) {
-        now = feel(settings, caps, patch, {now_ns, dt_ns}, memory);
+        const bool is_fresh = result == ReadResult::fresh && memory.glitches == 0;
+        now = feel(settings, caps, patch, {now_ns, dt_ns, is_fresh}, memory, growth);
     } else {
         disengage(memory);
+        forget_object(growth);
+        memory.surface = {};
         memory.contact_fade = 0.0;
     }
     if (!is_there) memory.flags |= FORCE_NO_DEVICE;
 
-    // ---- The limits: a ball around 0, and a ball around the last force, whose centre lies in the first ----
-    const glm::dvec3 wanted = now.force_n;
-    const glm::dvec3 target = shortened(wanted, caps.peak_force_n);
-    if (glm::length(wanted) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
-    memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), caps.peak_force_n);
+    limit(caps, now.force_n, memory);
     if (!is_finite(memory.force_n) || !is_finite(now.proxy)) {
         memory.flags |= FORCE_FAULT;  // non-finite settings
-        return stop(settings, memory, 0);
+        return stop(settings, 0, now_ns, memory);
     }
+    add_sent(memory.force_n, now_ns, memory.sent);
     now.force_n = memory.force_n;
     now.flags = memory.flags;
+    now.sequence = memory.sent.sequence;
+    now.made_j = memory.energy.made_j;
+    now.latency_s = memory.sent.latency_s;
     return now;
 }
 

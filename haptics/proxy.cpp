@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace shvr {
 namespace {
@@ -44,14 +45,6 @@ Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, 
     return moments;
 }
 
-bool is_well_formed(const RelevancePatch& patch)
-{
-    const auto fits = [](int32_t n) { return n > 0 && n <= RelevancePatch::MAX_VOXELS; };
-    return fits(patch.size.x) && fits(patch.size.y) && fits(patch.size.z) &&
-           patch.words_per_row >= (patch.size.x + 31) / 32 &&
-           size_t(patch.words_per_row) * size_t(patch.size.y) * size_t(patch.size.z) <= RelevancePatch::MAX_WORDS;
-}
-
 /// Half-open range of the rows along one axis that may intersect the ball.
 struct RowRange {
     int32_t begin = 0, end = 0;
@@ -85,6 +78,42 @@ const RowRule& rule_for(double radius_voxels)
     return radius_voxels < 7.5 ? GAUSS_3 : radius_voxels < 14.5 ? GAUSS_2 : MIDDLE;
 }
 
+/// The thesis's algorithm 2: points that are evenly distributed in a ball of radius 1, drawn once and kept. The
+/// generator's numbers are the same everywhere.
+std::array<glm::dvec3, SAMPLE_POINTS> draw_points()
+{
+    std::mt19937 random(3000);
+    const auto uniform = [&] { return (double(random()) + 0.5) / 4294967296.0; };
+    std::array<glm::dvec3, SAMPLE_POINTS> points;
+    for (glm::dvec3& point : points) {
+        const double r = std::cbrt(uniform()), z = 2.0 * uniform() - 1.0;
+        const double phi = 2.0 * std::numbers::pi * uniform(), across = std::sqrt(1.0 - z * z);
+        point = r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
+    }
+    return points;
+}
+/// Drawn before main(), so that no tick pays for it.
+const std::array<glm::dvec3, SAMPLE_POINTS> POINTS = draw_points();
+
+Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
+{
+    const glm::dvec3 c = centre / patch.spacing - glm::dvec3(patch.origin), reach = radius / patch.spacing;
+    if (!patch.is_well_formed() || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return {};
+    const glm::dvec3 size(patch.size);
+    glm::dvec3 sum(0.0);
+    int count = 0;
+    for (const glm::dvec3& point : POINTS) {
+        const glm::dvec3 at = c + reach * point;
+        if (!glm::all(glm::greaterThanEqual(at, glm::dvec3(0.0))) || !glm::all(glm::lessThan(at, size))) continue;
+        const glm::ivec3 voxel(at);
+        if (!(patch.row_word(voxel.x / 32, voxel.y, voxel.z) >> (voxel.x % 32) & 1u)) continue;
+        sum += point;
+        ++count;
+    }
+    if (count == 0) return {};
+    return {true, radius * sum / double(count), double(count) / double(SAMPLE_POINTS)};
+}
+
 bool is_empty(const uint32_t* words, int32_t count)
 {
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
@@ -97,7 +126,7 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
     BallIntegrals ball;
     const glm::dvec3 spacing = patch.spacing;
     const glm::dvec3 c = centre / spacing - glm::dvec3(patch.origin);  // voxels from the patch's lower corner
-    if (!is_well_formed(patch) || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return ball;
+    if (!patch.is_well_formed() || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return ball;
     const RowRule& rule = rule_for(radius / std::max(spacing.y, spacing.z));
 
     const auto add_line = [&](const uint32_t* words, double dy, double dz, double weight) {
@@ -135,6 +164,7 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
 
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept
 {
+    if (law == ProxyLaw::thesis) return find_sampled_proxy(patch, centre, radius);
     const BallIntegrals ball = integrate(patch, centre, radius);
     if (!(ball.volume > 0.0)) return {};
     const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;

@@ -5,6 +5,26 @@
 
 namespace shvr {
 
+bool RelevancePatch::is_well_formed() const
+{
+    const auto fits = [](int32_t n) { return n > 0 && n <= MAX_VOXELS; };
+    return fits(size.x) && fits(size.y) && fits(size.z) && words_per_row >= (size.x + 31) / 32 &&
+           words_per_row <= MAX_VOXELS && word_count() <= MAX_WORDS;
+}
+
+void RelevancePatch::take_place_of(const RelevancePatch& other)
+{
+    sequence = other.sequence;
+    time_ns = other.time_ns;
+    origin = other.origin;
+    size = other.size;
+    words_per_row = other.words_per_row;
+    spacing = other.spacing;
+    volume_size = other.volume_size;
+    level = other.level;
+    settings = other.settings;
+}
+
 bool RelevancePatch::covers(const glm::dvec3& centre, double radius) const
 {
     if (sequence == 0) return false;

@@ -1,7 +1,7 @@
 #pragma once
-// Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a small grid
-// of bits, held by value, with its position and age. A compute pass makes it; the host publishes it through `Latest`.
-// Plain data that never allocates.
+// Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a grid of
+// bits, held by value, with its position, its level, its age and the settings it was made with. A compute pass makes it
+// (or the host, engine/live/relevance_host.h); the host publishes it through `Latest`. Plain data that never allocates.
 
 #include <array>
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace shvr {
 
 struct RelevancePatch {
-    static constexpr int32_t MAX_VOXELS = 64;  ///< a side
+    static constexpr int32_t MAX_VOXELS = 128;  ///< a side
     static constexpr size_t MAX_WORDS = size_t(MAX_VOXELS) * MAX_VOXELS * MAX_VOXELS / 32;
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
@@ -20,14 +20,21 @@ struct RelevancePatch {
     glm::ivec3 origin{0};   ///< voxel of its lower corner
     glm::ivec3 size{0};  ///< voxels, each at most MAX_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
-    glm::dvec3 spacing{1.0};    ///< physical units per voxel
-    glm::ivec3 volume_size{0};  ///< voxels
+    glm::dvec3 spacing{1.0};    ///< physical units per voxel of its level
+    glm::ivec3 volume_size{0};  ///< voxels of its level
+    int32_t level = 0;          ///< voxels of level l cover 2^l of the volume's along each axis; for large probes
+    uint32_t settings = 0;      ///< ForceSettings::relevance_settings it was made with: others make it unusable
     std::array<uint32_t, MAX_WORDS> words{};  ///< word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const
     {
         return words[size_t(word) + size_t(words_per_row) * (size_t(y) + size_t(size.y) * size_t(z))];
     }
+    size_t word_count() const { return size_t(words_per_row) * size_t(size.y) * size_t(size.z); }
+    /// Whether its numbers fit each other and the array.
+    bool is_well_formed() const;
+    /// Everything but the words.
+    void take_place_of(const RelevancePatch& other);
     /// Whether the patch covers the part of the ball that lies in the volume. Physical units; the corner of voxel (0,
     /// 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
     bool covers(const glm::dvec3& centre, double radius) const;

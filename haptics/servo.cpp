@@ -76,7 +76,10 @@ double TimeHistogram::quantile_us(double share) const noexcept
 }
 
 Servo::Servo(std::unique_ptr<HapticDevice> device, std::unique_ptr<Pacing> pacing, const Options& options)
-    : device_(std::move(device)), pacing_(std::move(pacing)), options_(options)
+    : device_(std::move(device)),
+      pacing_(std::move(pacing)),
+      options_(options),
+      growth_(std::make_unique<GrowthMemory>())
 {
     SHVR_CHECK(device_ && pacing_);
     SHVR_CHECK(options.rate_hz >= 1 && options.rate_hz <= 100'000, options.rate_hz);
@@ -104,7 +107,6 @@ void Servo::run() noexcept
     TimeHistogram lateness, duration, relevance_age;
     uint64_t ticks = 0, late_ticks = 0;
     bool wrote = true;
-    uint32_t reset = 0;
 
     uint64_t deadline_ns = pacing_->now_ns() + period_ns;
     while (running_) {
@@ -118,18 +120,13 @@ void Servo::run() noexcept
         settings_.take();
         relevance_.take();
         const ForceSettings& settings = settings_.value();
-        const RelevancePatch& relevance = relevance_.value();  // 32 KiB, used in place
-        if (settings.reset != reset) {
-            reset = settings.reset;
-            if (memory.flags & FORCE_FAULT) memory = {};
-        }
-
+        const RelevancePatch& relevance = relevance_.value();  // 256 KiB, used in place
         const DeviceCaps caps = device_->caps();
         const ReadResult read = device_->read(device);
         const ReadResult result = !wrote && read != ReadResult::fresh ? ReadResult::lost : read;
-        const ForceStep force = step(settings, caps, result, device, relevance, now_ns, memory);
+        const ForceStep force = step(settings, caps, result, device, relevance, now_ns, memory, *growth_);
         ++ticks;
-        wrote = device_->write(force.force_n, uint32_t(ticks));
+        wrote = device_->write(force.force_n, force.sequence);
 
         if (settings.assistance && relevance.sequence != 0) relevance_age.add(since(relevance.time_ns, now_ns));
         duration.add(since(now_ns, pacing_->now_ns()));
@@ -145,7 +142,7 @@ void Servo::run() noexcept
         state.relevance_age = relevance_age;
         state_.publish();
     }
-    device_->write(glm::dvec3(0.0), uint32_t(ticks + 1));
+    device_->write(glm::dvec3(0.0), memory.sent.sequence + 1);
 }
 
 }  // namespace shvr

@@ -76,6 +76,7 @@ private:
     std::unique_ptr<HapticDevice> device_;
     std::unique_ptr<Pacing> pacing_;
     Options options_;
+    std::unique_ptr<GrowthMemory> growth_;
     Latest<ForceSettings> settings_;
     Latest<RelevancePatch> relevance_;
     Latest<ServoState> state_;

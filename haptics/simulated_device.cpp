@@ -45,7 +45,11 @@ SimulatedDevice::SimulatedDevice(const HandModel& model) : model_(model)
 
 DeviceCaps SimulatedDevice::caps() const noexcept
 {
-    return {.latency_s = model_.delay_ticks * model_.tick_s, .outputs_force = model_.mass_kg > 0.0};
+    return {.usable_lower_m = glm::dvec3(-MAX_REACH_M),
+            .usable_upper_m = glm::dvec3(MAX_REACH_M),
+            .latency_s = model_.delay_ticks * model_.tick_s,
+            .outputs_force = model_.mass_kg > 0.0,
+            .tells_force_sequence = true};
 }
 
 ReadResult SimulatedDevice::read(DeviceState& state) noexcept

@@ -1,22 +1,18 @@
 #include "engine/live/relevance.h"
 
-#include <cmath>
 #include <utility>
+
+#include "engine/live/relevance_host.h"
 
 namespace shvr {
 
 namespace {
 
-/// The cube around a voxel, shifted inside the volume at its borders, so that it is as large as possible.
 BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(voxel[axis])) fail("the probe's place along ", "xyz"[axis], " is ", voxel[axis]);
-    const Size3 size = glm::min(volume_size, Size3(Relevance::SIDE));
-    const glm::dvec3 lower =
-        glm::clamp(glm::round(voxel - 0.5 * glm::dvec3(size)), glm::dvec3(0.0), glm::dvec3(volume_size - size));
     BrushRegion region;
-    region.box = {Size3(lower), Size3(lower) + size};
+    region.box = relevance_cube(voxel, volume_size, Relevance::SIDE);
+    const Size3 size = region.box.size();
     region.rows.assign(size_t(size.y * size.z), {0, int32_t(size.x)});
     return region;
 }

@@ -61,6 +61,7 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
     const auto device = std::make_unique<SimulatedDevice>(hand);
     const auto patch = std::make_unique<RelevancePatch>();
     ForceMemory memory;
+    const auto growth = std::make_unique<GrowthMemory>();
     ForceSettings settings{.assistance = assistance, .probe_radius = 2.5};
     settings.workspace = {glm::dmat3(1000.0), glm::dvec3(0.0)};
 
@@ -84,8 +85,8 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
                 if (const auto bits = relevance.take()) publish(*patch, *bits);
             relevance.ask(probe / VOXEL_MM, 25000.0, now_ns);
         }
-        const ForceStep now = step(settings, device->caps(), result, state, *patch, now_ns, memory);
-        device->write(now.force_n, uint32_t(tick));
+        const ForceStep now = step(settings, device->caps(), result, state, *patch, now_ns, memory, *growth);
+        device->write(now.force_n, now.sequence);
         if (tick < 1500) continue;  // engaged by then
         const glm::dvec3 away = VESSEL.towards(probe / VOXEL_MM) * VOXEL_MM;
         sum += glm::dot(away, away);

@@ -21,7 +21,7 @@ void fill_patch(RelevancePatch& patch, const glm::ivec3& origin, const glm::ivec
     patch.size = size;
     patch.spacing = spacing;
     patch.words_per_row = (size.x + 31) / 32;
-    patch.words.fill(0);
+    std::fill_n(patch.words.begin(), patch.word_count(), 0u);
     for (int z = 0; z < size.z; ++z) {
         for (int y = 0; y < size.y; ++y) {
             for (int x = 0; x < size.x; ++x) {

@@ -97,5 +97,6 @@ void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);
 void add_view(CLI::App& program);
+void add_haptics(CLI::App& program);
 
 }  // namespace shvr::cli

@@ -66,6 +66,7 @@ int run(int argc, char** argv)
     shvr::cli::add_compare(program);
     shvr::cli::add_profile(program);
     shvr::cli::add_phantom(program);
+    shvr::cli::add_haptics(program);
     shvr::cli::add_view(program);
     for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", "shvr " SHVR_VERSION);
     refuse_empty(argc, argv);

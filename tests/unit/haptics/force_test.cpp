@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -24,6 +25,7 @@ struct Bench {
     DeviceCaps caps;
     RelevancePatch patch;
     ForceMemory memory;
+    std::unique_ptr<GrowthMemory> growth = std::make_unique<GrowthMemory>();
     DeviceState state;
     uint64_t now_ns = 1'000'000'000, tick_ns = MILLISECOND;
     bool is_patch_renewed = true;  ///< as if the compute pass kept pace
@@ -46,7 +48,7 @@ struct Bench {
         now_ns += tick_ns;
         if (result == ReadResult::fresh) state.time_ns += tick_ns;
         if (is_patch_renewed) patch.time_ns = now_ns;
-        return step(settings, caps, result, state, patch, now_ns, memory);
+        return step(settings, caps, result, state, patch, now_ns, memory, *growth);
     }
     ForceStep tick_at(const glm::dvec3& position_m)
     {

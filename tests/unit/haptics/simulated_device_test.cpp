@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -52,6 +53,7 @@ Following follow(const HandModel& hand, bool assistance, uint32_t seed)
     SimulatedDevice device(hand);
     RelevancePatch patch;
     ForceMemory memory;
+    const auto growth = std::make_unique<GrowthMemory>();
     ForceSettings settings{.assistance = assistance, .probe_radius = 2.5};
     settings.workspace = {glm::dmat3(1000.0), glm::dvec3(0.0)};
     const DeviceCaps caps = device.caps();
@@ -86,8 +88,8 @@ Following follow(const HandModel& hand, bool assistance, uint32_t seed)
             patch.volume_size = {1000, 1000, 1000};
         }
         patch.time_ns = now_ns;
-        const ForceStep now = step(settings, caps, ReadResult::fresh, state, patch, now_ns, memory);
-        device.write(now.force_n, uint32_t(tick));
+        const ForceStep now = step(settings, caps, ReadResult::fresh, state, patch, now_ns, memory, *growth);
+        device.write(now.force_n, now.sequence);
         if (tick < 1500) continue;  // engaged by then
         const glm::dvec3 away = VESSEL.towards(probe);
         sum += glm::dot(away, away);

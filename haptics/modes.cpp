@@ -1,0 +1,78 @@
+#include "haptics/modes.h"
+
+#include <algorithm>
+
+#include "engine/base/finite.h"
+
+namespace shvr {
+namespace {
+
+bool is_usable(const RelevancePatch& patch, const ForceSettings& settings, const glm::dvec3& probe, uint64_t now_ns)
+{
+    const bool is_fresh = now_ns <= patch.time_ns || now_ns - patch.time_ns <= RELEVANCE_FRESH_NS;
+    return patch.sequence != 0 && is_fresh && patch.settings == settings.relevance_settings &&
+           patch.covers(probe, settings.probe_radius);
+}
+
+ModePull towards(const Proxy& proxy)
+{
+    return {.offset = proxy.offset, .in_contact = proxy.in_contact, .relevant_share = proxy.relevant_share};
+}
+
+ModePull pull_to_surface(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe,
+                         SurfaceMemory& surface)
+{
+    const ProxyLaw law = settings.law == ProxyLaw::thesis ? ProxyLaw::thesis : ProxyLaw::mean;  // only its share counts
+    const Proxy around = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, law);
+    const double hold = std::clamp(settings.surface_share, 0.0, 1.0);
+    const bool is_little = around.relevant_share < SURFACE_HYSTERESIS * hold;
+    if (surface.is_pinned) {
+        const double height = glm::dot(probe - surface.pin, settings.to_camera);
+        surface.farthest = std::min(surface.farthest, height);
+        const bool moves_back = height - surface.farthest > RELEASE_SHARE * settings.probe_radius;
+        if (moves_back || is_little) surface.is_pinned = false;
+    } else {
+        surface.is_armed = surface.is_armed || is_little;
+        if (surface.is_armed && around.relevant_share > hold)
+            surface = {.is_pinned = true, .is_armed = false, .pin = probe, .farthest = 0.0};
+    }
+    ModePull pull{.in_contact = surface.is_pinned, .relevant_share = around.relevant_share};
+    if (surface.is_pinned) pull.offset = surface.pin - probe;
+    return pull;
+}
+
+ModePull pull_to_object(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe,
+                        uint64_t now_ns, GrowthMemory& growth)
+{
+    const double radius = settings.probe_radius;
+    const bool may_grow = is_finite(probe) && patch.settings == settings.relevance_settings;
+    const RelevancePatch& object = may_grow ? advance_object(patch, probe, radius, growth) : growth.object();
+    ModePull pull = object.sequence == 0 ? ModePull{} : towards(find_proxy(object, probe, radius, settings.law));
+    if (may_grow) keep_contact(patch, probe, radius, pull.in_contact, now_ns, growth);
+    pull.has_lost = growth.contacts > 0 && !pull.in_contact;
+    pull.object = growth.contacts;
+    return pull;
+}
+
+}  // namespace
+
+ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
+                 SurfaceMemory& surface, GrowthMemory& growth) noexcept
+{
+    if (settings.mode != HapticMode::object) forget_object(growth);
+    if (settings.mode != HapticMode::surface) surface = {};
+    ModePull pull;
+    if (settings.mode == HapticMode::surface) {
+        pull = pull_to_surface(settings, patch, probe, surface);
+    } else if (settings.mode == HapticMode::object) {
+        pull = pull_to_object(settings, patch, probe, now_ns, growth);
+    } else if (patch.sequence != 0) {
+        pull = towards(find_proxy(patch, probe, settings.probe_radius, settings.law));
+    }
+    // An object is as old as what it was grown in; without one, nothing is felt and the patch itself counts.
+    const bool is_object = settings.mode == HapticMode::object && growth.has_object;
+    pull.is_usable = is_usable(is_object ? growth.object() : patch, settings, probe, now_ns);
+    return pull;
+}
+
+}  // namespace shvr

@@ -1,0 +1,165 @@
+#include "haptics/replay/replay.h"
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "engine/base/finite.h"
+
+namespace shvr {
+namespace {
+
+constexpr uint64_t FNV_BASIS = 14695981039346656037ull, FNV_PRIME = 1099511628211ull;
+
+void add_bits(double value, uint64_t& hash)
+{
+    for (uint64_t bits = std::bit_cast<uint64_t>(value), i = 0; i < 8; ++i, bits >>= 8)
+        hash = (hash ^ (bits & 255)) * FNV_PRIME;
+}
+
+bool same_bits(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return std::bit_cast<uint64_t>(a.x) == std::bit_cast<uint64_t>(b.x) &&
+           std::bit_cast<uint64_t>(a.y) == std::bit_cast<uint64_t>(b.y) &&
+           std::bit_cast<uint64_t>(a.z) == std::bit_cast<uint64_t>(b.z);
+}
+
+ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options)
+{
+    ForceSettings force = settings.force;
+    force.mode = options.mode.value_or(force.mode);
+    force.law = options.law.value_or(force.law);
+    force.stiffness = options.stiffness.value_or(force.stiffness);
+    force.damping = options.damping.value_or(force.damping);
+    return force;
+}
+
+/// The device of a replay: the trace's answers, or a modelled one that its positions draw along.
+class Player {
+public:
+    Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
+    {
+        if (!options.touch) return;
+        TouchModel model = *options.touch;
+        model.tick_s = 1.0 / trace.rate_hz;
+        model.jitter_s = std::min(model.jitter_s, 0.5 * model.tick_s);
+        touch_ = std::make_unique<ModelledTouch>(model);
+    }
+    DeviceCaps caps() const { return touch_ ? touch_->caps() : trace_.caps; }
+    ReadResult read(const TraceTick& tick, DeviceState& state)
+    {
+        if (!touch_) {
+            state = tick.state;
+            return tick.read;
+        }
+        if (is_finite(tick.state.position_m)) wish_m_ = tick.state.position_m;
+        // It begins where the trace does.
+        touch_->wish().publish({.position_m = wish_m_, .buttons = tick.state.buttons, .jump = tick.state.jump + 1});
+        return touch_->read(state);
+    }
+    void write(const ForceStep& force)
+    {
+        if (touch_) touch_->write(force.force_n, force.sequence);
+    }
+    std::optional<double> work_j() const { return touch_ ? std::optional(touch_->work_j()) : std::nullopt; }
+
+private:
+    const Trace& trace_;
+    std::unique_ptr<ModelledTouch> touch_;
+    glm::dvec3 wish_m_{0.0};
+};
+
+/// Makes relevance when what is there no longer does.
+class Mirror {
+public:
+    Mirror(const MakeRelevance& make, uint32_t every)
+        : make_(make), every_(every), patch_(std::make_unique<RelevancePatch>())
+    {}
+    const RelevancePatch& around(const glm::dvec3& point, const ForceSettings& settings, double threshold,
+                                 uint64_t now_ns)
+    {
+        const bool is_due = every_ > 0 && ticks_++ % every_ == 0;
+        if (threshold != threshold_ || is_due) patch_->sequence = 0;
+        if (is_finite(point) && !patch_->covers(point, settings.probe_radius)) {
+            make_(point, settings.probe_radius, threshold, *patch_);
+            patch_->sequence = ++made_;
+            threshold_ = threshold;
+        }
+        patch_->time_ns = now_ns;
+        patch_->settings = settings.relevance_settings;
+        return *patch_;
+    }
+    uint64_t made() const { return made_; }
+
+private:
+    const MakeRelevance& make_;
+    uint32_t every_ = 0, ticks_ = 0;
+    std::unique_ptr<RelevancePatch> patch_;
+    uint64_t made_ = 0;
+    double threshold_ = 0.0;
+};
+
+}  // namespace
+
+ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
+                    bool keep_steps)
+{
+    using Clock = std::chrono::steady_clock;
+    Player player(trace, options);
+    Mirror mirror(make_relevance, options.relevance_every);
+    ForceMemory memory;
+    const auto growth = std::make_unique<GrowthMemory>();
+    const uint64_t period_ns = 1'000'000'000 / trace.rate_hz;
+    ReplayResult result;
+    result.hash = FNV_BASIS;
+    result.tick_ns.reserve(trace.ticks.size());
+    glm::dvec3 last_force(0.0), last_position(0.0);
+    bool has_last = false;
+    double squares = 0.0;
+    auto settings = trace.settings.begin();
+    DeviceState state;
+    for (size_t i = 0; i < trace.ticks.size(); ++i) {
+        const TraceTick& tick = trace.ticks[i];
+        while (settings + 1 != trace.settings.end() && (settings + 1)->from_tick <= i) ++settings;
+        const ForceSettings force_settings = chosen(*settings, options);
+        if (i > 0 && tick.now_ns > trace.ticks[i - 1].now_ns + 2 * period_ns) ++result.late;
+
+        const ReadResult read = player.read(tick, state);
+        const glm::dvec3 probe = force_settings.workspace.to_point(state.position_m);
+        const RelevancePatch& patch = mirror.around(probe, force_settings, settings->threshold, tick.now_ns);
+        const Clock::time_point begin = Clock::now();
+        const ForceStep step_now =
+            step(force_settings, player.caps(), read, state, patch, tick.now_ns, memory, *growth);
+        result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
+        player.write(step_now);
+
+        // The force of the last tick acted on the way here.
+        if (has_last && is_finite(state.position_m))
+            result.energy_j += glm::dot(last_force, state.position_m - last_position);
+        has_last = is_finite(state.position_m);
+        last_position = state.position_m;
+        result.largest_step_n = std::max(result.largest_step_n, glm::distance(step_now.force_n, last_force));
+        last_force = step_now.force_n;
+        result.largest_force_n = std::max(result.largest_force_n, glm::length(last_force));
+        for (int axis = 0; axis < 3; ++axis) add_bits(last_force[axis], result.hash);
+        if (tick.force_n) {
+            ++result.told;
+            result.told_equal += same_bits(*tick.force_n, last_force);
+        }
+        if (step_now.in_contact) {
+            const glm::dvec3 away = step_now.proxy - step_now.probe;
+            squares += glm::dot(away, away);
+            ++result.contact_ticks;
+        }
+        result.objects = step_now.objects;
+        if (keep_steps) result.steps.push_back(step_now);
+    }
+    result.ticks = trace.ticks.size();
+    result.patches = mirror.made();
+    result.energy_j = player.work_j().value_or(result.energy_j);
+    if (result.contact_ticks > 0) result.proxy_rms = std::sqrt(squares / double(result.contact_ticks));
+    return result;
+}
+
+}  // namespace shvr

@@ -1,0 +1,308 @@
+#include "haptics/replay/trace.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "engine/base/atomic_writer.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+
+namespace shvr {
+namespace {
+
+constexpr int64_t VERSION = 1;
+constexpr int64_t MAX_TIME_NS = int64_t{1} << 62;
+constexpr double MAX_LENGTH = 1e12;
+constexpr std::string_view READS[] = {"fresh", "stale", "lost", "malformed"};  // by ReadResult
+constexpr const char* PLACE = "three numbers, or \"nan\", \"inf\", \"-inf\"";
+
+// ---- Reading ---------------------------------------------------------------------------------------------------------
+
+double number_or_word(const JsonNode& node, const char* expected)
+{
+    if (node.is("nan")) return std::numeric_limits<double>::quiet_NaN();
+    if (node.is("inf")) return std::numeric_limits<double>::infinity();
+    if (node.is("-inf")) return -std::numeric_limits<double>::infinity();
+    if (!node.is_number()) node.refuse(expected);
+    return node.number(any_number());
+}
+
+glm::dvec3 place_of(const JsonNode& node)
+{
+    const std::vector<JsonNode> parts = node.elements(3, 3);
+    return {number_or_word(parts[0], PLACE), number_or_word(parts[1], PLACE), number_or_word(parts[2], PLACE)};
+}
+
+uint32_t number_32(const JsonNode& node, uint32_t fallback)
+{
+    return uint32_t(node.whole(fallback, 0, std::numeric_limits<uint32_t>::max()));
+}
+
+void read_caps(const JsonNode& node, DeviceCaps& caps)
+{
+    node.allow({"usable_lower_m", "usable_upper_m", "peak_force_n", "continuous_force_n", "stiffness_limit",
+                "latency_s", "senses_rotation", "outputs_force", "tells_force_sequence"});
+    const NumberRange reach{-MAX_REACH_M, MAX_REACH_M}, force{0.0, 1000.0};
+    caps.usable_lower_m = node["usable_lower_m"].vector(caps.usable_lower_m, reach);
+    caps.usable_upper_m = node["usable_upper_m"].vector(caps.usable_upper_m, reach);
+    caps.peak_force_n = node["peak_force_n"].number(caps.peak_force_n, force);
+    caps.continuous_force_n = node["continuous_force_n"].number(caps.continuous_force_n, force);
+    caps.stiffness_limit = node["stiffness_limit"].number(caps.stiffness_limit, {0.0, 1e6});
+    caps.latency_s = node["latency_s"].number(caps.latency_s, {0.0, 1.0});
+    caps.senses_rotation = node["senses_rotation"].flag(caps.senses_rotation);
+    caps.outputs_force = node["outputs_force"].flag(caps.outputs_force);
+    caps.tells_force_sequence = node["tells_force_sequence"].flag(caps.tells_force_sequence);
+}
+
+void read_workspace(const JsonNode& node, Workspace& workspace)
+{
+    const NumberRange length{-MAX_LENGTH, MAX_LENGTH};
+    if (const JsonNode matrix = node["to_volume"]; matrix.exists()) {
+        const std::vector<JsonNode> numbers = matrix.elements(9, 9);
+        for (size_t i = 0; i < 9; ++i)
+            workspace.to_volume[glm::length_t(i / 3)][glm::length_t(i % 3)] = numbers[i].number(length);
+        if (!(std::abs(glm::determinant(workspace.to_volume)) > 0.0)) matrix.refuse("nine numbers of a turn and scale");
+    }
+    workspace.origin = node["origin"].vector(workspace.origin, length);
+}
+
+void read_settings(const JsonNode& node, TraceSettings& settings)
+{
+    node.allow({"assistance", "law", "mode", "threshold", "probe_radius", "stiffness", "damping", "to_volume", "origin",
+                "reset", "to_camera", "surface_share", "movement_scale", "strength", "let_go"});
+    ForceSettings& force = settings.force;
+    force.assistance = node["assistance"].flag(force.assistance);
+    force.law = node["law"].choice_or(force.law);
+    force.mode = node["mode"].choice_or(force.mode);
+    settings.threshold = node["threshold"].number(settings.threshold, any_number());
+    force.probe_radius = node["probe_radius"].number(force.probe_radius, above_zero(1e-12, MAX_LENGTH));
+    force.stiffness = node["stiffness"].number(force.stiffness, {0.0, 1e6});
+    force.damping = node["damping"].number(force.damping, {0.0, 1000.0});
+    read_workspace(node, force.workspace);
+    force.reset = number_32(node["reset"], force.reset);
+    force.to_camera = node["to_camera"].vector(force.to_camera, {-1.0, 1.0});
+    force.surface_share = node["surface_share"].number(force.surface_share, {0.0, 1.0});
+    force.movement_scale = node["movement_scale"].number(force.movement_scale, above_zero(1e-6, 1e6));
+    force.strength = node["strength"].number(force.strength, {0.0, 1.0});
+    force.let_go = node["let_go"].flag(force.let_go);
+}
+
+TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t period_ns)
+{
+    node.allow(
+        {"now", "read", "time", "sequence", "force_sequence", "buttons", "jump", "at", "turn", "calibrated", "force"});
+    TraceTick tick;
+    if (before) tick.state = before->state;
+    const uint64_t due_ns = before ? before->now_ns + period_ns : period_ns;
+    tick.now_ns = uint64_t(node["now"].whole(int64_t(due_ns), before ? int64_t(before->now_ns) : 0, MAX_TIME_NS));
+    if (node["read"].exists()) tick.read = ReadResult(node["read"].choice(READS));
+    DeviceState& state = tick.state;
+    const bool is_fresh = tick.read == ReadResult::fresh;
+    state.time_ns = uint64_t(node["time"].whole(int64_t(is_fresh ? tick.now_ns : state.time_ns), 0, MAX_TIME_NS));
+    state.sequence = number_32(node["sequence"], state.sequence + (is_fresh ? 1 : 0));
+    state.force_sequence = number_32(node["force_sequence"], state.force_sequence);
+    state.buttons = number_32(node["buttons"], state.buttons);
+    state.jump = number_32(node["jump"], state.jump);
+    if (node["at"].exists()) state.position_m = place_of(node["at"]);
+    if (const JsonNode turn = node["turn"]; turn.exists()) {
+        const std::vector<JsonNode> parts = turn.elements(4, 4);
+        const auto part = [&](size_t i) { return number_or_word(parts[i], "a number, or \"nan\", \"inf\", \"-inf\""); };
+        state.rotation = glm::dquat(part(0), part(1), part(2), part(3));
+    }
+    state.calibrated = node["calibrated"].flag(state.calibrated);
+    if (node["force"].exists()) tick.force_n = node["force"].vector(any_number());
+    return tick;
+}
+
+void read_head(const JsonNode& node, Trace& trace)
+{
+    node.allow({"shvr_stylus_trace", "unit", "rate_hz", "caps"});
+    const JsonNode version = node.required("shvr_stylus_trace", "1, the version of the format");
+    if (!version.is_number() || version.dump() != "1") version.refuse("1, the version that this program reads");
+    if (node["unit"].exists()) trace.unit = node["unit"].any_text();
+    trace.rate_hz = uint32_t(node["rate_hz"].whole(trace.rate_hz, 1, 100'000));
+    if (node["caps"].exists()) read_caps(node["caps"], trace.caps);
+}
+
+// ---- Writing ---------------------------------------------------------------------------------------------------------
+
+struct Line {
+    std::string text = "{";
+    bool is_first = true;
+
+    void key(std::string_view name)
+    {
+        text += is_first ? "\"" : ",\"";
+        is_first = false;
+        text += name;
+        text += "\":";
+    }
+    void put(double value)
+    {
+        if (!std::isfinite(value)) {
+            text += std::isnan(value) ? "\"nan\"" : value > 0.0 ? "\"inf\"" : "\"-inf\"";
+            return;
+        }
+        char digits[40];
+        const auto end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
+        text.append(digits, end);
+    }
+    void add(std::string_view name, double value) { key(name), put(value); }
+    void add(std::string_view name, uint64_t value) { key(name), text += std::to_string(value); }
+    void add(std::string_view name, uint32_t value) { add(name, uint64_t(value)); }
+    void add(std::string_view name, bool value) { key(name), text += value ? "true" : "false"; }
+    void add(std::string_view name, std::string_view value) { key(name), text += '"', text += value, text += '"'; }
+    void add(std::string_view name, std::initializer_list<double> values)
+    {
+        key(name);
+        char before = '[';
+        for (const double value : values) text += std::exchange(before, ','), put(value);
+        text += ']';
+    }
+    void add(std::string_view name, const glm::dvec3& v) { add(name, {v.x, v.y, v.z}); }
+    std::string end() { return text + "}"; }
+};
+
+std::string in_json(const std::string& text)
+{
+    std::string safe;
+    for (const char c : text)
+        if (c != '"' && c != '\\' && static_cast<unsigned char>(c) >= 32) safe += c;
+    return safe;
+}
+
+std::string head_of(const Trace& trace)
+{
+    Line caps, head;
+    caps.add("usable_lower_m", trace.caps.usable_lower_m);
+    caps.add("usable_upper_m", trace.caps.usable_upper_m);
+    caps.add("peak_force_n", trace.caps.peak_force_n);
+    caps.add("continuous_force_n", trace.caps.continuous_force_n);
+    caps.add("stiffness_limit", trace.caps.stiffness_limit);
+    caps.add("latency_s", trace.caps.latency_s);
+    caps.add("senses_rotation", trace.caps.senses_rotation);
+    caps.add("outputs_force", trace.caps.outputs_force);
+    caps.add("tells_force_sequence", trace.caps.tells_force_sequence);
+    head.add("shvr_stylus_trace", uint64_t(VERSION));
+    head.add("unit", std::string_view(in_json(trace.unit)));
+    head.add("rate_hz", trace.rate_hz);
+    head.key("caps");
+    head.text += caps.end();
+    return head.end();
+}
+
+std::string line_of(const TraceSettings& settings)
+{
+    const ForceSettings& force = settings.force;
+    const glm::dmat3& m = force.workspace.to_volume;
+    Line line;
+    line.add("assistance", force.assistance);
+    line.add("law", spelled(force.law));
+    line.add("mode", spelled(force.mode));
+    line.add("threshold", settings.threshold);
+    line.add("probe_radius", force.probe_radius);
+    line.add("stiffness", force.stiffness);
+    line.add("damping", force.damping);
+    line.add("to_volume", {m[0].x, m[0].y, m[0].z, m[1].x, m[1].y, m[1].z, m[2].x, m[2].y, m[2].z});
+    line.add("origin", force.workspace.origin);
+    line.add("reset", force.reset);
+    line.add("to_camera", force.to_camera);
+    line.add("surface_share", force.surface_share);
+    line.add("movement_scale", force.movement_scale);
+    line.add("strength", force.strength);
+    line.add("let_go", force.let_go);
+    return "{\"settings\":" + line.end() + "}";
+}
+
+std::string line_of(const TraceTick& tick)
+{
+    const DeviceState& state = tick.state;
+    const glm::dquat& q = state.rotation;
+    Line line;
+    line.add("now", tick.now_ns);
+    if (tick.read != ReadResult::fresh) line.add("read", READS[size_t(tick.read)]);
+    line.add("time", state.time_ns);
+    line.add("sequence", state.sequence);
+    line.add("force_sequence", state.force_sequence);
+    line.add("at", state.position_m);
+    line.add("turn", {q.w, q.x, q.y, q.z});
+    line.add("buttons", state.buttons);
+    line.add("jump", state.jump);
+    line.add("calibrated", state.calibrated);
+    if (tick.force_n) line.add("force", *tick.force_n);
+    return line.end();
+}
+
+void read_line(const JsonNode& node, Trace& trace, uint64_t period_ns)
+{
+    const JsonNode chosen = node["settings"];
+    if (!chosen.exists()) {
+        if (trace.ticks.size() >= MAX_TRACE_TICKS)
+            node.refuse_because(sentence("is a tick too many; expected at most ", MAX_TRACE_TICKS));
+        trace.ticks.push_back(read_tick(node, trace.ticks.empty() ? nullptr : &trace.ticks.back(), period_ns));
+        return;
+    }
+    node.allow({"settings"});
+    TraceSettings settings;
+    if (!trace.settings.empty()) settings = trace.settings.back();
+    settings.from_tick = trace.ticks.size();
+    read_settings(chosen, settings);
+    trace.settings.push_back(settings);
+}
+
+}  // namespace
+
+Trace parse_trace(const std::string& text, const std::string& origin)
+{
+    Trace trace;
+    size_t number = 0;
+    bool has_head = false;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line(text.data() + begin, end - begin);
+        begin = end + 1;
+        ++number;
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+        const JsonDocument document(line, sentence(origin, ":", number));
+        if (has_head)
+            read_line(document.root(), trace, 1'000'000'000 / trace.rate_hz);
+        else
+            read_head(document.root(), trace);
+        has_head = true;
+    }
+    if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");
+    if (trace.ticks.empty()) fail(origin, " has no tick; expected lines such as {\"at\":[0.001,0,0]}");
+    if (trace.settings.empty() || trace.settings.front().from_tick > 0)
+        trace.settings.insert(trace.settings.begin(), TraceSettings{});
+    return trace;
+}
+
+Trace read_trace(const std::filesystem::path& file)
+{
+    return parse_trace(read_text(file, MAX_TRACE_BYTES), file.string());
+}
+
+std::string text_of(const Trace& trace)
+{
+    std::string text = head_of(trace) + "\n";
+    auto settings = trace.settings.begin();
+    for (size_t tick = 0; tick < trace.ticks.size(); ++tick) {
+        for (; settings != trace.settings.end() && settings->from_tick <= tick; ++settings)
+            text += line_of(*settings) + "\n";
+        text += line_of(trace.ticks[tick]) + "\n";
+    }
+    return text;
+}
+
+void write_trace(const std::filesystem::path& file, const Trace& trace)
+{
+    const std::string text = text_of(trace);
+    AtomicWriter writer(file);
+    writer.append(std::as_bytes(std::span<const char>(text)));
+    writer.commit();
+}
+
+}  // namespace shvr

@@ -1,0 +1,47 @@
+#pragma once
+// A stylus trace: what a device answered and what a person chose, tick by tick, as a file (README.md has the format).
+// What is read is what was written, bit for bit. Version 1. Any thread.
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptics/force.h"
+
+namespace shvr {
+
+/// What a person chose, from a tick on. The threshold is for whoever makes the relevance.
+struct TraceSettings {
+    ForceSettings force;
+    double threshold = 0.0;  ///< intensity
+    size_t from_tick = 0;
+};
+
+struct TraceTick {
+    uint64_t now_ns = 0;  ///< the servo's clock
+    ReadResult read = ReadResult::fresh;
+    DeviceState state;
+    std::optional<glm::dvec3> force_n;  ///< what the servo wrote
+};
+
+struct Trace {
+    std::string unit;  ///< of physical lengths; empty: not known
+    uint32_t rate_hz = 1000;
+    DeviceCaps caps;
+    std::vector<TraceSettings> settings;  ///< by tick; the first one holds from the start
+    std::vector<TraceTick> ticks;
+};
+
+inline constexpr int64_t MAX_TRACE_BYTES = int64_t{1} << 30;
+inline constexpr size_t MAX_TRACE_TICKS = 4'000'000;  ///< more than an hour
+
+/// `origin` names the text in errors: one sentence with line, key, value and what was expected.
+Trace parse_trace(const std::string& text, const std::string& origin);
+Trace read_trace(const std::filesystem::path& file);
+std::string text_of(const Trace& trace);
+/// Whole or not at all.
+void write_trace(const std::filesystem::path& file, const Trace& trace);
+
+}  // namespace shvr

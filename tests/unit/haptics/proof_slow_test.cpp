@@ -1,0 +1,16 @@
+// All of what proof_test.cpp runs a hundredth of.
+#include <doctest/doctest.h>
+
+#include "tests/support/haptic_proofs.h"
+
+using namespace shvr;
+
+TEST_CASE("10,000 contacts: no wall gives energy to a hand, and none rings")
+{
+    check_contacts(10'000, 81);
+}
+
+TEST_CASE("10,000,000 ticks of nonsense: every force is a number and within its limits")
+{
+    check_nonsense(10'000'000, 82);
+}

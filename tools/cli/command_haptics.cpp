@@ -1,0 +1,195 @@
+// shvr haptics: the sense of touch without a window. Needs no Vulkan device, and only `devices` looks for hardware.
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "engine/annotation/work/work_offsets.h"
+#include "engine/base/assets.h"
+#include "engine/base/text.h"
+#include "engine/live/relevance_host.h"
+#include "engine/volume/unit.h"
+#include "haptics/hid_device.h"
+#include "haptics/replay/replay.h"
+#include "haptics/servo.h"
+#include "tools/cli/cli.h"
+#include "tools/cli/haptics_report.h"
+
+namespace shvr::cli {
+
+namespace {
+
+struct ReplayCommandOptions {
+    Common common;
+    std::string trace, volume, mode, law, model;
+    std::optional<double> threshold, stiffness, damping;
+    uint32_t seed = 1;
+};
+
+template <class Value>
+std::optional<Value> chosen(const std::string& text)
+{
+    for (const Spelling<Value>& each : spellings_of(Value{}))
+        if (each.name == text) return each.value;
+    return std::nullopt;
+}
+
+template <class Value>
+std::vector<std::string> choices()
+{
+    std::vector<std::string> names;
+    for (const Spelling<Value>& each : spellings_of(Value{})) names.emplace_back(each.name);
+    return names;
+}
+
+/// Cubes of 64 voxels, of 128 for large probes, and coarser levels for larger ones.
+class HostRelevance {
+public:
+    explicit HostRelevance(std::shared_ptr<const VolumeSource> source) : source_(std::move(source)) {}
+    void operator()(const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) const
+    {
+        const VolumeInfo& info = source_->info();
+        const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
+        int level = 0;
+        while (level + 1 < source_->levels() && radius / std::ldexp(finest, level) > LARGEST) ++level;
+        const glm::dvec3 spacing = info.spacing * std::ldexp(1.0, level);
+        const Size3 size = size_of_level(info.size, level);
+        const int64_t side = radius / std::ldexp(finest, level) > SMALL ? 128 : 64;
+        const RelevanceBits bits =
+            relevance_on_host(*source_, level, relevance_cube(point / spacing, size, side), threshold);
+        patch.origin = glm::ivec3(bits.box.lower);
+        patch.size = glm::ivec3(bits.box.size());
+        patch.words_per_row = int32_t(bits.words_per_row);
+        patch.spacing = spacing;
+        patch.volume_size = glm::ivec3(size);
+        patch.level = level;
+        std::ranges::copy(bits.words, patch.words.begin());
+    }
+
+private:
+    static constexpr double SMALL = 24.0, LARGEST = 48.0;  ///< radii, voxels, that leave the hand some way to go
+    std::shared_ptr<const VolumeSource> source_;
+};
+
+void run_replay(const ReplayCommandOptions& options)
+{
+    LongWork work(options.common.quiet);
+    static_cast<void>(work.begin("reading " + options.trace));
+    Trace trace = read_trace(options.trace);
+    const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
+    const VolumeInfo info = opened.source->info();
+    warn(info.warnings, options.common);
+    if (!trace.unit.empty() && trace.unit != info.unit)
+        fail(options.trace, ": key unit is ", in_quotes(trace.unit), ", and lengths of ", options.volume, " are in ",
+             in_quotes(info.unit), "; expected a trace of this volume");
+    std::vector<Notice> notices;
+    const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
+    warn(notices, options.common);
+    if (options.threshold)
+        for (TraceSettings& settings : trace.settings) settings.threshold = *options.threshold;
+
+    ReplayOptions how{.mode = chosen<HapticMode>(options.mode),
+                      .law = chosen<ProxyLaw>(options.law),
+                      .stiffness = options.stiffness,
+                      .damping = options.damping,
+                      .touch = std::nullopt};
+    if (!options.model.empty()) how.touch = TouchModel{.seed = options.seed};
+    static_cast<void>(work.begin("replaying " + options.trace));
+    const HostRelevance relevance(with_offsets(opened.source, offsets));
+    const MakeRelevance make = [&](const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) {
+        work.stop_if_asked();
+        relevance(point, radius, threshold, patch);
+    };
+    const ReplayResult result = replay_trace(trace, how, make);
+    clear_progress();
+    const TraceSettings& last = trace.settings.back();
+    Json report = report_of(result, info.unit);
+    report["mode"] = spelled(how.mode.value_or(last.force.mode));
+    report["law"] = spelled(how.law.value_or(last.force.law));
+    report["device_model"] = options.model.empty() ? Json(nullptr) : Json(options.model);
+    if (options.common.json) return print(report);
+    say(options.common,
+        sentence(result.ticks, " ticks, ", result.late, " late; largest force ", result.largest_force_n,
+                 " N; the hand gained ", 1e3 * result.energy_j, " mJ; proxy ", result.proxy_rms, " ", info.unit,
+                 " from the probe, root mean square over ", result.contact_ticks, " ticks of contact"));
+    if (result.told > 0)
+        say(options.common, sentence(result.told_equal, " of ", result.told, " forces equal those of the trace"));
+}
+
+void run_devices(const Common& common)
+{
+    const std::filesystem::path folder = asset_folder("devices");
+    const std::vector<HidProfile> profiles = folder.empty() ? std::vector<HidProfile>() : load_hid_profiles(folder);
+    Json devices = Json::array(), known = Json::array();
+    for (const HidListing& one : list_hid_devices(profiles))
+        devices.push_back({{"name", one.name},
+                           {"manufacturer", one.manufacturer},
+                           {"serial", one.serial},
+                           {"vendor", one.vendor},
+                           {"product", one.product},
+                           {"usage_page", one.usage_page},
+                           {"usage", one.usage},
+                           {"path", one.path},
+                           {"profile", one.profile.empty() ? Json(nullptr) : Json(one.profile)}});
+    for (const HidProfile& profile : profiles)
+        known.push_back({{"name", profile.name},
+                         {"reads", profile.input.has_value()},
+                         {"force", profile.verified && profile.output.has_value()},
+                         {"note", profile.note}});
+    if (common.json) return print({{"devices", devices}, {"profiles", known}, {"models", {"touch"}}});
+    if (devices.empty()) std::cout << "no HID device is plugged in, or none may be listed\n";
+    for (const Json& one : devices)
+        std::cout << one["name"].get<std::string>() << ": "
+                  << (one["profile"].is_null() ? "no profile" : one["profile"].get<std::string>()) << '\n';
+    for (const Json& one : known)
+        std::cout << "known: " << one["name"].get<std::string>()
+                  << (!one["reads"].get<bool>()  ? " (recognised only)"
+                      : one["force"].get<bool>() ? " (gives force)"
+                                                 : " (is read; gives no force)")
+                  << '\n';
+    std::cout.flush();
+    if (!std::cout) fail("standard output: cannot be written");
+}
+
+void add_replay(CLI::App& haptics)
+{
+    auto options = std::make_shared<ReplayCommandOptions>();
+    CLI::App* command = haptics.add_subcommand("replay", "Runs a stylus trace through the servo's force law");
+    command->add_option("TRACE", options->trace, "Stylus trace (JSON lines: haptics/replay/README.md)")->required();
+    command->add_option("--volume", options->volume, "Volume, project folder or session (.json)")->required();
+    command->add_option("--mode", options->mode, "Instead of the trace's")->check(CLI::IsMember(choices<HapticMode>()));
+    command->add_option("--law", options->law, "Instead of the trace's")->check(CLI::IsMember(choices<ProxyLaw>()));
+    command->add_option("--threshold", options->threshold, "Intensity, instead of the trace's");
+    command->add_option("--stiffness", options->stiffness, "N/m, instead of the trace's")->check(CLI::Range(0.0, 1e6));
+    command->add_option("--damping", options->damping, "N s/m, instead of the trace's")->check(CLI::Range(0.0, 1000.0));
+    command
+        ->add_option("--device-model", options->model,
+                     "A modelled device in a hand that is drawn along the trace; without it, the trace's answers")
+        ->check(CLI::IsMember({"touch"}));
+    command->add_option("--seed", options->seed, "Of the model's jitter")->capture_default_str();
+    add_input_options(*command, options->common);
+    add_belief_option(*command, options->common);
+    add_output_options(*command, options->common);
+    command->footer(
+        "Example:\n  shvr haptics replay stroke.trace --volume scan.json --mode object "
+        "--device-model touch");
+    command->callback([options] { run_replay(*options); });
+}
+
+}  // namespace
+
+void add_haptics(CLI::App& program)
+{
+    CLI::App* haptics = program.add_subcommand("haptics", "The sense of touch: replays, times, lists devices");
+    haptics->require_subcommand(1);
+    haptics->footer("Example:\n  shvr haptics devices");
+    add_replay(*haptics);
+    add_haptics_bench(*haptics);
+    auto common = std::make_shared<Common>();
+    CLI::App* devices = haptics->add_subcommand("devices", "Lists HID devices and what is known of them");
+    add_output_options(*devices, *common);
+    devices->footer("Example:\n  shvr haptics devices --json");
+    devices->callback([common] { run_devices(*common); });
+}
+
+}  // namespace shvr::cli
