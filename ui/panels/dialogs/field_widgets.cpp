@@ -73,6 +73,7 @@ public:
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
     {
         std::string shown = value.string();
+        want_glyphs(shown);
         ImGui::PushID(std::string(name).c_str());
         const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
         ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - button);

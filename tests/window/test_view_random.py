@@ -1,0 +1,102 @@
+"""Two hundred things done at random by real keys and mouse, under validation: no message, no crash, and what is there at
+the end is what the log replays to without a window. SHVR_SEED chooses others; where it fails, the log stays beside the
+program."""
+import json
+import os
+import random
+import shutil
+import unittest
+from pathlib import Path
+
+from harness import SHVR
+from seen import Seen, pressed, shortcut_rows
+from test_view import SIDE_PANEL, WINDOW
+
+EVENTS = 200
+# They ask for files, leave the window, or take long; each has a test of its own.
+LEFT_OUT = {"quit", "open", "palette", "full_screen", "large_screenshot", "screenshot", "focus_menu", "focus_panels"}
+
+
+class Random(Seen):
+    def hand(self, seed):
+        """Events, one after the other: what xdotool is to do."""
+        dice = random.Random(seed)
+        chords = [row["today"].split()[0] for row in shortcut_rows() if row["today"] and row["id"] not in LEFT_OUT]
+        # What people do most.
+        often = ["N", "Ctrl+Z", "Ctrl+Y", "Alt+2", "Alt+3", "Alt+4", "Alt+5", "Alt+1", "Escape", "F6", "F10", "."]
+        middle_x, middle_y = self.middle()
+
+        def in_picture():
+            return middle_x + dice.randint(-110, 110), middle_y + dice.randint(-110, 110)
+
+        def way(places, button, modifier=None):
+            events = ["mousemove", *places[0], *(["keydown", modifier] if modifier else []), "mousedown", button]
+            for place in places[1:]:
+                events += ["mousemove", *place, "sleep", 0.02]
+            return [*events, "mouseup", button, *(["keyup", modifier] if modifier else [])]
+
+        for _ in range(EVENTS):
+            kind = dice.randrange(20)
+            if kind < 6:
+                chord = pressed(dice.choice(chords))
+                yield ["mousemove", *in_picture(), "keydown", chord, "sleep", 0.05, "keyup", chord]
+            elif kind < 9:
+                chord = pressed(dice.choice(often))
+                yield ["mousemove", *in_picture(), "key", chord]
+            elif kind < 14:
+                x, y = in_picture()
+                places = [(x, y)] + [(x + dice.randint(-20, 20) * i, y + dice.randint(-20, 20) * i) for i in (1, 2, 3)]
+                yield way(places, dice.choice([1, 1, 1, 2, 3]), dice.choice([None, None, None, "alt", "shift", "ctrl"]))
+            elif kind < 15:
+                yield ["mousemove", *in_picture(), "click", "--repeat", 2, "--delay", 60, 1]
+            elif kind < 17:
+                yield ["mousemove", *in_picture(), "click", "--repeat", dice.randint(1, 4), "--delay", 30,
+                       dice.choice([4, 5])]
+            else:   # in the panels at the side
+                x, y = WINDOW[0] - dice.randint(40, SIDE_PANEL - 40), dice.randint(80, WINDOW[1] - 60)
+                if kind == 17:
+                    yield ["mousemove", x, y, "sleep", 0.05, "click", dice.choice([4, 5])]
+                elif kind == 18:
+                    yield ["mousemove", x, y, "sleep", 0.05, "mousedown", 1, "sleep", 0.03, "mouseup", 1]
+                else:
+                    yield way([(x, y), (x + dice.randint(-60, 60), y)], 1)
+
+    def test_what_was_done_at_random_is_replayed_to_the_same_end(self):
+        seed = int(os.environ.get("SHVR_SEED", "18"))
+        session = self.write_ball(volume={"procedural": "sphere", "size": [40, 40, 40]},
+                                  probe={"radius_voxels": 3, "group": 3, "paint_threshold": 120})
+        again = self.folder / "again" / session.name
+        again.parent.mkdir()
+        shutil.copy(session, again)
+        self.open_scan(session, preferences={"hints_seen": 3})
+        kept = Path(SHVR).resolve().parent / f"random-{seed}.jsonl"
+        try:
+            for event in self.hand(seed):
+                self.do(*event, pause_s=0.02)
+                self.assertIsNone(self.program.poll(), "the program has ended")
+            self.check_end(session, again)
+        except BaseException:
+            shutil.copy(self.log, kept)
+            print(f"the log is kept as {kept}")
+            raise
+
+    def check_end(self, session, again):
+        self.do("mousemove", *self.middle(), "key", "Escape", "key", "Escape", pause_s=0.5)
+        report = self.finish()
+        lines = [json.dumps(action) for action in self.done() if action["op"] != "quit"]
+        self.assertGreater(len(lines), EVENTS)
+        script = self.folder / "again.jsonl"
+        script.write_text("\n".join([*lines, '{"op":"save"}']) + "\n")
+        replayed = self.check_json("annotate", again, "--actions", script)
+        self.assertEqual(replayed["voxels_in_group"], report["voxels_in_group"])
+        self.assertEqual((replayed["undoable"], replayed["redoable"]), (report["undoable"], report["redoable"]))
+        for name in ("paint.mask", "paint.graphml"):
+            here, there = session.parent / name, again.parent / name
+            self.assertEqual(here.exists(), there.exists(), name)
+            if here.exists():
+                self.assertEqual(here.read_bytes(), there.read_bytes(), name)
+        self.assertEqual(json.loads(session.read_text()), json.loads(again.read_text()))
+
+
+if __name__ == "__main__":
+    unittest.main()
