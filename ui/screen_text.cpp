@@ -100,7 +100,9 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
+        // Characters wholly beyond the edge are not drawn at all: where one ends at it, another may follow.
+        const bool is_at_edge = pen + glyph->AdvanceX * size > clip.z - 0.5f * CUT;
+        const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT || is_at_edge;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});
             has_text_ = true;

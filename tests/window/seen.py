@@ -113,7 +113,7 @@ class Seen(Window):
         lines = self.log.read_text().split("\n")[:-1]
         return [json.loads(line) for line in lines[since:]]
 
-    def what_follows(self, cause, wanted, patience_s=10):
+    def what_follows(self, cause, wanted, patience_s=5):
         """Calls `cause`, and waits until one of the actions that it leads to is `wanted`; returns what was logged."""
         before = len(self.done())
         cause()

@@ -15,8 +15,6 @@ from test_view import Display
 FOLDER = Path(SHVR).resolve().parent / "photographs"
 LONG = "Leitbündel des mittleren Blütenstiels mit seinem Nebenast"
 SCRIPTS = ["维管束与细胞壁的边界", "Проводящий пучок", "Αγγειακή δέσμη"]
-# Of fields that are typed into, and of words that a person wrote where there is little room: these scroll, or end in
-# three dots.
 PANELS = ["transfer_function", "groups", "probe", "trace", "trace_list", "light", "occlusion", "cuts", "quality",
           "aids", "views", "history"]
 SLACK = 1.5   # pixels by which boxes of ink may touch
@@ -44,7 +42,7 @@ def write_png(path, width, height, rows):
 
 
 class Photographs(Seen):
-    size = (1000, 2300)   # at a scale of 1: high enough for all panels at once
+    size = (1000, 3000)   # at a scale of 1: high enough for all panels at once
 
     def start(self, *arguments, environment=None):
         width, height = (round(self.scale * side) for side in self.size)
@@ -75,7 +73,7 @@ class Photographs(Seen):
     def faults(self):
         texts = [seen for seen in self.seen() if not seen["scrolled"]]
         for seen in texts:
-            if seen["cut"]:
+            if seen["cut"] and not seen["text"].startswith("/"):   # a path in a field, which scrolls
                 yield f"in {seen['window']} '{seen['text']}' is cut off"
             if "\ufffd" in seen["text"] or "??" in seen["text"]:
                 yield f"in {seen['window']} '{seen['text']}' lacks characters"
