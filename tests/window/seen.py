@@ -79,8 +79,9 @@ class Seen(Window):
                 and (window is None or seen["window"].startswith(window))]
 
     def see(self, text, window=None):
-        """Waits for words; returns the last that were drawn."""
-        return self.until(lambda: self.seen(text, window), f"'{text}'")[-1]
+        """Waits for words; returns the last that were drawn, those that are no more than these first."""
+        found = self.until(lambda: self.seen(text, window), f"'{text}'")
+        return [*found, *(seen for seen in found if seen["text"] == text)][-1]
 
     def see_no_more(self, text, window=None):
         self.until(lambda: not self.seen(text, window), f"screen without '{text}'")

@@ -62,10 +62,11 @@ class Menus(Seen):
 
     def close_menus(self):
         for _ in range(12):
+            before = self.seen()
             if not self.seen(window="##Menu_") and not self.seen(window="Open a volume"):
                 return
             self.press("Escape")
-            self.do(pause_s=0.1)
+            self.until(lambda: self.seen() != before, "answer to Escape")
         self.fail("a menu stays open")
 
     def expected(self, path, entry):
@@ -97,6 +98,9 @@ class Menus(Seen):
             self.cut_a_line()
         for first in FIRST.get(name, []):
             self.do("mousemove", x, y, pause_s=0.1)
+            if first == "add_node":
+                self.press("Shift+Home")
+                self.what_follows(lambda: self.press("L"), "probe_onto", 2)
             row = next(row for row in self.table if row["id"] == first)
             self.what_follows(lambda: self.press(row["today"].split()[0]), MAKES.get(first, row["action"]), 2)
         if entry == "Fill":   # whatever it was before
@@ -106,6 +110,7 @@ class Menus(Seen):
         x, y = self.middle()
         for at in (x - 20, x, x + 20):
             self.do("mousemove", at, y, pause_s=0.2)
+            self.what_follows(lambda: self.press("L"), "probe_onto", 2)
             self.what_follows(lambda: self.press("N"), "node", 2)
         self.do("mousemove", x, y, pause_s=0.2)
         for key, action in (("/", "deselect"), (".", "select"), ("Delete", "delete")):
@@ -120,13 +125,16 @@ class Menus(Seen):
         window = f"##Menu_{len(path) - 1:02}"
         if expected.startswith("'"):
             self.click_on(entry, window)
-            self.see(expected.strip("'"), None)
+            self.see(expected.strip("'"))
+            self.see("Cancel")
             self.settle()
             self.press("Escape")
             self.see_no_more("Cancel")
         else:
             found = self.what_follows(lambda: self.click_on(entry, window), expected, patience_s=5)
             # What is chosen already changes nothing.
+            if expected == "ask_open":
+                self.see("", "Open a volume")
             if expected not in found and not (found == ["set "] and expected.startswith("set probe.")):
                 self.wrong.append(f"{' > '.join(path)} > {entry}: made {found}; expected {expected}")
         for text in ("Keys and mouse", "Preferences", "Messages", "GPU passes", "Find anything"):
