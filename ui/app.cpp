@@ -229,10 +229,12 @@ void App::handle_events(double timeout_s)
         ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
-        if (key)
+        if (key) {
             keyboard_.handle(*key, model(), ui_has_key(*key), actions_);
-        else if (bench_->model().is_painting || !is_overtaken(events, event))
+            if (leaves_panels(*key)) leave_panels();
+        } else if (bench_->model().is_painting || !is_overtaken(events, event)) {
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
+        }
         bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on it: the probe's position, the selection
     }

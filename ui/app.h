@@ -31,6 +31,7 @@ struct AppOptions {
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};      ///< the file (workbench/preferences.h); empty: none are read or kept
     std::filesystem::path log{};              ///< each action is written there as a line that replays it; empty: none
+    std::filesystem::path screen_texts{};     ///< each frame's texts are written there (screen_text.h); empty: none
     std::string version{};                    ///< of the program, for reports
     glm::uvec2 window_size{1280, 800};
 };
@@ -53,9 +54,11 @@ private:
     void follow_workbench();
     void follow_appearance();
     void follow_focus();
+    void leave_panels() const;
     void draw();
     void draw_ui();
     void draw_strokes() const;
+    void write_screen_texts() const;
     Model model() const;
     bool something_moves() const;
     bool ui_has_mouse(const InputEvent& event) const;

@@ -57,6 +57,13 @@ void App::follow_appearance()
     ui_until_s_ = std::max(ui_until_s_, window_.now_s() + 0.5);  // panels find their places anew
 }
 
+/// After panels or the menu were used by keyboard: otherwise what is framed there would take the next Space.
+void App::leave_panels() const
+{
+    const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (ImGui::GetIO().NavVisible && !has_popup && !ImGui::GetIO().WantTextInput) ImGui::SetWindowFocus(nullptr);
+}
+
 /// Inside a frame, since windows are known by then.
 void App::follow_focus()
 {

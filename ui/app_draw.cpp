@@ -1,11 +1,13 @@
 // A frame of the window: the panels' model, the lines over the panes, and the report of a run.
 
 #include <algorithm>
+#include <fstream>
 
 #include <imgui/imgui.h>
 
 #include "engine/base/image.h"
 #include "ui/app.h"
+#include "ui/screen_text.h"
 #include "ui/workbench/sight/marks.h"
 
 namespace shvr::ui {
@@ -45,6 +47,7 @@ void App::draw_ui()
     // A software device presents after all earlier submissions, so this wait only moves forward one that would happen
     // below; and the view's measured cost then excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
+    const double waited_s = window_.now_s() - begun;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
     follow_appearance();
@@ -60,14 +63,28 @@ void App::draw_ui()
     }
     viewport_.set_layout(layout);
     if (!window_.present(layers, viewport_.layout().begin)) return;
+    if (!options_.screen_texts.empty()) write_screen_texts();
     if (is_open && !layers.empty())
         window_.set_title(bench_->document().volume().name + " - SHVR" +
                           (bench_->document().only_looks() ? " (read only)" : ""));
     report_.presented({.number = window_.frames_presented(),
                        .begun_s = begun,
+                       .waited_s = waited_s,
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
+}
+
+/// Whole, or not at all: others read it while frames are drawn.
+void App::write_screen_texts() const
+{
+    const ImDrawData* const drawn = ImGui::GetDrawData();
+    if (!drawn) return;
+    const bool is_sharp = bench_->is_open() && bench_->document().screen.complete();
+    const std::filesystem::path written = options_.screen_texts.string() + ".new";
+    std::ofstream(written) << json_of(screen_texts(*drawn, *ImGui::GetIO().Fonts->Fonts[0]), window_.frames_presented(),
+                                      is_sharp);
+    std::filesystem::rename(written, options_.screen_texts);
 }
 
 /// The lines over each pane: the probe's outline, visible even if the probe is hidden; in maps the camera's direction;

@@ -147,6 +147,11 @@ bool moves_in_panels(const KeyEvent& event)
     return std::ranges::find(KEYS, event.key) != std::end(KEYS) && !(event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT));
 }
 
+bool leaves_panels(const KeyEvent& event)
+{
+    return event.pressed && !event.repeated && event.key == GLFW_KEY_ESCAPE;
+}
+
 int mods_held(const Window& window)
 {
     const auto either = [&](int left, int right, int mod) {

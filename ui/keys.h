@@ -29,6 +29,8 @@ private:
 
 /// Arrows, Tab, Space, Enter and Escape, without Ctrl and Alt: what Dear ImGui is used with by keyboard.
 bool moves_in_panels(const KeyEvent& event);
+/// Gives the keyboard back to the picture.
+bool leaves_panels(const KeyEvent& event);
 
 /// GLFW_MOD_* of the modifiers that are down.
 int mods_held(const Window& window);

@@ -26,6 +26,8 @@ void RunReport::done(uint64_t number, double time_s)
         const Frame& frame = presented.frame;
         if (frame.number > number) return false;
         report_.frame_ms.push_back((time_s - frame.begun_s) * 1e3);
+        (frame.shows_sharp_picture ? report_.own_idle_ms : report_.own_busy_ms)
+            .push_back((time_s - frame.begun_s - frame.waited_s) * 1e3);
         const double since_open_ms = (time_s - opened_s_) * 1e3;
         if (frame.shows_picture && !report_.first_picture_ms) report_.first_picture_ms = since_open_ms;
         if (frame.shows_sharp_picture && !report_.sharp_picture_ms) report_.sharp_picture_ms = since_open_ms;

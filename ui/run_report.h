@@ -16,8 +16,11 @@ namespace shvr::ui {
 /// Measurements of a run, for profiling and tests.
 struct AppReport {
     std::string gpu_name;
-    uint64_t frames = 0;              ///< of the user interface
-    std::vector<double> frame_ms;     ///< one interface frame: from its first call until the device has finished it
+    uint64_t frames = 0;           ///< of the user interface
+    std::vector<double> frame_ms;  ///< one interface frame: from its first call until the device has finished it
+    /// The same without the wait for what was under way on a software device: while nothing refines, and beside a
+    /// picture that does.
+    std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< between two frames while something was moving
     std::vector<double> input_ms;     ///< from a key or button until the frame that shows its effect is finished
     /// From opening the last volume until the device finished the first frame that showed any of it, and all of it
@@ -48,7 +51,8 @@ public:
     struct Frame {
         uint64_t number = 0;
         double begun_s = 0.0;
-        bool moves = false;  ///< drawn because something moves
+        double waited_s = 0.0;  ///< for what was under way
+        bool moves = false;     ///< drawn because something moves
         bool shows_picture = false, shows_sharp_picture = false;
     };
     void presented(const Frame& frame);

@@ -42,6 +42,7 @@ struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
     glm::ivec2 place{0}, size{0};  ///< of the window before it took the whole screen
+    std::vector<int> pressed;      ///< keys, since the last frame
     bool frame_is_open = false;    ///< an interface frame was begun and not yet rendered
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
@@ -85,6 +86,7 @@ struct Window::Input {
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
             const char* const character = glfwGetKeyName(key, scancode);
+            if (action == GLFW_PRESS && key >= 0) of(w).pressed.push_back(key);
             add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT, character ? character : ""});
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
@@ -233,8 +235,13 @@ void Window::begin_ui()
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
+    // A key that went down and up since the last frame, which may have taken long, was pressed all the same.
+    bool(&down)[512] = ImGui::GetIO().KeysDown;
+    const std::vector<int> pressed = std::exchange(input_->pressed, {});
+    for (const int key : pressed) down[key] = true;
     ImGui::GetIO().KeyAlt = false;  // otherwise letting go of Alt, as after Alt + drag, would move on to the menu
     ImGui::NewFrame();
+    for (const int key : pressed) down[key] = is_down(key);
 }
 
 bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "engine/base/error.h"
+#include "engine/formats/choice.h"
 
 namespace shvr {
 namespace {
@@ -137,7 +138,10 @@ int64_t choose(const std::string& file, const std::string& choice, int64_t count
     if (number && *number >= 1 && *number <= count) return *number - 1;
     std::string choices = sentence("1 to ", count);
     for (const char* name : names) choices += sentence(", ", name);
-    if (choice.empty()) fail(file, ": holds ", count, " ", what, "; expected ", option, " to choose one: ", choices);
+    if (choice.empty())
+        throw ChoiceNeeded(
+            sentence(file, ": holds ", count, " ", what, "; expected ", option, " to choose one: ", choices),
+            {Choice::numbered(option, count, {names.begin(), names.end()})});
     fail(file, ": ", option, " is ", in_quotes(choice), "; expected ", choices);
 }
 

@@ -16,9 +16,9 @@ SIDE_PANEL = 350   # pixels, as it ships
 class Display:
     """A separate virtual screen."""
 
-    def __init__(self):
+    def __init__(self, size="1000x700"):
         read_end, write_end = os.pipe()
-        self.server = subprocess.Popen(["Xvfb", "-noreset", "-displayfd", str(write_end), "-screen", "0", "1000x700x24"],
+        self.server = subprocess.Popen(["Xvfb", "-noreset", "-displayfd", str(write_end), "-screen", "0", f"{size}x24"],
                                        pass_fds=[write_end], stderr=subprocess.DEVNULL)
         os.close(write_end)
         with os.fdopen(read_end) as told:
@@ -44,10 +44,14 @@ class Window(CliTest):
 
     def start(self, *arguments, environment=None):
         self.program = subprocess.Popen(
-            [SHVR, "view", *map(str, arguments), "--json", "--size", f"{WINDOW[0]}x{WINDOW[1]}"],
+            [SHVR, "view", *self.with_size([*map(str, arguments), "--json"])],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             env={**ENVIRONMENT, "DISPLAY": self.display.name, **{k: str(v) for k, v in (environment or {}).items()}})
         self.addCleanup(self.program.kill)
+
+    @staticmethod
+    def with_size(arguments):
+        return arguments if "--size" in arguments else [*arguments, "--size", f"{WINDOW[0]}x{WINDOW[1]}"]
 
     def wait_for_window(self, title):
         end = time.monotonic() + PATIENCE_S

@@ -51,6 +51,7 @@ Json json_of(const ui::AppReport& report)
     return {{"device", report.gpu_name},
             {"frames", report.frames},
             {"ui_frame_ms", summary(report.frame_ms)},
+            {"ui_own_ms", {{"idle", summary(report.own_idle_ms)}, {"busy", summary(report.own_busy_ms)}}},
             {"ui_interval_ms", summary(report.interval_ms)},
             {"input_to_screen_ms", summary(report.input_ms)},
             {"first_picture_ms", json_of(report.first_picture_ms)},
@@ -75,7 +76,8 @@ Json json_of(const ui::AppReport& report)
 void run_view(const ViewCommandOptions& options)
 {
     const Common& common = options.common;
-    const char* validation = std::getenv("SHVR_VALIDATION");
+    const char* const validation = std::getenv("SHVR_VALIDATION");
+    const char* const screen_texts = std::getenv("SHVR_SCREEN_TEXTS");  // for tests: ui/screen_text.h
     ui::AppOptions wanted{.input = options.input,
                           .settings = common.settings,
                           .device = common.device,
@@ -85,6 +87,7 @@ void run_view(const ViewCommandOptions& options)
                           .allow_force = options.allow_force,
                           .preferences = ui::preferences_file(),
                           .log = options.log,
+                          .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
     const StopRequest stop;

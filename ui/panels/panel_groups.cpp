@@ -12,6 +12,7 @@
 #include "ui/panels/look/color_field.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
+#include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/group_list.h"
 
@@ -144,13 +145,15 @@ bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings,
     if (!row.is_found) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
     const std::string label = group == 0 ? "0  unpainted" : label_of_group(model.session.groups, group);
-    if (ImGui::Selectable(label.c_str(), group == model.brush().group))
+    const std::string shown = shortened(label, ImGui::GetContentRegionAvail().x) + "###name";
+    if (ImGui::Selectable(shown.c_str(), group == model.brush().group))
         set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     ImGui::PopStyleColor(row.is_found ? 1 : 2);
     if (indent > 0.0f) ImGui::Unindent(indent);
     drag_and_drop(group, model, actions);
     if (group == 0) {
-        hint("The volume where nothing is painted. Click: the eraser. Key: 0.");
+        hint(("The volume where nothing is painted. Click: the eraser" + key_in_brackets("eraser", model.keymap) + ".")
+                 .c_str());
         return false;
     }
     hint((label + "\nClick: paint with this group. Drag: put it below another. Right click: rename it, and more.")
@@ -236,7 +239,8 @@ void unpainted_row(const GroupRow& row, const Model& model, Actions& actions)
     name_cell(row, model, none, actions);
     changed |= opacity_drag(unpainted.opacity);
     hint("Opacity of the volume where nothing is painted: the transfer function is multiplied by it. Drag sideways.");
-    if (changed) set(actions, model, [&](Session& s) { s.unpainted = unpainted; });
+    if (!resets("unpainted.opacity", actions) && changed)
+        set(actions, model, [&](Session& s) { s.unpainted = unpainted; });
     ImGui::TableNextColumn();
 }
 
@@ -255,9 +259,10 @@ void group_row(const GroupRow& row, const Model& model, Actions& actions)
         settings.opacity = opacity;
         changed = true;
     }
-    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways.");
+    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways; a double click takes the usual one.");
+    const bool is_reset = resets(sentence("groups.", int(row.group), ".opacity").c_str(), actions);
     count_cell(model.voxels_by_group[row.group]);
-    if (changed) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
+    if (changed && !is_reset) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
 }
 
 /// A group with the sizes of what is traced in it.

@@ -42,7 +42,8 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
     ImGui::TextUnformatted(is_present ? ">" : "");
     ImGui::TableNextColumn();
     if (is_undone) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    const bool is_clicked = ImGui::Selectable(list.label_of(row).c_str(), is_present);
+    const std::string shown = shortened(list.label_of(row), ImGui::GetContentRegionAvail().x);
+    const bool is_clicked = ImGui::Selectable(shown.c_str(), is_present);
     if (is_undone) ImGui::PopStyleColor();
     if (const auto action = go_to_row(list, row)) {
         const std::string why = why_not(model, *action);

@@ -72,6 +72,7 @@ void file_menu(const Model& model, Actions& actions)
             if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
         ImGui::EndMenu();
     }
+    action_item("Open the example", OpenExample{}, model, actions);
     item("save", model, actions);
     if (ImGui::MenuItem("Save as...", nullptr, false, model.is_open && model.holder.empty())) ask_for_name(model);
     if (ImGui::MenuItem("Copy the session", nullptr, false, model.is_open)) actions.push_back(CopySession{});
@@ -345,7 +346,7 @@ void said(const Model& model, const std::string& right, Actions& actions)
     const float width = std::max((unread.empty() ? end : unread_at - gap) - begin, 1.0f);
     ImGui::PushClipRect(at, {at.x + width, at.y + ImGui::GetFrameHeight()}, true);
     ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? ImU32(ERROR_TEXT) : ImGui::GetColorU32(ImGuiCol_Text));
-    ImGui::TextUnformatted(sentence(is_bad ? "Error: " : "", model.status()).c_str());
+    ImGui::TextUnformatted(shortened(sentence(is_bad ? "Error: " : "", model.status()), width).c_str());
     ImGui::PopStyleColor();
     bool is_clicked = ImGui::IsItemClicked();
     hint("A click shows all messages.");

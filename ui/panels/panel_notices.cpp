@@ -22,7 +22,7 @@ void recovered_banner(const Model& model, const glm::vec2& begin, float width, A
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
     ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.12f, 0.26f, 0.36f, 0.96f));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
     ImGui::Begin("Recovered", nullptr, BANNER);
     if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});

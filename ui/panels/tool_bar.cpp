@@ -182,7 +182,9 @@ void active_group(const Model& model, Actions& actions)
     ImGui::SetNextItemWidth(GROUP_WIDTH * ImGui::GetFontSize());
     const bool erases = model.tool() == Tool::erase;
     const std::string shown = erases ? "erases any group" : label_of_group(model, group);
-    if (ImGui::BeginCombo("##group", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+    const float room =
+        GROUP_WIDTH * ImGui::GetFontSize() - ImGui::GetFrameHeight() - 2.0f * ImGui::GetStyle().FramePadding.x;
+    if (ImGui::BeginCombo("##group", shortened(shown, room).c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const uint8_t each : known_groups(model)) {
             ImGui::PushID(int{each});
             swatch(model, each);
@@ -194,7 +196,7 @@ void active_group(const Model& model, Actions& actions)
         ImGui::EndCombo();
     }
     hint(erases ? "The active group stays as it is, and is painted again with another tool."
-                : "The active group: what painting and tracing belong to.");
+                : (shown + "\nThe active group: what painting and tracing belong to.").c_str());
     ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
     step_button(">", "next_group", model, actions);
     step_button("+", "new_group", model, actions);

@@ -1,5 +1,7 @@
 #include "ui/panels/widgets.h"
 
+#include <algorithm>
+
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
@@ -41,6 +43,16 @@ bool resets(const char* key, Actions& actions)
     ImGui::ClearActiveID();  // the widget would follow the mouse, or take typed digits
     actions.push_back(Set{patch_of(sentence(key, "=null"))});
     return true;
+}
+
+std::string shortened(const std::string& text, float width)
+{
+    constexpr const char* DOTS = "...";
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    const float room = std::max(width - ImGui::CalcTextSize(DOTS).x, 0.0f);
+    const char* end = nullptr;
+    ImGui::GetFont()->CalcTextSizeA(ImGui::GetFontSize(), room, 0.0f, text.c_str(), text.c_str() + text.size(), &end);
+    return std::string(text.c_str(), end) + DOTS;
 }
 
 const char* spelled(const std::string& unit)

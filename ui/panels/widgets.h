@@ -33,6 +33,9 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 /// sent as well.
 bool resets(const char* key, Actions& actions);
 
+/// The text, or as much of its beginning as fits that width, with three dots.
+std::string shortened(const std::string& text, float width);
+
 /// A unit in its usual notation.
 const char* spelled(const std::string& unit);
 

@@ -77,7 +77,7 @@ struct PlaceClips {
     double near = 0.0, far = 0.0;
 };
 struct ResetCuts {};
-/// Brings all that is not cut away into sight, from where one looks.
+/// Brings the volume, or what the cutting planes leave of it, into sight, from where one looks.
 struct FitView {};
 /// Back to the camera that the session opens with.
 struct ResetView {};
@@ -224,6 +224,8 @@ struct ChooseBelief {
 };
 /// Saves all that is shown under names of its own, and opens that.
 struct WorkOnCopy {};
+/// Opens the example that ships, as a copy of the person's own.
+struct OpenExample {};
 
 /// No longer among what was opened last; the file stays.
 struct ForgetRecent {
@@ -305,8 +307,8 @@ using Action = std::variant<
     // the work, the window
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, LookAtFile, TakeFile, CorrectSpacing, DismissNotices, ForgetRecent, ChooseBelief, WorkOnCopy,
-    AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPasses, SavePasses, ComparePasses,
-    ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
+    OpenExample, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPasses, SavePasses,
+    ComparePasses, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

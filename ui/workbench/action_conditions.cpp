@@ -255,9 +255,9 @@ template <class Kind, class... Others>
 constexpr bool IS_ONE_OF = (std::is_same_v<Kind, Others> || ...);
 template <class Kind>
 constexpr bool NEEDS_DOCUMENT =
-    !IS_ONE_OF<Kind, Open, LookAtFile, TakeFile, AskOpen, ForgetRecent, ImportTask, EvaluateTask, CancelJob, ChooseKeys,
-               BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer, ShowPreferences, FocusOn,
-               ShowFullScreen, Quit>;
+    !IS_ONE_OF<Kind, Open, OpenExample, LookAtFile, TakeFile, AskOpen, ForgetRecent, ImportTask, EvaluateTask,
+               CancelJob, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPalette, Prefer,
+               ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "engine/annotation/work/work.h"
 #include "engine/jobs/jobs.h"
 #include "engine/live/screen.h"
+#include "engine/session/choices.h"
 #include "engine/session/session.h"
 #include "engine/session/transfer_presets.h"
 #include "haptics/servo.h"
@@ -33,10 +34,11 @@ struct Candidate {
     std::filesystem::path path;
     std::string settings;  ///< with which it was looked at
     bool is_being_read = true;
-    std::string failure;      ///< why it cannot be opened so; empty: it can, as far as that is known
-    std::string kind;         ///< "Volume", "Session", "Project", "Picture of a session"
-    bool is_project = false;  ///< nothing is to be imported
-    VolumeInfo volume{};      ///< what follows is known only without a failure
+    std::string failure;            ///< why it cannot be opened so; empty: it can, as far as that is known
+    std::vector<Choice> choices{};  ///< where the reason is that one of several has to be chosen
+    std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
+    bool is_project = false;        ///< nothing is to be imported
+    VolumeInfo volume{};            ///< what follows is known only without a failure
     int levels = 1;
     std::string memory{};  ///< what it will take of host and device
     std::vector<std::string> warnings{};

@@ -224,6 +224,7 @@ private:
     void act(const DismissNotices& action);
     void act(const ChooseBelief& action);
     void act(const WorkOnCopy& action);
+    void act(const OpenExample& action);
     void act(const ChooseKeys& action);
     void act(const BindKeys& action);
     void act(const Resize& action);

@@ -1,8 +1,11 @@
 // Files that somebody holds out to the window: what they are, their contents say.
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
+#include "engine/base/assets.h"
+#include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/session/session_patch.h"
 #include "engine/tasks/file_content.h"
@@ -33,6 +36,23 @@ void Workbench::act(const Open& action)
     begin_open(action.path, lines_of(action.settings));
 }
 
+/// The one that ships stays as it is: the folder may be read only, and others open it, too.
+void Workbench::act(const OpenExample&)
+{
+    if (options_.preferences.empty())
+        fail("no folder for the example is known; expected HOME or XDG_CONFIG_HOME in the environment");
+    const std::filesystem::path own = options_.preferences.parent_path() / "example" / "vessels.json";
+    jobs_.start("getting the example", [this, own](ProgressReporter&) {
+        const std::filesystem::path shipped = asset_folder("examples") / "vessels.session.json";
+        if (!std::filesystem::exists(own)) {
+            const std::string text = read_text(shipped, MAX_JSON_BYTES);
+            std::filesystem::create_directories(own.parent_path());
+            write_file_atomically(own, std::as_bytes(std::span(text)));
+        }
+        return Jobs::Completion([this, own] { begin_open(own, {}); });
+    });
+}
+
 // ---- What a file is, before it is opened ----------------------------------------------------------------------------
 
 void Workbench::act(const LookAtFile& action)
@@ -60,6 +80,7 @@ void Workbench::act(const LookAtFile& action)
             found.failure = estimate.refusal;
         } catch (const Error& error) {
             found.failure = error.what();
+            found.choices = choices_of(error);
         }
         return Jobs::Completion([this, found = std::move(found)] {
             const bool is_wanted =

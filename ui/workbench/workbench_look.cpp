@@ -206,7 +206,10 @@ void Workbench::act(const FitView&)
     const glm::dvec3 upper = glm::clamp(cut.upper, lower, size);
     const glm::uvec2 pixels = document_->screen.parts().empty() ? pixels_ : pane(0).pixels();
     look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
-    say("All that is not cut away is in sight");
+    const bool is_cut = lower != glm::dvec3(0.0) || upper != size;
+    const bool is_clipped = document_->camera.near_distance > 0.0 || document_->camera.far_distance > 0.0;
+    say(sentence(is_cut ? "What the cutting planes leave is in sight" : "The whole volume is in sight",
+                 is_clipped ? ", but for what the clip planes hide" : ""));
 }
 
 void Workbench::act(const ResetView&)

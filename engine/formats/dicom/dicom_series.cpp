@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/formats/choice.h"
 #include "engine/formats/data_files.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/orientation.h"
@@ -204,6 +205,7 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
     for (size_t i = 0; i < files.size(); ++i) series[{files[i].series_number, files[i].series_uid}].push_back(i);
 
     std::string choices;
+    Choice choice{"channel", {}};
     std::vector<const std::vector<size_t>*> chosen;
     int64_t number = 0;
     for (const auto& [key, members] : series) {
@@ -213,6 +215,8 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
         ++number;
         choices += sentence(number == 1 ? "" : ", ", number, " ", in_quotes(first.series_description), " (", slices,
                             " slices)");
+        choice.values.push_back(std::to_string(number));
+        choice.titles.push_back(sentence(number, "  ", first.series_description, " (", slices, " slices)"));
         const bool is_chosen = options.channel.empty() ? series.size() == 1
                                                        : options.channel == std::to_string(number) ||
                                                              options.channel == first.series_description ||
@@ -222,7 +226,9 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
     if (chosen.size() != 1) {
         const std::string found = options.channel.empty() ? sentence("holds ", series.size(), " series")
                                                           : sentence("channel is ", in_quotes(options.channel));
-        fail(where, ": ", found, "; expected a channel, the number or the description of one of: ", choices);
+        throw ChoiceNeeded(
+            sentence(where, ": ", found, "; expected a channel, the number or the description of one of: ", choices),
+            {std::move(choice)});
     }
     std::vector<DicomFile> members;
     for (const size_t member : *chosen[0]) members.push_back(std::move(files[member]));

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/choice.h"
 
 namespace shvr {
 namespace {
@@ -158,17 +159,23 @@ TiffChoice choose(const std::string& subject, const OpenOptions& options, const 
 {
     const bool needs_channel = names.size() > 1 && options.channel.empty();
     const bool needs_frame = frames > 1 && options.frame.empty();
+    const Choice channels = Choice::numbered("channel", int64_t(names.size()), names);
+    const Choice times = Choice::numbered("frame", frames);
     if (needs_channel && needs_frame) {
-        fail(subject, ": has ", names.size(), " channels (", channel_names(names), ") and ", frames,
-             " time points; expected one of each: choose with --channel ", channel_choices(names), " and ",
-             frame_choices(frames));
+        throw ChoiceNeeded(sentence(subject, ": has ", names.size(), " channels (", channel_names(names), ") and ",
+                                    frames, " time points; expected one of each: choose with --channel ",
+                                    channel_choices(names), " and ", frame_choices(frames)),
+                           {channels, times});
     }
     if (needs_channel) {
-        fail(subject, ": has ", names.size(), " channels (", channel_names(names),
-             "); expected one: choose with --channel ", channel_choices(names));
+        throw ChoiceNeeded(sentence(subject, ": has ", names.size(), " channels (", channel_names(names),
+                                    "); expected one: choose with --channel ", channel_choices(names)),
+                           {channels});
     }
     if (needs_frame) {
-        fail(subject, ": has ", frames, " time points; expected one: choose with ", frame_choices(frames));
+        throw ChoiceNeeded(
+            sentence(subject, ": has ", frames, " time points; expected one: choose with ", frame_choices(frames)),
+            {times});
     }
     TiffChoice choice;
     if (!options.channel.empty()) choice.channel = chosen_channel(subject, options.channel, names);

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "engine/base/error.h"
+#include "engine/formats/choice.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/zarr/ome_place.h"
@@ -163,7 +164,9 @@ int64_t chosen(const fs::path& path, const char* what, const std::string& wanted
         if (!names[i].empty()) choices += sentence(i == 0 ? "; " : ", ", i + 1, " is ", in_quotes(names[i]));
     }
     if (wanted.empty()) {
-        fail(path.string(), ": holds ", count, " ", what, "s; expected a ", what, " to be chosen (", choices, ")");
+        throw ChoiceNeeded(sentence(path.string(), ": holds ", count, " ", what, "s; expected a ", what,
+                                    " to be chosen (", choices, ")"),
+                           {Choice::numbered(what, count, names)});
     }
     fail(path.string(), ": has no ", what, " ", in_quotes(wanted), "; expected one of ", count, " (", choices, ")");
 }

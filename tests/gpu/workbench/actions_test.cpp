@@ -143,6 +143,8 @@ const Row ROWS[] = {
     {R"({"op":"work_on_copy"})",
      "cameras, file preferences.json, file scan-copy.json, file scan-copy.mask, file scan-copy.mask.json, open, undo",
      {STROKE}},
+    {R"({"op":"open_example"})",
+     "camera, cameras, file preferences.json, groups, light, open, place, probe, render, transfer_function, view"},
     {R"({"op":"look_at_file","path":"FOLDER/tiny.nrrd"})", "candidate"},
     {R"({"op":"take_file","path":"FOLDER/tiny.nrrd"})",
      "camera, file preferences.json, open, place, probe, render, transfer_function, view"},

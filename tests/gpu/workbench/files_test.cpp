@@ -235,3 +235,44 @@ TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is re
     desk.bench.perform(UndoOp{1});
     CHECK(desk.bench.model().session.light.ambient == 0.1);
 }
+
+TEST_CASE_FIXTURE(OnDevice, "what a file offers several of can be chosen before it is opened")
+{
+    Desk desk(renderer());
+    std::string colored =
+        "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 24 20 16\nkinds: RGB-color domain domain domain\n"
+        "encoding: raw\n\n";
+    for (int voxel = 0; voxel < 3 * 24 * 20 * 16; ++voxel) colored += char(voxel * 11 % 251);
+    desk.folder.write("colored.nrrd", colored);
+    const auto look = [&](const std::string& settings) -> const Candidate& {
+        desk.bench.perform(LookAtFile{desk.path("colored.nrrd"), settings});
+        settle(desk.bench);
+        REQUIRE(desk.bench.model().candidate);
+        return *desk.bench.model().candidate;
+    };
+    const Candidate several = look("");
+    CHECK(several.failure.find("channels") != std::string::npos);
+    REQUIRE(several.choices.size() == 1);
+    CHECK(several.choices[0].key == "channel");
+    CHECK(several.choices[0].values == std::vector<std::string>{"1", "2", "3"});
+    CHECK(several.choices[0].titles == std::vector<std::string>{"1  red", "2  green", "3  blue"});
+    const Candidate one = look("volume.channel=" + several.choices[0].values[1]);
+    CHECK(one.failure == "");
+    CHECK(one.choices.empty());
+    CHECK(one.volume.size == Size3(24, 20, 16));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "Fit says what it brings into sight")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    desk.bench.perform(FitView{});
+    CHECK(desk.bench.messages().last() == "The whole volume is in sight");
+    desk.bench.perform(PlaceClips{1.0, 0.0});
+    desk.bench.perform(FitView{});
+    CHECK(desk.bench.messages().last() == "The whole volume is in sight, but for what the clip planes hide");
+    desk.bench.perform(PlaceClips{});
+    desk.bench.perform(MoveCut{0, false, 0.25});
+    desk.bench.perform(FitView{});
+    CHECK(desk.bench.messages().last() == "What the cutting planes leave is in sight");
+}

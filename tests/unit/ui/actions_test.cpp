@@ -96,6 +96,7 @@ std::vector<Action> samples()
             ForgetRecent{"/tmp/gone.nrrd"},
             ChooseBelief{true},
             WorkOnCopy{},
+            OpenExample{},
             ChooseKeys{"thesis"},
             BindKeys{"undo", "Ctrl+U F2"},
             AskOpen{false},

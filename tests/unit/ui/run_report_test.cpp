@@ -42,3 +42,17 @@ TEST_CASE("keys are answered, and first pictures there, when the frame that show
     report.opened(2.0);
     CHECK(!report.measured().first_picture_ms);
 }
+
+TEST_CASE("what an interface frame takes itself is told apart from what it waited for")
+{
+    RunReport report;
+    report.presented({.number = 1, .begun_s = 1.0, .waited_s = 0.03, .shows_picture = true});
+    report.done(1, 1.05);
+    report.presented({.number = 2, .begun_s = 2.0, .shows_picture = true, .shows_sharp_picture = true});
+    report.done(2, 2.01);
+    REQUIRE(report.measured().own_busy_ms.size() == 1);
+    CHECK(report.measured().own_busy_ms[0] == doctest::Approx(20.0));
+    REQUIRE(report.measured().own_idle_ms.size() == 1);
+    CHECK(report.measured().own_idle_ms[0] == doctest::Approx(10.0));
+    CHECK(report.measured().frame_ms.size() == 2);
+}

@@ -17,6 +17,7 @@ std::string title_of(std::string_view key)
 {
     std::string title(key);
     std::ranges::replace(title, '_', ' ');
+    if (title.starts_with("ome zarr")) title.replace(0, 8, "OME-Zarr");
     if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
     return title;
 }
@@ -67,16 +68,18 @@ public:
     }
     void text(std::string_view name, std::string& value, const About& about) override
     {
-        ImGui::InputText(title_of(name).c_str(), &value);
+        ImGui::InputTextWithHint(title_of(name).c_str(), words_for(about, ImGui::CalcItemWidth()).c_str(), &value);
         tell(about);
     }
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
     {
         std::string shown = value.string();
+        want_glyphs(shown);
         ImGui::PushID(std::string(name).c_str());
         const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
-        ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - button);
-        if (ImGui::InputText("##path", &shown)) value = shown;
+        const float width = ImGui::CalcItemWidth() - button;
+        ImGui::SetNextItemWidth(width);
+        if (ImGui::InputTextWithHint("##path", words_for(about, width).c_str(), &shown)) value = shown;
         tell(about);
         ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
         const ImGuiID id = ImGui::GetID("##path");
@@ -131,6 +134,11 @@ public:
     void mention(std::string_view, const About& about) override { tell(about); }
 
 private:
+    /// What an empty field is for, as far as there is room.
+    static std::string words_for(const About& about, float width)
+    {
+        return shortened(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x);
+    }
     static void tell(const About& about)
     {
         std::string text = about.meaning;

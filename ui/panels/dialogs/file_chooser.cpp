@@ -169,6 +169,8 @@ std::optional<fs::path> FileChooser::draw()
 
 std::optional<fs::path> FileChooser::contents()
 {
+    want_glyphs(text_);
+    want_glyphs(failure_);
     list_.show(all_files_, hidden_);
     list_.read_on();
     if (list_.is_reading()) reading_in_frame = ImGui::GetFrameCount();
@@ -278,7 +280,9 @@ void FileChooser::place_list()
     ImGui::BeginChild("places", {11.0f * ImGui::GetFontSize(), -below});
     for (size_t i = 0; i < places_.size(); ++i) {
         ImGui::PushID(int(i));
-        if (ImGui::Selectable(places_[i].name.c_str(), places_[i].folder == list_.folder())) enter(places_[i].folder);
+        want_glyphs(places_[i].folder.native());
+        const std::string fitting = shortened(places_[i].name, ImGui::GetContentRegionAvail().x);
+        if (ImGui::Selectable(fitting.c_str(), places_[i].folder == list_.folder())) enter(places_[i].folder);
         hint(places_[i].folder.c_str());
         ImGui::PopID();
     }
@@ -313,11 +317,14 @@ void FileChooser::file_table(float height)
                 ImGui::TableNextColumn();
                 ImGui::PushID(i);
                 const std::string name = entry.name + (entry.is_folder ? "/" : "");
+                want_glyphs(name);
                 if (ImGui::Selectable("##row", selected_ == row,
                                       ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick))
                     (ImGui::IsMouseDoubleClicked(0) ? opened : clicked) = row;
                 ImGui::SameLine(0.0f, 0.0f);
-                ImGui::TextUnformatted(name.c_str());
+                const std::string fitting = shortened(name, ImGui::GetContentRegionAvail().x);
+                ImGui::TextUnformatted(fitting.c_str());
+                if (fitting != name) hint(name.c_str());
                 ImGui::TableNextColumn();
                 ImGui::TextDisabled("%s", details.kind_text.c_str());
                 ImGui::TableNextColumn();

@@ -29,9 +29,41 @@ FileChooser choosing({.title = "Look at a file",
 struct LoadDialog {
     LoadForm form;
     std::string path;
+    std::vector<Choice> choices;  ///< that the file was found to offer
     bool is_asked_for = false;
 };
 LoadDialog loading;
+
+/// What there is to choose from stays known once one is chosen.
+void follow_choices(const Candidate* candidate)
+{
+    if (!candidate || candidate->path != loading.path) return;
+    for (const Choice& choice : candidate->choices) {
+        std::erase_if(loading.choices, [&](const Choice& known) { return known.key == choice.key; });
+        loading.choices.push_back(choice);
+    }
+}
+
+/// A list where the file offers several, a field to type in otherwise.
+bool choice_field(const char* label, const char* key, std::string& value)
+{
+    const auto found = std::ranges::find(loading.choices, key, &Choice::key);
+    if (found == loading.choices.end()) return ImGui::InputText(label, &value);
+    const auto at = std::ranges::find(found->values, value);
+    const std::string title =
+        at != found->values.end() ? found->titles[size_t(at - found->values.begin())] : "choose one of them";
+    bool is_changed = false;
+    if (!ImGui::BeginCombo(label, value.empty() || at != found->values.end() ? title.c_str() : value.c_str()))
+        return false;
+    for (size_t i = 0; i < found->values.size(); ++i) {
+        want_glyphs(found->titles[i]);
+        if (!ImGui::Selectable(found->titles[i].c_str(), found->values[i] == value)) continue;
+        value = found->values[i];
+        is_changed = true;
+    }
+    ImGui::EndCombo();
+    return is_changed;
+}
 
 struct SpacingDialog {
     glm::dvec3 spacing{1.0};
@@ -84,6 +116,10 @@ void about(const Candidate& candidate)
     } else {
         if (!candidate.kind.empty()) {
             ImGui::TextUnformatted(sentence(candidate.kind, ", ", size_in_words(candidate.volume)).c_str());
+            if (candidate.levels > 1)
+                ImGui::TextUnformatted(sentence("In ", candidate.levels,
+                                                " sizes, each half of the one before; what the picture needs is read")
+                                           .c_str());
             ImGui::TextDisabled("Spacing: %s. Unit: %s.", in_words(candidate.volume.spacing_from),
                                 in_words(candidate.volume.unit_from));
             ImGui::TextUnformatted(("Takes " + candidate.memory).c_str());
@@ -102,15 +138,17 @@ void load_dialog(const Model& model, Actions& actions)
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({36.0f * ImGui::GetFontSize(), 0.0f});
     if (!ImGui::BeginPopupModal(LOAD, nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    follow_choices(model.candidate);
     LoadForm& form = loading.form;
     ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
+    want_glyphs(loading.path);
     ImGui::TextWrapped("%s", loading.path.c_str());
     ImGui::Spacing();
     bool is_changed = bare_fields(form);
     if (!form.is_bare) {
-        is_changed |= ImGui::InputText("channel", &form.channel);
-        hint("Of a file with several: red, green, blue, alpha, a name in the file, or a number from 1.");
-        is_changed |= ImGui::InputText("time point", &form.frame);
+        is_changed |= choice_field("channel or series", "channel", form.channel);
+        hint("Of a file or folder with several: red, green, blue, alpha, a name in it, or a number from 1.");
+        is_changed |= choice_field("time point", "frame", form.frame);
         hint("Of a file with several: a number from 1.");
     }
     is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
@@ -195,7 +233,12 @@ void load_menu(const Model& model)
 void load_dialogs(const Model& model, Actions& actions)
 {
     if (const auto path = choosing.draw()) {
-        loading.path = path->string();
+        if (loading.path != path->string()) {
+            loading.path = path->string();
+            loading.choices.clear();
+            loading.form.channel.clear();
+            loading.form.frame.clear();
+        }
         loading.is_asked_for = true;
     }
     load_dialog(model, actions);

@@ -9,6 +9,7 @@
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
@@ -61,14 +62,17 @@ void recent_list(const Model& model, Actions& actions)
             if (ImGui::Button("x", {cross, cross})) actions.push_back(ForgetRecent{path});
             hint("is no longer there: forget it");
         }
+        hint(path.c_str());
         const ImVec2 next = ImGui::GetCursorPos();
         ImGui::SetCursorPos({at.x + 4.0f, at.y + 0.5f * (cross - ImGui::GetTextLineHeight())});
+        const std::string name = shortened(path.filename().string(), 0.6f * width) + (gone ? "   (gone)" : "");
         if (gone)
-            ImGui::TextDisabled("%s", path.filename().c_str());
+            ImGui::TextDisabled("%s", name.c_str());
         else
-            ImGui::TextUnformatted(path.filename().c_str());
+            ImGui::TextUnformatted(name.c_str());
         ImGui::SameLine();
-        ImGui::TextDisabled("%s%s", path.parent_path().c_str(), gone ? "   (gone)" : "");
+        const float room = width - (ImGui::GetCursorPosX() - at.x) - 4.0f;
+        ImGui::TextDisabled("%s", shortened(path.parent_path().string(), room).c_str());
         ImGui::SetCursorPos(next);
         ImGui::PopID();
     }
@@ -138,10 +142,16 @@ void start_page(const Model& model, Actions& actions)
     ImGui::SameLine();
     ImGui::TextDisabled("look at, paint and trace volumes");
     ImGui::Spacing();
-    if (ImGui::Button("Open...", {8.0f * font, 0.0f})) actions.push_back(AskOpen{true});
+    if (ImGui::Button(("Open..." + key_in_brackets("open", model.keymap)).c_str(), {12.0f * font, 0.0f}))
+        actions.push_back(AskOpen{true});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("or drop a scan, a folder of slices, a session or a project here");
+    ImGui::TextDisabled("a scan of your own, or drop it here");
+    hint("TIFF, DICOM, NIfTI, NRRD, MetaImage, OME-Zarr or raw; a folder of slices, a session or a project.");
+    if (ImGui::Button("Open the example", {12.0f * font, 0.0f})) actions.push_back(OpenExample{});
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("small vessels, made by the program, to try things on");
     if (!model.opening.empty()) {
         ImGui::Spacing();
         ImGui::TextUnformatted(("Opening " + std::string(model.opening) + " ...").c_str());

@@ -64,13 +64,14 @@ void probe_look(const Model& model, Actions& actions)
     hint(
         "Of the ball. Below 1 what lies behind it is seen; the picture around it then takes twice as long. 0: no "
         "ball.");
-    if (is_other) set(actions, model, [&](Session& s) { s.probe = probe; });
+    if (!resets("probe.opacity", actions) && is_other) set(actions, model, [&](Session& s) { s.probe = probe; });
 }
 
 void workspace(const Model& model, Actions& actions)
 {
     double scale = model.session.interaction.workspace_scale;
-    if (slider("Workspace", scale, 0.05, 20.0, "%.2f times", ImGuiSliderFlags_Logarithmic))
+    const bool is_other = slider("Workspace", scale, 0.05, 20.0, "%.2f times", ImGuiSliderFlags_Logarithmic);
+    if (!resets("interaction.workspace_scale", actions) && is_other)
         set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
     explain(
         model, "larger_workspace",

@@ -41,7 +41,7 @@ void background(const Model& model, Actions& actions)
 }
 
 /// A ball with the highlight where the light comes from; it follows the mouse. Returns whether it was dragged.
-bool light_ball(glm::dvec3& direction)
+bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
 {
     const float side = 5.0f * ImGui::GetFontSize(), radius = 0.46f * side;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -49,6 +49,7 @@ bool light_ball(glm::dvec3& direction)
     ImGui::InvisibleButton("light ball", {side, side});
     const bool is_dragged = ImGui::IsItemActive();
     hint("Drag the light over the ball: the volume is lit as this ball is, from the viewer's side.");
+    is_reset |= resets("light.direction", actions);
     if (is_dragged) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         direction = direction_at({(mouse.x - middle.x) / radius, (middle.y - mouse.y) / radius});
@@ -80,10 +81,10 @@ bool light_angle(const char* name, double& degrees, double most, const char* hel
     return is_other;
 }
 
-bool light_from(Light& light)
+bool light_from(Light& light, bool& is_reset, Actions& actions)
 {
     glm::dvec3 direction = light_direction(light.direction);
-    bool is_other = light_ball(direction);
+    bool is_other = light_ball(direction, is_reset, actions);
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::TextUnformatted("Light from");
@@ -110,17 +111,23 @@ void light_controls(const Model& model, Actions& actions)
     Light light = model.session.light;
     bool changed = ImGui::Checkbox("Shading", &light.shaded);
     hint("Light from over your shoulder. Without it, colours are as chosen in the transfer function.");
-    changed |= light_from(light);
+    bool is_reset = false;
+    changed |= light_from(light, is_reset, actions);
     changed |= explained_slider("Ambient", light.ambient, 1.0, "Share of a colour that does not depend on the light.");
+    is_reset |= resets("light.ambient", actions);
     changed |= explained_slider("Diffuse", light.diffuse, 1.0, "Share that depends on which way a surface faces.");
+    is_reset |= resets("light.diffuse", actions);
     changed |= explained_slider("Highlight", light.specular, 1.0, "Strength of the highlight.");
+    is_reset |= resets("light.specular", actions);
     changed |= explained_slider("Shininess", light.shininess, 256.0, "How small and sharp the highlight is.",
                                 ImGuiSliderFlags_Logarithmic);
+    is_reset |= resets("light.shininess", actions);
     changed |= slider("Fade below", light.gradient_fade, 0.0, 0.2, "%.3f", ImGuiSliderFlags_Logarithmic);
+    is_reset |= resets("light.gradient_fade", actions);
     hint(
         "Steepness, as a share of the intensities per voxel, below which there is no surface to be lit: noise in flat "
         "places gets no shading.");
-    if (changed) set(actions, model, [&](Session& s) { s.light = light; });
+    if (changed && !is_reset) set(actions, model, [&](Session& s) { s.light = light; });
 }
 
 void blend_controls(const Model& model, Actions& actions)
@@ -130,10 +137,12 @@ void blend_controls(const Model& model, Actions& actions)
         "Blend size", blend.size, 1.0,
         "Distance blending: how much of another colour there is at the far end of the volume. 0 is off, 1 is all. "
         "Keys: menu View, Distance blending.");
+    bool is_reset = resets("blend.size", actions);
     changed |= explained_slider(
         "Blend rate", blend.rate, 10.0,
         "How it grows with depth: 0 the same everywhere, 1 evenly, above 1 near things stay clear. Keys: menu "
         "View, Distance blending.");
+    is_reset |= resets("blend.rate", actions);
     glm::dvec3 color = blend.color.value_or(glm::dvec3(model.session.render.background));
     if (color_field("Blend colour", color)) {
         blend.color = color;
@@ -147,7 +156,7 @@ void blend_controls(const Model& model, Actions& actions)
             changed = true;
         }
     }
-    if (changed) set(actions, model, [&](Session& s) { s.blend = blend; });
+    if (changed && !is_reset) set(actions, model, [&](Session& s) { s.blend = blend; });
 }
 
 }  // namespace

@@ -58,19 +58,22 @@ bool paging(RenderSettings& render)
     return is_other;
 }
 
-bool numbers(RenderSettings& render)
+bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
 {
     bool is_other = slider("Step", render.step_voxels, 0.05, 4.0, "%.3g voxels", ImGuiSliderFlags_Logarithmic);
     hint(
         "Distance between samples along a ray. Half of it takes twice as long. Above 1 narrow peaks cannot be looked "
         "for.");
+    is_reset |= resets("render.step_voxels", actions);
     if (render.step_voxels > MAX_PREINTEGRATED_STEP) render.preintegration = false;
     is_other |= slider("Opaque from", render.opacity_limit, 0.5, 1.0, "%.4f");
     hint("A ray stops once its opacity reaches this; 1: never before its end.");
+    is_reset |= resets("render.opacity_limit", actions);
     is_other |= slider("Detail", render.detail, 0.0, 8.0, "%.2g voxels a pixel");
     hint(
         "Of volumes in several levels: a level is fine enough if its voxels are no larger than this. 0: always the "
         "finest. Other volumes do not change.");
+    is_reset |= resets("render.detail", actions);
     return is_other;
 }
 
@@ -88,7 +91,8 @@ void quality_panel(const Model& model, Actions& actions)
 {
     choices(model, actions);
     RenderSettings render = model.session.render;
-    bool is_other = numbers(render);
+    bool is_reset = false;
+    bool is_other = numbers(render, is_reset, actions);
     is_other |= sampling(render);
     is_other |= paging(render);
     is_other |= ImGui::Checkbox("Leap over empty space", &render.skip_empty_space);
@@ -97,7 +101,7 @@ void quality_panel(const Model& model, Actions& actions)
     is_other |= ImGui::Checkbox("Narrow peaks", &render.preintegration);
     ImGui::EndDisabled();
     hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
-    if (is_other) set(actions, model, [&](Session& s) { s.render = render; });
+    if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.render = render; });
     budget(model);
 }
 

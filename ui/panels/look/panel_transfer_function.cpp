@@ -239,6 +239,10 @@ void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Ac
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::nothing) {
         state.selected = curve.add(axes.intensity_at(mouse.x), axes.opacity_at(mouse.y));
         send(curve, model, actions);
+    } else if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::paint_threshold) {
+        resets("probe.paint_threshold", actions);
+    } else if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::haptic_threshold) {
+        resets("probe.haptic_threshold", actions);
     } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         begin_drag(axes, curve, found, mouse, state);
     } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && found.grip == Grip::point) {
@@ -294,7 +298,7 @@ void scale_and_help(WidgetState& state)
         "small opacities can be seen and dragged.\n\n"
         "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
         "shifts all points, a tenth as far with Shift; Ctrl + drag does, too. The lines \"paint\" and \"feel\" are the "
-        "thresholds; drag them as well.");
+        "thresholds; drag them as well, or double click them for what fits the volume.");
 }
 
 void shading(const Model& model, Actions& actions)
@@ -318,7 +322,8 @@ void shading(const Model& model, Actions& actions)
 void unpainted(const Model& model, Actions& actions)
 {
     double opacity = model.session.unpainted.opacity;
-    if (slider("Volume", opacity, 0.0, 1.0, "%.2f opaque"))
+    const bool is_other = slider("Volume", opacity, 0.0, 1.0, "%.2f opaque");
+    if (!resets("unpainted.opacity", actions) && is_other)
         set(actions, model, [&](Session& s) { s.unpainted.opacity = opacity; });
     hint(
         "Opacity of the whole volume but for what is painted: all of the curve is multiplied by it. Below 1 painted "

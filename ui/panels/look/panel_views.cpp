@@ -7,6 +7,7 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
 #include "ui/workbench/edit.h"
 
 namespace shvr::ui {
@@ -19,7 +20,7 @@ bool choice(const char* label, int& chosen, const char* names)
     return ImGui::Combo(label, &chosen, names);
 }
 
-bool stereo_controls(StereoSettings& stereo)
+bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
 {
     int output = int(stereo.output);
     bool is_other = choice("Shown", output, "side by side\0one above the other\0red and cyan glasses\0");
@@ -29,6 +30,7 @@ bool stereo_controls(StereoSettings& stereo)
     hint(
         "Relative to the distance from the camera to the point it turns about. Less is easier on the "
         "eyes.");
+    is_reset |= resets("view.stereo.eye_distance", actions);
     is_other |= ImGui::Checkbox("Toe-in", &stereo.toe_in);
     hint("Turns the eyes towards each other. Otherwise both look straight ahead, which strains less.");
     return is_other;
@@ -48,7 +50,7 @@ void slice_sliders(const Model& model, Actions& actions)
     }
 }
 
-bool slice_controls(SliceSettings& slices, const Model& model, Actions& actions)
+bool slice_controls(SliceSettings& slices, const Model& model, bool& is_reset, Actions& actions)
 {
     slice_sliders(model, actions);
     const auto [lower, upper] = model.statistics.range();
@@ -60,17 +62,23 @@ bool slice_controls(SliceSettings& slices, const Model& model, Actions& actions)
         is_other = true;
     }
     hint("Intensities up to here are black.");
+    is_reset |= resets("view.slices.black", actions);
     if (slider("White", white, lower, upper, "%.5g")) {
         slices.white = std::max(white, black + step);
         is_other = true;
     }
     hint("Intensities from here on are white.");
+    is_reset |= resets("view.slices.white", actions);
     if (ImGui::Button("Automatic contrast")) actions.push_back(AutoContrast{});
-    hint("Black and white so that almost all voxels lie between them. In a slice: Ctrl + drag.");
+    hint(("Black and white so that almost all voxels lie between them" +
+          key_in_brackets("auto_contrast", model.keymap) + ". In a slice: Ctrl + drag.")
+             .c_str());
     is_other |= slider("Paint", slices.paint_share, 0.0, 1.0, "%.2f");
     hint("How strongly painted voxels take their group's colour.");
+    is_reset |= resets("view.slices.paint_share", actions);
     is_other |= slider("Enlarged", slices.zoom, 1.0, 50.0, "%.1f times", ImGuiSliderFlags_Logarithmic);
     hint("Magnification of the slices around the probe.");
+    is_reset |= resets("view.slices.zoom", actions);
     return is_other;
 }
 
@@ -80,15 +88,19 @@ void interaction_controls(const Model& model, Actions& actions)
     double percent = 100.0 * interaction.resolution;
     bool is_other = slider("In motion", percent, 10.0, 100.0, "%.0f %%");
     hint("Resolution while something moves. What stands still is always sharp.");
+    bool is_reset = resets("interaction.resolution", actions);
     interaction.resolution = percent / 100.0;
     is_other |= slider("Frames", interaction.frames_per_second, 5.0, 120.0, "at most %.0f a second");
     hint("More is smoother and leaves less time for other work.");
+    is_reset |= resets("interaction.frames_per_second", actions);
     int scale = int(interaction.screenshot_scale);
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
     is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
-    hint("Size of large screenshots (Ctrl + P), relative to the window.");
+    hint(("Size of large screenshots" + key_in_brackets("large_screenshot", model.keymap) + ", relative to the window.")
+             .c_str());
+    is_reset |= resets("interaction.screenshot_scale", actions);
     interaction.screenshot_scale = uint32_t(scale);
-    if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });
+    if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.interaction = interaction; });
 }
 
 }  // namespace
@@ -100,16 +112,18 @@ void views_panel(const Model& model, Actions& actions)
     bool is_other = choice("Window", arrangement, "single view\0two eyes\0overview\0slices\0");
     hint("One view, two eyes, an overview with maps of where the camera is, or slices through the probe (menu View).");
     view.arrangement = Arrangement(arrangement);
+    bool is_reset = false;
     switch (view.arrangement) {
         case Arrangement::single: break;
-        case Arrangement::stereo: is_other |= stereo_controls(view.stereo); break;
+        case Arrangement::stereo: is_other |= stereo_controls(view.stereo, is_reset, actions); break;
         case Arrangement::overview:
             is_other |= slider("Map scale", view.overview_zoom, 0.1, 10.0, "%.2f", ImGuiSliderFlags_Logarithmic);
             hint("Below 1 the maps show more of the surroundings.");
+            is_reset |= resets("view.overview_zoom", actions);
             break;
-        case Arrangement::slices: is_other |= slice_controls(view.slices, model, actions); break;
+        case Arrangement::slices: is_other |= slice_controls(view.slices, model, is_reset, actions); break;
     }
-    if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
+    if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.view = view; });
     ImGui::Separator();
     interaction_controls(model, actions);
 }

@@ -1,0 +1,126 @@
+"""What is seen and done in the window, for its tests: the words on the screen with their places (ui/screen_text.h), and
+the log of actions. Tests wait on these, never on times."""
+import json
+import re
+import time
+from pathlib import Path
+
+from test_view import PATIENCE_S, Window
+
+KEYS_FILE = Path("ui/workbench/bindings/KEYS.md")
+KEY_NAMES = {",": "comma", ".": "period", "/": "slash", "=": "equal", "-": "minus", "[": "bracketleft",
+             "]": "bracketright", "PageUp": "Prior", "PageDown": "Next", "Space": "space", "Enter": "Return"}
+
+
+def shortcut_rows():
+    """The table of shortcuts: [{id, does, today, thesis, action}], in order."""
+    found = []
+    for line in KEYS_FILE.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip()[1:-1].split("|")]
+        if line.startswith("| `") and len(cells) == 5:
+            found.append(dict(zip(["id", "does", "today", "thesis", "action"],
+                                  [cell.strip("`") for cell in cells[:4]] + [cells[4]])))
+    return found
+
+
+def pressed(chord):
+    """A chord as xdotool spells it."""
+    *modifiers, key = re.split(r"\+(?=.)", chord)
+    return "+".join([*(m.lower() for m in modifiers), KEY_NAMES.get(key, key.lower() if len(key) == 1 else key)])
+
+
+def in_short(action):
+    """"orbit", "set probe.brush": an action of the log, as the table of shortcuts has it."""
+    def names(patch, prefix):
+        for key, value in patch.items():
+            if isinstance(value, dict) and value:
+                yield from names(value, f"{prefix}{key}.")
+            else:
+                yield prefix + key
+    return action["op"] if action["op"] != "set" else "set " + ", ".join(names(action["values"], ""))
+
+
+class Seen(Window):
+    def view(self, *arguments, preferences=None, environment=None):
+        """Starts the window with a configuration of its own, a log, and its words in a file."""
+        self.log, self.words = self.folder / "log.jsonl", self.folder / "words.json"
+        self.configuration = self.folder / "configuration" / "shvr"
+        self.configuration.mkdir(parents=True, exist_ok=True)
+        if preferences is not None:
+            text = json.dumps({"shvr_preferences": 1, **preferences})
+            (self.configuration / "preferences.json").write_text(text)
+        self.start(*arguments, "--log", self.log,
+                   environment={"XDG_CONFIG_HOME": self.configuration.parent, "SHVR_SCREEN_TEXTS": self.words,
+                                **(environment or {})})
+        self.until(lambda: self.words.exists(), "a first frame")
+
+    def until(self, holds, what, patience_s=PATIENCE_S):
+        """Waits until `holds` returns something true, and returns that."""
+        end = time.monotonic() + patience_s
+        while True:
+            found = holds()
+            if found:
+                return found
+            if self.program.poll() is not None:
+                self.fail(f"the program has ended before there was {what}: {self.program.communicate(timeout=5)}")
+            if time.monotonic() > end:
+                self.fail(f"there is no {what}; on the screen: {[seen['text'] for seen in self.seen()]}")
+            time.sleep(0.02)
+
+    # ---- What is seen
+
+    def frame(self):
+        return json.loads(self.words.read_text())
+
+    def seen(self, text=None, window=None):
+        """The words on the screen, in the order of drawing; those that begin so, in windows whose name begins so."""
+        return [seen for seen in self.frame()["texts"]
+                if (text is None or seen["text"].startswith(text))
+                and (window is None or seen["window"].startswith(window))]
+
+    def see(self, text, window=None):
+        """Waits for words; returns the last that were drawn, those that are no more than these first."""
+        found = self.until(lambda: self.seen(text, window), f"'{text}'")
+        return [*found, *(seen for seen in found if seen["text"] == text)][-1]
+
+    def see_no_more(self, text, window=None):
+        self.until(lambda: not self.seen(text, window), f"screen without '{text}'")
+
+    def open_scan(self, session, *arguments, **others):
+        self.view(session, *arguments, **others)
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+
+    @staticmethod
+    def middle_of(seen):
+        x0, y0, x1, y1 = seen["box"]
+        return round((x0 + x1) / 2), round((y0 + y1) / 2)
+
+    def click_on(self, text, window=None, button=1):
+        """With the mouse, where the words are; the button is held for some frames, as by a hand."""
+        x, y = self.middle_of(self.see(text, window))
+        self.do("mousemove", x - 1, y, "mousemove", x, y, "sleep", 0.08, "mousedown", button, "sleep", 0.05,
+                "mouseup", button, pause_s=0)
+
+    def press(self, chord):
+        """Held for a moment."""
+        self.do("keydown", pressed(chord), "sleep", 0.03, "keyup", pressed(chord), pause_s=0)
+
+    # ---- What was done
+
+    def done(self, since=0):
+        """The actions of the log from one on, in short; the log holds those alone that could be applied."""
+        if not self.log.exists():
+            return []
+        lines = self.log.read_text().split("\n")[:-1]
+        return [json.loads(line) for line in lines[since:]]
+
+    def what_follows(self, cause, wanted, patience_s=5):
+        """Calls `cause`, and waits until one of the actions that it leads to is `wanted`; returns what was logged."""
+        before = len(self.done())
+        cause()
+        end = time.monotonic() + patience_s
+        while True:
+            found = [in_short(action) for action in self.done(before)]
+            if wanted in found or time.monotonic() > end:
+                return found
+            time.sleep(0.02)

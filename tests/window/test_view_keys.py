@@ -1,0 +1,120 @@
+"""Every key of both sets, pressed on a real keyboard: each does what ui/workbench/bindings/KEYS.md says of it. That
+table is the program's (tests/unit/ui/keys_table_test.cpp), and what an action then changes is the workbench's own table
+(tests/gpu/workbench/actions_test.cpp)."""
+import json
+import unittest
+
+from seen import Seen, shortcut_rows
+
+# What must be done first, so that there is something to do: other shortcuts, by their id.
+FIRST = {
+    "redo": ["undo"], "pivot_at_pointer": ["single_view"], "step_back": ["tool_paint"], "single_view": ["slices"], "tool_turn": ["tool_paint"],
+    "group_1": ["group_2"], "less_blending": ["more_blending"], "select_nearest": ["deselect"],
+    "select_segment": ["select_nearest"], "drag_node": ["select_nearest"], "look_at_selection": ["add_node"],
+    "undo": ["add_node"], "deselect": ["add_node"], "delete_selected": ["add_node"], "link_nearest": ["deselect", "add_node"],
+    "larger_selected": ["add_node"], "smaller_selected": ["add_node"], "larger_nodes": ["add_node"],
+    "smaller_nodes": ["add_node"], "next_node": ["add_node"], "previous_node": ["add_node"],
+    **{f"regroup_{group}": ["add_node"] for group in range(1, 10)},
+}
+# What it makes, where the table cannot know: there it is pressed in a state in which nothing is left to be set.
+MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
+         "group_1": "set probe.group", "new_group": "set probe.group", "less_blending": "set blend.size"}
+# Whose answer is a sentence, always.
+REFUSED = {"regroup_0": "roup 0 is the eraser"}
+# They switch a window on that takes keys, or that hides what follows: pressed again, or closed by Escape.
+TWICE = {"help", "preferences", "full_screen", "guide", "volume", "meshes"}
+ESCAPED = {"palette": "Find anything", "open": "Open a volume", "focus_panels": "", "focus_menu": ""}   # and their windows
+
+
+class Keys(Seen):
+    def check_set(self, column, key_set):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]},
+                                  light={"occlusion": {"strength": 0.3, "automatic": False}},
+                                  interaction={"screenshot_scale": 1},
+                                  probe={"radius_voxels": 3, "group": 3, "paint_threshold": 120})
+        self.open_scan(session, preferences={"key_set": key_set, "hints_seen": 3})
+        x, y = self.middle()
+        self.do("mousemove", x - 5, y, "mousemove", x, y)
+        self.table = {row["id"]: row for row in shortcut_rows()}
+        wrong = []
+        for row in self.table.values():
+            for chord in row[column].split():
+                found = self.check_row(row, chord, column)
+                if found is not None:
+                    wrong.append(f"{row['id']}: {chord} made {found}; expected {self.makes(row)}")
+        report = self.finish()
+        self.assertEqual(self.done()[-1], {"op": "quit"})
+        self.assertEqual(wrong, [], report["messages"][-30:])
+        for sentence in REFUSED.values():
+            self.assertIn(sentence, "\n".join(report["messages"]))
+
+    def makes(self, row):
+        return MAKES.get(row["id"], row["action"])
+
+    def run_shortcut(self, name, column):
+        row = self.table[name]
+        if name == "add_node":   # where the volume is seen
+            self.press("Shift+Home")
+            self.what_follows(lambda: self.press("L"), "probe_onto", patience_s=2)
+        self.assertTrue(row[column], f"{name} has no key in this set, and prepares others")
+        self.what_follows(lambda: self.press(row[column].split()[0]), self.makes(row), patience_s=2)
+
+    def check_row(self, row, chord, column):
+        """None, or what the chord made instead."""
+        name = row["id"]
+        if name == "quit":   # the last thing
+            return None
+        if name == "kept_view_1":   # there are nine views to be looked from
+            for _ in range(9):
+                self.run_shortcut("keep_view", column)
+        if name == "copy_measurements":
+            self.measure()
+        if name == "mend_cut":
+            self.cut_a_line(column)
+        for first in FIRST.get(name, []):
+            self.run_shortcut(first, column)
+        if name in REFUSED:
+            self.press(chord)
+            return None
+        found = self.what_follows(lambda: self.press(chord), self.makes(row))
+        if name in TWICE:
+            self.what_follows(lambda: self.press(chord), self.makes(row), patience_s=2)
+        if name in ESCAPED:
+            shown = ESCAPED[name]
+            if shown:
+                self.see("", shown)
+            else:
+                self.do(pause_s=0.3)
+            self.press("Escape")
+            if shown:
+                self.see_no_more("", shown)
+        return None if self.makes(row) in found else found
+
+    def measure(self):
+        x, y = self.middle()
+        self.press("Alt+6")
+        for at in (x - 20, x + 20):
+            self.what_follows(lambda: self.do("mousemove", at, y, "sleep", 0.1, "click", 1, pause_s=0), "measure_at")
+        self.press("Alt+1")
+        self.do("mousemove", x, y, pause_s=0.1)
+
+    def cut_a_line(self, column):
+        """Three nodes in a row, of which the middle one is deleted."""
+        x, y = self.middle()
+        for at in (x - 20, x, x + 20):
+            self.do("mousemove", at, y, pause_s=0.2)
+            self.run_shortcut("add_node", column)   # in turn, at other places
+        self.do("mousemove", x, y, pause_s=0.2)
+        self.run_shortcut("deselect", column)
+        self.run_shortcut("select_nearest", column)
+        self.run_shortcut("delete_selected", column)
+
+    def test_each_key_of_today_does_what_the_table_says(self):
+        self.check_set("today", "modern")
+
+    def test_each_key_of_the_thesis_does_what_the_table_says(self):
+        self.check_set("thesis", "thesis")
+
+
+if __name__ == "__main__":
+    unittest.main()
