@@ -4,8 +4,8 @@
 //   (m_arm + m_hand) x'' = k_hand (wish - x) - (b_hand + b_arm) x' + F - friction
 //
 // What a servo sees of it is rounded to counts, late, and read at times that jitter. Figures:
-//   arm      45 g, 0.26 N friction when moved by hand, 0.055 mm a count, 3.3 N peak, 0.88 N held: 3D Systems' data sheet
-//            of the Touch, not measured by us. 0.05 N s/m viscous friction is a guess that changes little.
+//   arm      45 g, 0.26 N friction when moved by hand, 0.055 mm a count, 3.3 N peak, 0.88 N held: data sheet of
+//            the Touch by its maker, not measured by us. 0.05 N s/m viscous is a guess that changes little.
 //   delay    2 ticks: a report in and a report out over USB, each up to 1 ms; jitter 0.5 ms either way
 //   hand     100 g, 150 N/m, 3 N s/m: a hand that holds a pen loosely
 // Between two reads it moves in steps of 0.05 ms; friction holds still what it can hold. The same seed and writes give

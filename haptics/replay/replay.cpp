@@ -103,7 +103,7 @@ private:
 }  // namespace
 
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
-                    bool keep_steps)
+                          bool keep_steps)
 {
     using Clock = std::chrono::steady_clock;
     Player player(trace, options);

@@ -39,6 +39,6 @@ struct ReplayResult {
 };
 /// New relevance is also made when the threshold changes; it takes effect at once.
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
-                    bool keep_steps = false);
+                          bool keep_steps = false);
 
 }  // namespace shvr

@@ -1,0 +1,98 @@
+"""shvr haptics: the servo without hardware."""
+import json
+import math
+import unittest
+
+from harness import CliTest
+
+KEYS = ["ticks", "late", "max_force_n", "energy_mj", "proxy_rms_um", "tick_us", "forces_hash"]
+SIDE = 64
+
+
+class Haptics(CliTest):
+    def setUp(self):
+        super().setUp()
+        # A tube along x through the middle, 4 voxels in radius; another beside it, one voxel apart.
+        voxels = bytearray(SIDE**3)
+        for z in range(SIDE):
+            for y in range(SIDE):
+                first, second = (y - 32)**2 + (z - 32)**2 <= 16, (y - 41)**2 + (z - 32)**2 <= 9
+                if first or second:
+                    start = SIDE * (y + SIDE * z)
+                    voxels[start:start + SIDE] = b"\xc8" * SIDE
+        (self.folder / "tube.raw").write_bytes(voxels)
+        self.volume = self.folder / "tube.nhdr"
+        self.volume.write_text(f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {SIDE} {SIDE} {SIDE}\nspacings: 2 2 2\n"
+                               'units: "um" "um" "um"\nencoding: raw\ndata file: tube.raw\n')
+
+    def trace(self, name="t.trace", ticks=3000, mode="proximity", more=()):
+        """A hand along the tube that strays; a voxel (2 um) is 0.25 mm in the hand."""
+        scale = 2 / 0.00025
+        lines = [{"shvr_stylus_trace": 1, "caps": {"outputs_force": True}},
+                 {"settings": {"assistance": True, "mode": mode, "threshold": 100, "probe_radius": 20,
+                               "to_volume": [scale, 0, 0, 0, scale, 0, 0, 0, scale], "origin": [65, 65, 65]}}]
+        for i in range(ticks):
+            stray = 0.0012 * math.sin(i / 150) * min(i / 1500, 1)
+            lines.append({"at": [-0.003 + 0.000002 * i, stray, 0]})
+        path = self.folder / name
+        path.write_text("".join(json.dumps(line) + "\n" for line in [*lines, *more]))
+        return path
+
+    def replay(self, *arguments):
+        result = self.check_json("haptics", "replay", *arguments, "--volume", self.volume)
+        self.assert_keys(result, KEYS)
+        self.assert_keys(result["tick_us"], ["p50", "p99", "max"])
+        return result
+
+    def test_the_same_trace_gives_the_same_forces(self):
+        trace = self.trace()
+        first, again = self.replay(trace), self.replay(trace)
+        self.assertEqual(first["forces_hash"], again["forces_hash"])
+        self.assertEqual((first["ticks"], first["late"]), (3000, 0))
+        self.assertGreater(first["max_force_n"], 0.05)
+        self.assertLessEqual(first["max_force_n"], 3.3)
+        self.assertGreater(first["proxy_rms_um"], 0.5)
+        self.assertLessEqual(first["max_step_n"], 0.1 + 1e-9)
+        self.assertEqual(first["unit"], "um")
+
+    def test_a_modelled_touch_is_led_along_the_tube_beside_another(self):
+        trace = self.trace()
+        near = self.replay(trace, "--device-model", "touch")
+        own = self.replay(trace, "--device-model", "touch", "--mode", "object")
+        again = self.replay(trace, "--device-model", "touch", "--mode", "object")
+        self.assertEqual(own["forces_hash"], again["forces_hash"])
+        self.assertEqual((own["mode"], own["objects"], near["objects"]), ("object", 1, 0))
+        self.assertNotEqual(own["forces_hash"], near["forces_hash"])
+
+    def test_what_is_above_the_threshold_decides(self):
+        trace = self.trace()
+        self.assertEqual(self.replay(trace, "--threshold", "250")["max_force_n"], 0)
+
+    def test_forces_of_the_trace_are_compared(self):
+        trace = self.trace(more=[{"force": [9, 9, 9]}])
+        result = self.replay(trace)
+        self.assertEqual((result["forces_told"], result["forces_equal"]), (1, 0))
+
+    def test_what_cannot_be_replayed(self):
+        bad = self.folder / "bad.trace"
+        bad.write_text('{"shvr_stylus_trace":1}\n{"at":[0,0]}\n')
+        self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["bad.trace:2", "at"])
+        bad.write_text('{"shvr_stylus_trace":1,"unit":"mm"}\n{"at":[0,0,0]}\n')
+        self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["unit", "mm", "um"])
+        self.check_refused("haptics", "replay", self.folder / "none", "--volume", self.volume, says=["none"])
+        self.check_refused("haptics", "replay", bad, "--volume", self.volume, "--mode", "magic", status=2,
+                           says=["--mode"])
+
+    def test_devices(self):
+        result = self.check_json("haptics", "devices")
+        self.assert_keys(result, ["devices", "profiles", "models"])
+        self.assertIn("SHVR reference layout", [profile["name"] for profile in result["profiles"]])
+
+    def test_bench(self):
+        result = self.check_json("haptics", "bench", "--seconds", "0.2")
+        self.assert_keys(result, [key for key in KEYS if key != "forces_hash"])
+        self.assertEqual({case["side"] for case in result["cases"]}, {64, 128})
+
+
+if __name__ == "__main__":
+    unittest.main()

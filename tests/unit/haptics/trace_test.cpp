@@ -1,0 +1,154 @@
+#include "haptics/replay/trace.h"
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "haptics/replay/replay.h"
+#include "tests/support/haptic_scenes.h"
+
+using namespace shvr;
+
+namespace {
+
+const std::string HEAD = "{\"shvr_stylus_trace\":1,\"unit\":\"mm\"}\n";
+
+std::string refusal(const std::string& text)
+{
+    try {
+        parse_trace(text, "t.trace");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// A hand that wanders over a tube, with answers of every kind.
+Trace wandering(int ticks)
+{
+    std::mt19937 random(61);
+    Trace trace;
+    trace.unit = "mm";
+    trace.caps.outputs_force = true;
+    TraceSettings settings;
+    settings.force = {.assistance = true, .probe_radius = 2.5};
+    settings.force.workspace = {glm::dmat3(1000.0), glm::dvec3(8.0)};
+    settings.threshold = 0.1;
+    trace.settings.push_back(settings);
+    settings.force.mode = HapticMode::object;
+    settings.from_tick = size_t(ticks / 2);
+    trace.settings.push_back(settings);
+    for (int i = 0; i < ticks; ++i) {
+        TraceTick tick;
+        tick.now_ns = 1'000'000 * uint64_t(i + 1) + random() % 1000;
+        if (random() % 50 == 0) tick.read = ReadResult::stale;
+        tick.state.time_ns = tick.now_ns - 500;
+        tick.state.sequence = uint32_t(i + 1);
+        const double y = 0.001 * std::sin(0.01 * i);
+        tick.state.position_m = {1e-9 * double(random()), i < 1500 ? y / 50.0 : y, 1e-4 / 3.0};
+        trace.ticks.push_back(tick);
+    }
+    return trace;
+}
+
+void make_tube(const glm::dvec3&, double, double, RelevancePatch& patch)
+{
+    const Rod rod{.point = glm::dvec3(8.0), .radius = 1.0};
+    fill_patch(patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(0.25), [&](const glm::dvec3& p) { return rod.holds(p); });
+    patch.volume_size = glm::ivec3(64);
+}
+
+}  // namespace
+
+TEST_CASE("a trace is read as it was written, bit for bit")
+{
+    Trace trace = wandering(300);
+    trace.ticks[7].state.position_m.y = std::nan("");
+    trace.ticks[8].state.position_m.z = -INFINITY;
+    trace.ticks[9].force_n = glm::dvec3(0.1, 1.0 / 3.0, -1e-300);
+    const std::string text = text_of(trace);
+    const Trace again = parse_trace(text, "t");
+    CHECK(text_of(again) == text);
+    CHECK(again.ticks.size() == 300);
+    CHECK(again.ticks[9].force_n == trace.ticks[9].force_n);
+    CHECK(again.ticks[20].state.position_m == trace.ticks[20].state.position_m);
+    CHECK(again.settings[1].from_tick == 150);
+    CHECK(again.settings[1].force.mode == HapticMode::object);
+}
+
+TEST_CASE("what a tick leaves out follows from the one before")
+{
+    const Trace trace = parse_trace(HEAD + "{\"at\":[0.001,0,0]}\n{\"read\":\"stale\"}\n{\"buttons\":1}\n", "t");
+    REQUIRE(trace.ticks.size() == 3);
+    CHECK(trace.ticks[2].now_ns == 3'000'000);
+    CHECK(trace.ticks[1].read == ReadResult::stale);
+    CHECK(trace.ticks[2].state.sequence == 2);
+    CHECK(trace.ticks[2].state.position_m.x == 0.001);
+}
+
+TEST_CASE("what is no trace is refused in a sentence with its line")
+{
+    CHECK(refusal("") == "t.trace is empty; expected a line {\"shvr_stylus_trace\":1}");
+    CHECK(refusal(HEAD).starts_with("t.trace has no tick; expected"));
+    CHECK(refusal("{\"shvr_stylus_trace\":2}\n").find("t.trace:1: key shvr_stylus_trace is 2; expected 1") == 0);
+    for (const char* line : {"{\"at\":[0,0]}", "{\"at\":[0,0,\"far\"]}", "{\"speed\":1}", "{\"read\":\"gone\"}", "7",
+                             "{\"settings\":{\"mode\":\"magic\"}}", "{\"settings\":{\"probe_radius\":0}}",
+                             "{\"settings\":{\"to_volume\":[0,0,0,0,0,0,0,0,0]}}", "{\"now\":-1}", "{\"at\":"}) {
+        const std::string said = refusal(HEAD + line);
+        CAPTURE(said);
+        CHECK(said.find("t.trace:2") == 0);
+        CHECK(said.find('\n') == std::string::npos);
+    }
+    CHECK(refusal(HEAD + "{\"now\":5000000}\n{\"now\":4000000}").find("t.trace:3") == 0);  // time goes on
+}
+
+TEST_CASE("a replay gives the same forces again, bit for bit, and knows those that the trace holds")
+{
+    Trace trace = wandering(4000);
+    const ReplayResult first = replay_trace(trace, {}, make_tube, true);
+    CHECK(first.ticks == 4000);
+    CHECK(first.late == 0);
+    CHECK(first.largest_force_n > 0.1);
+    CHECK(first.largest_step_n <= SLEW_N + 1e-12);
+    for (size_t i = 0; i < trace.ticks.size(); ++i) trace.ticks[i].force_n = first.steps[i].force_n;
+    const ReplayResult again = replay_trace(parse_trace(text_of(trace), "t"), {}, make_tube);
+    CHECK(again.hash == first.hash);
+    CHECK(again.told_equal == 4000);
+    ReplayOptions softer;
+    softer.stiffness = 299.0;
+    const ReplayResult other = replay_trace(trace, softer, make_tube);
+    CHECK(other.hash != first.hash);
+    CHECK(other.told_equal < 4000);
+}
+
+TEST_CASE("a modelled Touch drawn along a trace is reproducible, and its seed decides")
+{
+    const Trace trace = wandering(2500);
+    ReplayOptions options;
+    options.touch = TouchModel{};
+    const uint64_t first = replay_trace(trace, options, make_tube).hash;
+    CHECK(replay_trace(trace, options, make_tube).hash == first);
+    options.touch->seed = 2;
+    CHECK(replay_trace(trace, options, make_tube).hash != first);
+}
+
+TEST_CASE("the modelled Touch sticks below its friction, moves above it, and answers in counts, late")
+{
+    ModelledTouch device(TouchModel{.jitter_s = 0.0, .hand_stiffness = 0.0});
+    DeviceState state;
+    for (uint32_t i = 1; i <= 50; ++i) {
+        device.read(state);
+        device.write({0.25, 0.0, 0.0}, i);
+    }
+    CHECK(state.position_m.x == 0.0);
+    CHECK(state.force_sequence == 47);  // two ticks and the one in which it acts
+    for (uint32_t i = 51; i <= 100; ++i) {
+        device.read(state);
+        device.write({0.5, 0.0, 0.0}, i);
+    }
+    // (0.5 - 0.26) N on 45 g for about 47 ms.
+    CHECK(state.position_m.x == doctest::Approx(0.5 * 0.24 / 0.045 * 0.047 * 0.047).epsilon(0.15));
+    CHECK(std::abs(state.position_m.x / 55e-6 - std::round(state.position_m.x / 55e-6)) < 1e-6);
+}
