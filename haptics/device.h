@@ -28,6 +28,9 @@ struct DeviceState {
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
     uint32_t jump = 0;     ///< changes when a simulated device was moved there at once: no glitch
     bool calibrated = true;
+    /// Of a device that states speeds (`DeviceCaps::rate_control`): shares of its full deflection, -1 ... 1, along and
+    /// about our axes. The view may be moved by them; position and rotation are their sums over time.
+    glm::dvec3 rate{0.0}, turn_rate{0.0};
 };
 
 struct DeviceCaps {
@@ -40,6 +43,7 @@ struct DeviceCaps {
     bool senses_rotation = false;
     bool outputs_force = false;
     bool tells_force_sequence = false;  ///< its states tell which force is in effect; otherwise `latency_s` must do
+    bool rate_control = false;  ///< it states speeds, not places; it rests where it is silent
 };
 
 enum class ReadResult : uint8_t {
@@ -56,6 +60,8 @@ public:
     virtual ReadResult read(DeviceState& state) noexcept = 0;
     /// Sets the force on the hand from now on. False if the device is gone.
     virtual bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept = 0;
+    /// Why it is lost or gives no force, a sentence that is never freed; "" if nothing is wrong. Any thread.
+    virtual const char* trouble() const noexcept { return ""; }
 };
 
 }  // namespace shvr

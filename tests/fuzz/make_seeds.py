@@ -537,6 +537,23 @@ def make_text():
              f'{{"procedural": "{kind}", "size": [1048576, 1048576, 1048576], "type": "int8", "spacing": [1, 2, 1e-12]}}')
     for file in sorted((ROOT / "assets/devices").glob("*.json")):
         seed("hid_profile", file.stem, file.read_bytes())
+    place = '{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0.01,"y":-1.2e-1,"z":0.15}}}]}'
+    event = '{"name":"device-safety-triggered","data":{"device_id":"049D","safety_type":"ebrake_triggered"},"message":"\\u00e9"}'
+    grip = ('{"inverse3":[],"wireless_verse_grip":[{"device_id":"1","state":{"orientation":{"w":1,"x":0,"y":0,"z":0},'
+            '"buttons":{"a":true,"b":false}}}],"session_id":7,"x":[null,[1,-2.5e3],{}]}')
+
+    def frame(text, first=0x81):
+        data = text.encode()
+        size = bytes([len(data)]) if len(data) < 126 else b"\x7e" + struct.pack(">H", len(data))
+        return bytes([first]) + size + data
+    for name, text in {"state": place, "event": event, "grip": grip}.items():
+        seed("inverse3", name, frame(text))
+    seed("inverse3", "parts", frame(place[:40], 0x01) + frame("hi", 0x89) + frame(place[40:], 0x80))
+    seed("inverse3", "handshake", "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n"
+         "Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n\r\n")
+    seed("inverse3", "claims_size", b"\x81\x7f" + struct.pack(">Q", 1 << 62) + b"{")
+    seed("hid_recording", "touch", '{"format":"shvr_hid_reports","version":1,"vendor":"0x2988","product":"0x0304",'
+         '"name":"Touch","descriptor":"0600ff"}\n{"t_us":0,"bytes":"01a3ff"}\n{"t_us":1000,"bytes":"01a4ff"}\n')
     for sides in [(5, 4, 3), (33, 32, 2), (64, 1, 1)]:
         voxels = sides[0] * sides[1] * sides[2]
         seed("mask", "x".join(map(str, sides)), bytes(side - 1 for side in sides) +

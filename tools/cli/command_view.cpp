@@ -110,7 +110,7 @@ void add_view(CLI::App& program)
     command->add_option("INPUT", options->input, "Session (.json), project folder or volume; none: drop one onto it");
     command->add_option("--size", options->size, "Size of the window, as in 1280x800");
     command->add_flag("--allow-force", options->allow_force,
-                      "Let a haptic device with a verified profile put force on the hand");
+                      "Let a haptic device put force on the hand; one on HID only with a verified profile");
     command->add_option("--log", options->log, "Write each action as a line that shvr annotate replays");
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);

@@ -6,7 +6,6 @@
 
 #include "engine/base/assets.h"
 #include "engine/base/text.h"
-#include "haptics/hid_device.h"
 
 namespace shvr::ui {
 

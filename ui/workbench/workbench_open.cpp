@@ -18,7 +18,8 @@
 #include "engine/base/text.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_patch.h"
-#include "haptics/hid_device.h"
+#include "haptics/devices/device_list.h"
+#include "haptics/hid/hid_profile.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -418,7 +419,8 @@ std::unique_ptr<HapticDevice> Workbench::find_device(std::string& said) const
     if (!options_.has_servo) return nullptr;
     try {
         const std::filesystem::path profiles = asset_folder("devices");
-        return profiles.empty() ? nullptr : open_hid_device(load_hid_profiles(profiles), options_.allow_force);
+        if (profiles.empty()) return nullptr;
+        return open_first_device({.profiles = load_hid_profiles(profiles), .allow_force = options_.allow_force});
     } catch (const Error& error) {
         said = error.what();
         return nullptr;

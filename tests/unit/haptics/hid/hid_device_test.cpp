@@ -1,4 +1,4 @@
-#include "haptics/hid_device.h"
+#include "haptics/hid/hid_device.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,13 +6,14 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "haptics/hid_link.h"
+#include "haptics/hid/hid_link.h"
 #include "haptics/servo.h"
 
 using namespace shvr;
@@ -320,6 +321,138 @@ TEST_CASE("the device's own limits are asked for when it is opened")
     world.feature = {3, 0xd0, 0x07, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     const auto device = make_link(world, reference(), true);
     CHECK(device->caps().peak_force_n == doctest::Approx(2.0));
+}
+
+TEST_CASE("another device that is plugged in is asked for its own limits before it is read")
+{
+    World world;
+    world.feature = {3, 0xd0, 0x07, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    const auto device = make_link(world, reference(), true);
+    CHECK(device->caps().peak_force_n == doctest::Approx(2.0));
+    DeviceState state;
+    world.change([&] { world.is_plugged = false; });
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::lost; }));
+    CHECK(device->trouble() == std::string("the device was unplugged"));
+    world.change([&] {
+        world.feature[1] = 0xe8;
+        world.feature[2] = 0x03;
+        world.is_plugged = true;
+        world.incoming = {report_of(1, 0)};
+    });
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::fresh; }));
+    CHECK(device->caps().peak_force_n == doctest::Approx(1.0));
+    CHECK(device->caps().outputs_force);
+    CHECK(device->trouble() == std::string());
+}
+
+TEST_CASE("a device that states speeds moves as long as it says so, within its box, and rests in silence")
+{
+    World world;
+    const HidProfile profile = load_hid_profile("assets/devices/spacemouse.json");
+    static std::atomic<uint64_t> now_ns{0};
+    now_ns = 1'000'000'000;
+    const auto device = make_hid_link(profile, std::make_unique<FakePort>(world), [] { return nullptr; },
+                                      {.now_ns = [] { return now_ns.load(); }});
+    CHECK(device->caps().rate_control);
+    CHECK_FALSE(device->caps().outputs_force);
+    DeviceState state;
+    const auto tick = [&] {
+        now_ns += 1'000'000;
+        CHECK(device->read(state) == ReadResult::fresh);  // silence is rest, not absence
+    };
+    for (int i = 0; i < 100; ++i) tick();
+    CHECK(state.position_m == glm::dvec3(0.0));
+    CHECK(state.sequence == 100);
+    CHECK(state.time_ns == now_ns);
+
+    const auto send = [&](const Bytes& report) {
+        world.change([&] { world.incoming.push_back(report); });
+        CHECK(comes_true([&] {  // without time, no motion
+            device->read(state);
+            const std::lock_guard lock(world.mutex);
+            return world.incoming.empty();
+        }));
+    };
+    const Bytes right{1, 0x5e, 0x01, 0, 0, 0, 0};
+    send(right);
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::fresh && state.rate.x == doctest::Approx(1.0); }));
+    const double start = state.position_m.x;
+    for (int i = 0; i < 100; ++i) tick();
+    CHECK(state.position_m.x - start == doctest::Approx(0.1 * profile.rate->speed));
+    send({3, 1, 0});  // a button leaves the motion as it is
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::fresh && state.buttons == 1; }));
+    CHECK(state.rate.x == doctest::Approx(1.0));
+    for (int i = 0; i < 10'000; ++i) {
+        if (i % 100 == 0) send(right);
+        tick();
+    }
+    CHECK(state.position_m.x == profile.limits.usable_upper_m.x);
+
+    // Without another word it rests after 200 ms.
+    send({1, 0xa2, 0xfe, 0, 0, 0, 0});
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::fresh && state.rate.x < -0.9; }));
+    for (int i = 0; i < 199; ++i) tick();
+    const double last = state.position_m.x;
+    CHECK(last < profile.limits.usable_upper_m.x);
+    for (int i = 0; i < 300; ++i) tick();
+    CHECK(state.position_m.x == doctest::Approx(last).epsilon(0.01));
+    CHECK(state.rate == glm::dvec3(0.0));
+
+    // A force draws it along, as it does the mouse: F / 75 N/m.
+    const glm::dvec3 place = state.position_m;
+    for (int i = 0; i < 200; ++i) {
+        CHECK(device->write({0.0, 0.3, 0.0}, 1));
+        tick();
+    }
+    CHECK(state.position_m.y - place.y == doctest::Approx(0.004));
+    CHECK(world.all_written().empty());
+}
+
+TEST_CASE("a device that states speeds turns about its axes")
+{
+    World world;
+    const HidProfile profile = load_hid_profile("assets/devices/spacemouse.json");
+    static std::atomic<uint64_t> now_ns{0};
+    now_ns = 1'000'000'000;
+    const auto device = make_hid_link(profile, std::make_unique<FakePort>(world), [] { return nullptr; },
+                                      {.now_ns = [] { return now_ns.load(); }});
+    DeviceState state;
+    device->read(state);
+    world.change([&] { world.incoming.push_back({2, 0x5e, 0x01, 0, 0, 0, 0}); });
+    CHECK(comes_true([&] { return device->read(state) == ReadResult::fresh && state.turn_rate.x > 0.99; }));
+    for (int i = 0; i < 100; ++i) {
+        now_ns += 1'000'000;
+        device->read(state);
+    }
+    CHECK(glm::angle(state.rotation) == doctest::Approx(0.1 * profile.rate->turn_speed));
+    CHECK(glm::axis(state.rotation).x == doctest::Approx(1.0));
+    CHECK(glm::dot(state.rotation, state.rotation) == doctest::Approx(1.0));
+}
+
+TEST_CASE("reports of several kinds make one state, and there is none before the first place")
+{
+    World world;
+    HidProfile profile = reference();
+    HidReport buttons;
+    buttons.id = 9;
+    buttons.length = 1;
+    buttons.fields = {{.quantity = HidQuantity::buttons, .bit = 0, .bits = 8}};
+    std::erase_if(profile.inputs[0].fields, [](const HidField& f) { return f.quantity == HidQuantity::buttons; });
+    profile.inputs.push_back(buttons);
+    profile.ignored_ids = {7};
+    const auto device = make_link(world, profile, true);
+    DeviceState state;
+    world.change([&] { world.incoming = {Bytes{9, 1}, Bytes{7, 1, 2}}; });
+    std::this_thread::sleep_for(milliseconds(30));
+    CHECK(device->read(state) == ReadResult::stale);  // neither a place nor a fault
+    world.change([&] { world.incoming = {report_of(3, 5000)}; });
+    REQUIRE(next_result(*device, state) == ReadResult::fresh);
+    CHECK(state.buttons == 1);
+    CHECK(state.position_m.x == doctest::Approx(0.005));
+    world.change([&] { world.incoming = {Bytes{9, 2}}; });
+    REQUIRE(next_result(*device, state) == ReadResult::fresh);
+    CHECK(state.buttons == 2);
+    CHECK(state.position_m.x == doctest::Approx(0.005));
 }
 
 TEST_CASE("a servo runs on a device whose writes take a millisecond, and stops with its force off")

@@ -1,4 +1,4 @@
-#include "haptics/hid_profile.h"
+#include "haptics/hid/hid_profile.h"
 
 #include <string>
 
@@ -52,11 +52,11 @@ std::string error_without(const char* parent, const char* key)
 TEST_CASE("the profiles that are shipped load; the Touch's is only for recognising it")
 {
     const std::vector<HidProfile> profiles = load_hid_profiles(FOLDER);
-    REQUIRE(profiles.size() == 2);
-    const HidProfile &reference = profiles[0], &touch = profiles[1];
+    REQUIRE(profiles.size() == 3);
+    const HidProfile &reference = profiles[0], &mouse = profiles[1], &touch = profiles[2];
     CHECK(reference.verified);
-    REQUIRE(reference.input);
-    CHECK(reference.input->length == 32);
+    REQUIRE(reference.inputs.size() == 1);
+    CHECK(reference.inputs[0].length == 32);
     CHECK(reference.matches[0].vendor == 0x1209);
     CHECK(reference.matches[0].product == 0x0001);
     CHECK(reference.matches[0].usage_page == 0xff00);
@@ -65,7 +65,11 @@ TEST_CASE("the profiles that are shipped load; the Touch's is only for recognisi
     CHECK_FALSE(reference.limits.outputs_force);
     CHECK(reference.watchdog_ms == 20);
     CHECK_FALSE(touch.verified);
-    CHECK_FALSE(touch.input);
+    CHECK(touch.inputs.empty());
+    CHECK(mouse.name == "3Dconnexion SpaceMouse");
+    CHECK(mouse.limits.rate_control);
+    CHECK(mouse.limits.senses_rotation);
+    CHECK_FALSE(mouse.output);
     CHECK(touch.matches[0].vendor == 0x2988);
     CHECK(touch.note.find("verified profile") != std::string::npos);
 }
@@ -77,9 +81,10 @@ TEST_CASE("what is wrong in a profile is said in one sentence")
           "x.json: is not JSON: parse error at line 1, column 2: syntax error while parsing object key - unexpected "
           "end of input; expected a device profile");
     CHECK(error_of_text("[1]") ==
-          "x.json: the document is [1]; expected an object with keys out of: name, match, input, output, feature, "
+          "x.json: the document is [1]; expected an object with keys out of: schema, name, match, input, output, "
+          "feature, "
           "axes, limits, watchdog_ms, provenance, verified, note");
-    CHECK(error_with("/colour", 1).starts_with("x.json: unknown key colour; expected one of: name, match, "));
+    CHECK(error_with("/colour", 1).starts_with("x.json: unknown key colour; expected one of: schema, name, match, "));
     CHECK(error_with("/limits/colour", 1).starts_with("x.json: unknown key limits.colour; expected one of: usable"));
     CHECK(error_with("/input/fields/2/colour", 1).starts_with("x.json: unknown key input.fields.2.colour;"));
     CHECK(error_without("", "provenance") == "x.json: key provenance is missing; expected a text that is not empty");
@@ -160,4 +165,42 @@ TEST_CASE("a file that is absent, too long or nested without end is refused with
           "x.json: JSON nests deeper than 8 levels; expected a device profile");
     CHECK(error_of_text(R"({"name": 1e999})") ==
           "x.json: is not JSON: number overflow parsing '1e999'; expected a device profile");
+}
+
+TEST_CASE("schema 2: several reports and speeds, refused with a sentence where they do not fit together")
+{
+    const nlohmann::json mouse = nlohmann::json::parse(read_text(FOLDER + "/spacemouse.json", 1 << 20));
+    const auto error_at = [&](const char* pointer, const nlohmann::json& value) {
+        nlohmann::json document = mouse;
+        document[nlohmann::json::json_pointer(pointer)] = value;
+        return error_of(document);
+    };
+    CHECK(error_of(mouse).empty());
+    CHECK(error_at("/schema", 3) == "x.json: key schema is 3; expected a whole number from 1 to 2");
+    CHECK(error_at("/schema", 1)
+              .starts_with("x.json: unknown key ignored_ids; expected one of: schema, name, match, input,"));
+    CHECK(error_at("/inputs/1/length", 6).ends_with("is 48; expected a whole number from 0 to 47"));
+    CHECK(error_at("/inputs/2/id", 1).ends_with("is 1; expected an id and a length that no other input report has"));
+    CHECK(error_at("/inputs/2/id", 0).ends_with("is 0; expected ids above 0, or 0 in all input reports"));
+    CHECK(error_at("/inputs/2/fields/0/name", "battery").ends_with("expected a field named turn_x"));
+    CHECK(error_at("/ignored_ids/0", 3) == "x.json: key ignored_ids.0 is 3; expected an id that no input report has");
+    CHECK(error_at("/rate/gamma", 0) == "x.json: key rate.gamma is 0; expected a number from 0.5 to 5");
+    CHECK(error_at("/rate/rest_ms", 1).ends_with("expected a whole number from 20 to 10000"));
+    nlohmann::json document = mouse;
+    document.erase("rate");
+    CHECK(error_of(document) == "x.json: key rate is missing; expected how fields named rate_ and turn_ become speeds");
+    document = mouse;
+    document["inputs"] = {mouse["inputs"][2]};
+    CHECK(error_of(document).ends_with("expected a field named rate_x"));
+    document["inputs"] = {reference()["input"]};
+    CHECK(error_of(document).ends_with("expected a field named rate_x"));
+    document.erase("rate");
+    document.erase("ignored_ids");
+    CHECK(error_of(document).empty());  // schema 2 with places
+    document["inputs"].push_back(mouse["inputs"][2]);
+    document["rate"] = mouse["rate"];
+    CHECK(error_of(document).ends_with("expected either places or rates"));
+    document = mouse;
+    document["output"] = reference()["output"];
+    CHECK(error_of(document).ends_with("expected no such key: rate control feels no force"));
 }

@@ -1,4 +1,4 @@
-#include "haptics/hid_protocol.h"
+#include "haptics/hid/hid_protocol.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,19 +48,24 @@ std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const u
     return report.subspan(id_bytes);
 }
 
-/// Reads fields by quantity; fields that the profile lacks get a default.
+/// Reads fields by quantity; fields that the report lacks get a default, or are absent.
 struct Reader {
     const HidReport& report;
     std::span<const uint8_t> payload;
+    bool has(HidQuantity quantity) const { return report.find(quantity) != nullptr; }
+    std::optional<uint32_t> raw(HidQuantity quantity) const
+    {
+        const HidField* field = report.find(quantity);
+        return field ? std::optional(raw_of(*field, payload)) : std::nullopt;
+    }
+    glm::dvec3 vector(HidQuantity x, HidQuantity y, HidQuantity z) const
+    {
+        return {value(x, 0.0), value(y, 0.0), value(z, 0.0)};
+    }
     double value(HidQuantity quantity, double otherwise) const
     {
         const HidField* field = report.find(quantity);
         return field ? value_of(*field, payload) : otherwise;
-    }
-    uint32_t raw(HidQuantity quantity, uint32_t otherwise) const
-    {
-        const HidField* field = report.find(quantity);
-        return field ? raw_of(*field, payload) : otherwise;
     }
 };
 
@@ -81,19 +86,37 @@ glm::dquat rotation_of(const Reader& reader, const glm::dmat3& axes)
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report)
 {
     using enum HidQuantity;
-    if (!profile.input) return std::nullopt;
-    const Reader reader{*profile.input, payload_of(*profile.input, report)};
-    if (reader.payload.empty()) return std::nullopt;
-    HidInput input;
-    input.position_m = profile.axes * glm::dvec3(reader.value(position_x, 0.0), reader.value(position_y, 0.0),
-                                                 reader.value(position_z, 0.0));
-    input.rotation = rotation_of(reader, profile.axes);
-    input.buttons = reader.raw(buttons, 0);
-    input.calibrated = reader.raw(calibrated, 1) != 0;
-    input.sequence = reader.raw(sequence, 0);
-    input.force_sequence = reader.raw(force_sequence, 0);
-    input.time = reader.raw(time, 0);
-    return input;
+    for (const HidReport& layout : profile.inputs) {
+        const Reader reader{layout, payload_of(layout, report)};
+        if (reader.payload.empty()) continue;
+        HidInput input;
+        if (reader.has(position_x)) input.position_m = profile.axes * reader.vector(position_x, position_y, position_z);
+        if (reader.has(rotation_w)) input.rotation = rotation_of(reader, profile.axes);
+        if (reader.has(rate_x)) input.rate = profile.axes * reader.vector(rate_x, rate_y, rate_z);
+        // A speed of turning is a pseudovector: a reflection also flips its sign.
+        if (reader.has(turn_x))
+            input.turn_rate = glm::determinant(profile.axes) * (profile.axes * reader.vector(turn_x, turn_y, turn_z));
+        input.buttons = reader.raw(buttons);
+        if (const auto flag = reader.raw(calibrated)) input.calibrated = *flag != 0;
+        input.sequence = reader.raw(sequence);
+        input.force_sequence = reader.raw(force_sequence);
+        input.time = reader.raw(time);
+        return input;
+    }
+    return std::nullopt;
+}
+
+bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report)
+{
+    return !report.empty() && std::ranges::find(profile.ignored_ids, report[0]) != profile.ignored_ids.end();
+}
+
+glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection)
+{
+    const double length = glm::length(deflection);
+    if (!(length > rate.dead_zone) || !std::isfinite(length)) return glm::dvec3(0.0);
+    const double share = (std::min(length, 1.0) - rate.dead_zone) / (1.0 - rate.dead_zone);
+    return deflection * (std::pow(share, rate.gamma) / length);
 }
 
 HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t sequence, bool enabled)

@@ -1,4 +1,4 @@
-#include "haptics/hid_profile.h"
+#include "haptics/hid/hid_profile.h"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_PROFILE_BYTES = 16 << 10;  ///< four times the size of a typical layout
+constexpr size_t MAX_INPUT_REPORTS = 8;
 constexpr unsigned IN = 1, OUT = 2, FEATURE = 4;
 
 struct QuantityName {
@@ -37,6 +38,13 @@ constexpr std::array QUANTITY_NAMES{
     QuantityName{"rotation_z", HidQuantity::rotation_z, IN},
     QuantityName{"force_sequence", HidQuantity::force_sequence, IN},
     QuantityName{"motor_temperature", HidQuantity::motor_temperature, IN},
+    QuantityName{"rate_x", HidQuantity::rate_x, IN},
+    QuantityName{"rate_y", HidQuantity::rate_y, IN},
+    QuantityName{"rate_z", HidQuantity::rate_z, IN},
+    QuantityName{"turn_x", HidQuantity::turn_x, IN},
+    QuantityName{"turn_y", HidQuantity::turn_y, IN},
+    QuantityName{"turn_z", HidQuantity::turn_z, IN},
+    QuantityName{"battery", HidQuantity::battery, IN},
     QuantityName{"sequence", HidQuantity::sequence, IN | OUT},
     QuantityName{"enable", HidQuantity::enable, OUT},
     QuantityName{"watchdog", HidQuantity::watchdog, OUT},
@@ -132,6 +140,39 @@ void need_all_or_none(const JsonNode& node, const HidReport& report, std::initia
         need(node, report, quantities);
 }
 
+/// Several input reports: no two are alike, and what belongs together arrives together.
+std::vector<HidReport> read_inputs(const JsonNode& node)
+{
+    std::vector<HidReport> reports;
+    for (const JsonNode& each : node.elements(1, int64_t{MAX_INPUT_REPORTS})) {
+        const HidReport report = read_report(each, IN);
+        for (const HidReport& other : reports) {
+            if (other.id == report.id && other.length == report.length)
+                each["id"].refuse("an id and a length that no other input report has");
+            if ((other.id == 0) != (report.id == 0)) each["id"].refuse("ids above 0, or 0 in all input reports");
+        }
+        using enum HidQuantity;
+        need_all_or_none(each, report, {position_x, position_y, position_z});
+        need_all_or_none(each, report, {rotation_w, rotation_x, rotation_y, rotation_z});
+        need_all_or_none(each, report, {rate_x, rate_y, rate_z});
+        need_all_or_none(each, report, {turn_x, turn_y, turn_z});
+        reports.push_back(report);
+    }
+    return reports;
+}
+
+HidRate read_rate(const JsonNode& node)
+{
+    node.allow({"speed_m_s", "turn_speed_rad_s", "gamma", "dead_zone", "rest_ms"});
+    HidRate rate;
+    rate.speed = node["speed_m_s"].number({0.0, 10.0});
+    rate.turn_speed = node["turn_speed_rad_s"].number({0.0, 100.0});
+    rate.gamma = node["gamma"].number({0.5, 5.0});
+    rate.dead_zone = node["dead_zone"].number({0.0, 0.9});
+    rate.rest_ms = uint32_t(node["rest_ms"].whole(20, 10'000));
+    return rate;
+}
+
 std::vector<HidMatch> read_matches(const JsonNode& node)
 {
     std::vector<HidMatch> matches;
@@ -180,11 +221,43 @@ DeviceCaps read_limits(const JsonNode& node)
     return limits;
 }
 
+/// What schema 2 adds: reports to pass over, and rate control in place of positions.
+void read_second(const JsonNode& node, HidProfile& profile)
+{
+    using enum HidQuantity;
+    if (node["ignored_ids"].exists()) {
+        for (const JsonNode& each : node["ignored_ids"].elements(1, 32)) {
+            profile.ignored_ids.push_back(uint8_t(each.whole(1, 255)));
+            if (std::ranges::find(profile.inputs, profile.ignored_ids.back(), &HidReport::id) != profile.inputs.end())
+                each.refuse("an id that no input report has");
+        }
+    }
+    const bool has_rates = profile.find_input(rate_x) || profile.find_input(turn_x);
+    const bool has_places = profile.find_input(position_x) || profile.find_input(rotation_w);
+    if (node["rate"].exists()) profile.rate = read_rate(node["rate"]);
+    profile.limits.rate_control = profile.rate.has_value();
+    if (profile.inputs.empty()) {
+        if (profile.rate) node["rate"].refuse("no such key without the key inputs");
+        return;
+    }
+    if (has_rates && !profile.rate) node["rate"].refuse("how fields named rate_ and turn_ become speeds");
+    if (has_rates && has_places) node["inputs"].refuse("either places or rates");
+    if (profile.rate && !profile.find_input(rate_x)) node["inputs"].refuse("a field named rate_x");
+    if (!profile.rate && !profile.find_input(position_x)) node["inputs"].refuse("a field named position_x");
+    if (profile.rate && node["output"].exists()) node["output"].refuse("no such key: rate control feels no force");
+}
+
 HidProfile read_profile(const JsonNode& node)
 {
     using enum HidQuantity;
-    node.allow({"name", "match", "input", "output", "feature", "axes", "limits", "watchdog_ms", "provenance",
-                "verified", "note"});
+    const bool is_second = node["schema"].exists() && node["schema"].whole(1, 2) == 2;
+    if (is_second)
+        node.allow({"schema", "name", "match", "inputs", "ignored_ids", "rate", "output", "feature", "axes", "limits",
+                    "watchdog_ms", "provenance", "verified", "note"});
+    else
+        node.allow({"schema", "name", "match", "input", "output", "feature", "axes", "limits", "watchdog_ms",
+                    "provenance", "verified", "note"});
+    const JsonNode inputs = node[is_second ? "inputs" : "input"];
     HidProfile profile;
     profile.name = node["name"].text();
     profile.matches = read_matches(node["match"]);
@@ -193,19 +266,23 @@ HidProfile read_profile(const JsonNode& node)
     if (node["note"].exists()) profile.note = node["note"].text();
     if (node["axes"].exists()) profile.axes = read_axes(node["axes"]);
     if (node["watchdog_ms"].exists()) profile.watchdog_ms = uint32_t(node["watchdog_ms"].whole(0, 255));
-    if (node["input"].exists() || node["limits"].exists()) profile.limits = read_limits(node["limits"]);
-    if (node["input"].exists()) {
-        profile.input = read_report(node["input"], IN);
-        need(node["input"], *profile.input, {position_x, position_y, position_z});
-        need_all_or_none(node["input"], *profile.input, {rotation_w, rotation_x, rotation_y, rotation_z});
-        profile.limits.senses_rotation = profile.input->find(rotation_w) != nullptr;
+    if (inputs.exists() || node["limits"].exists()) profile.limits = read_limits(node["limits"]);
+    if (inputs.exists()) {
+        profile.inputs = is_second ? read_inputs(inputs) : std::vector{read_report(inputs, IN)};
+        if (!is_second) {
+            need(inputs, profile.inputs[0], {position_x, position_y, position_z});
+            need_all_or_none(inputs, profile.inputs[0], {rotation_w, rotation_x, rotation_y, rotation_z});
+        }
+        profile.limits.senses_rotation = profile.find_input(rotation_w) || profile.find_input(turn_x);
     }
+    if (is_second) read_second(node, profile);
     if (node["output"].exists()) {
         profile.output = read_report(node["output"], OUT);
         need(node["output"], *profile.output, {enable, force_x, force_y, force_z});
     }
     if (node["feature"].exists()) profile.feature = read_report(node["feature"], FEATURE);
-    if (profile.verified && !profile.input) node["verified"].refuse("false, because the profile has no key input");
+    if (profile.verified && profile.inputs.empty())
+        node["verified"].refuse("false, because the profile has no key input");
     return profile;
 }
 
@@ -215,6 +292,14 @@ const HidField* HidReport::find(HidQuantity quantity) const
 {
     const auto found = std::ranges::find(fields, quantity, &HidField::quantity);
     return found == fields.end() ? nullptr : &*found;
+}
+
+const HidField* HidProfile::find_input(HidQuantity quantity) const
+{
+    for (const HidReport& report : inputs) {
+        if (const HidField* field = report.find(quantity)) return field;
+    }
+    return nullptr;
 }
 
 HidProfile parse_hid_profile(const std::string& text, const std::string& origin)

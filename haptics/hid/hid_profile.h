@@ -2,6 +2,9 @@
 // The layout of a HID device's reports, read from a file (assets/devices/*.json): supporting a new device takes a file,
 // not a recompilation. assets/devices/README.md describes the format.
 //
+// Schema 1 knows one input report, with places. Schema 2 knows several, told apart by id and length, and devices that
+// state speeds: rate control, whose silence is rest.
+//
 // Loading is strict: unknown keys, fields that exceed their report and layouts without a source are refused with a
 // one-sentence message. Any thread.
 
@@ -17,7 +20,8 @@
 
 namespace shvr {
 
-/// Everything a field can mean. Values are raw * scale + offset: metres, seconds, newtons; rotations are a quaternion.
+/// Everything a field can mean. Values are raw * scale + offset: metres, seconds, newtons; rotations are a quaternion;
+/// rates are shares of the full deflection, -1 ... 1.
 enum class HidQuantity : uint8_t {
     // input
     buttons,
@@ -32,6 +36,13 @@ enum class HidQuantity : uint8_t {
     rotation_z,
     force_sequence,
     motor_temperature,
+    rate_x,  ///< along the device's axes
+    rate_y,
+    rate_z,
+    turn_x,  ///< about them
+    turn_y,
+    turn_z,
+    battery,
     // input and output
     sequence,
     // output
@@ -70,11 +81,24 @@ struct HidMatch {
     uint16_t usage_page = 0, usage = 0;  ///< 0: any
 };
 
+/// How deflection becomes speed: gain * ((share - dead_zone) / (1 - dead_zone))^gamma, along the deflection.
+struct HidRate {
+    double speed = 0.1;       ///< m/s in the device's workspace at full deflection
+    double turn_speed = 1.5;  ///< rad/s at full deflection
+    double gamma = 1.5;       ///< above 1: finer in the middle
+    double dead_zone = 0.05;  ///< share of the deflection that counts as none
+    uint32_t rest_ms = 200;   ///< a device that was silent for so long rests, even if it never said so
+};
+
 struct HidProfile {
     std::string name;
     std::vector<HidMatch> matches;
-    std::optional<HidReport> input;  ///< without one the device is only recognised
+    std::vector<HidReport> inputs;     ///< none: the device is only recognised
+    std::vector<uint8_t> ignored_ids;  ///< of reports that say nothing of interest
     std::optional<HidReport> output, feature;
+    std::optional<HidRate> rate;  ///< it states speeds, not places
+    /// Of all input reports; null if none has it.
+    const HidField* find_input(HidQuantity quantity) const;
     glm::dmat3 axes{
         1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; each one turned or flipped
     DeviceCaps limits;

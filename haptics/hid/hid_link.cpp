@@ -1,11 +1,13 @@
-#include "haptics/hid_link.h"
+#include "haptics/hid/hid_link.h"
 
 #include <pthread.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -13,7 +15,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/latest.h"
-#include "haptics/hid_protocol.h"
+#include "haptics/hid/hid_protocol.h"
 
 namespace shvr {
 namespace {
@@ -22,9 +24,14 @@ using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
-constexpr milliseconds REOPEN_EVERY{50};
-constexpr int MAX_REPORTS_A_DRAIN = 256;  ///< a device that floods us must not delay the newest report
-constexpr int LINK_PRIORITY = 81;         ///< above the servo's: both are short and then wait
+constexpr milliseconds REOPEN_EVERY{15};
+constexpr milliseconds LOOK_EVERY{5};             ///< whether the link is to end, meanwhile
+constexpr int MAX_REPORTS_A_DRAIN = 256;          ///< a device that floods us must not delay the newest report
+constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
+// A hand without motors gives way to a force like the mouse's: 75 N/m, settled within some 10 ms.
+constexpr double GIVE_WAY = 75.0;
+constexpr double SETTLE_S = 0.01;
+constexpr int LINK_PRIORITY = 81;  ///< above the servo's: both are short and then wait
 
 /// Passed from the reader to the servo.
 struct Reading {
@@ -38,45 +45,69 @@ struct Command {
     uint32_t sequence = 0;
 };
 
-uint32_t bits_of(const HidReport& report, HidQuantity quantity)
+uint32_t bits_of(const HidProfile& profile, HidQuantity quantity)
 {
-    const HidField* field = report.find(quantity);
+    const HidField* field = profile.find_input(quantity);
     return field ? field->bits : 32;
 }
 
-/// Extends the counters of one connection past their overflows.
+uint64_t steady_ns()
+{
+    return uint64_t(SteadyClock::now().time_since_epoch() / std::chrono::nanoseconds(1));
+}
+
+/// Extends the counters of one connection past their overflows, and joins what came in several reports.
 class Decoder {
 public:
     explicit Decoder(const HidProfile& profile)
         : profile_(profile),
-          sequence_(bits_of(*profile.input, HidQuantity::sequence)),
-          force_sequence_(bits_of(*profile.input, HidQuantity::force_sequence)),
-          time_(bits_of(*profile.input, HidQuantity::time))
+          clock_(profile.find_input(HidQuantity::time)),
+          sequence_(bits_of(profile, HidQuantity::sequence)),
+          force_sequence_(bits_of(profile, HidQuantity::force_sequence)),
+          time_(bits_of(profile, HidQuantity::time))
     {}
+    /// Nothing if the report is malformed, or nothing is known yet of the device's place: `is_malformed()` tells.
     std::optional<DeviceState> next(std::span<const uint8_t> report)
     {
+        is_malformed_ = false;
         const std::optional<HidInput> input = decode(profile_, report);
+        is_malformed_ = !input && !is_ignored(profile_, report);
         if (!input) return std::nullopt;
         ++reports_;
-        const HidReport& layout = *profile_.input;
-        DeviceState state;
         // Reports without a time or a sequence number get one on arrival.
-        const HidField* clock = layout.find(HidQuantity::time);
-        state.time_ns = clock ? uint64_t(double(time_.next(input->time)) * clock->scale * 1e9 + 0.5)
-                              : uint64_t(SteadyClock::now().time_since_epoch() / std::chrono::nanoseconds(1));
-        state.sequence = layout.find(HidQuantity::sequence) ? uint32_t(sequence_.next(input->sequence)) : reports_;
-        state.force_sequence = uint32_t(force_sequence_.next(input->force_sequence));
-        state.position_m = input->position_m;
-        state.rotation = input->rotation;
-        state.buttons = input->buttons;
-        state.calibrated = input->calibrated;
-        return state;
+        if (!clock_) state_.time_ns = steady_ns();
+        if (input->time) state_.time_ns = uint64_t(double(time_.next(*input->time)) * clock_->scale * 1e9 + 0.5);
+        if (!profile_.find_input(HidQuantity::sequence)) state_.sequence = reports_;
+        if (input->sequence) state_.sequence = uint32_t(sequence_.next(*input->sequence));
+        if (input->force_sequence) state_.force_sequence = uint32_t(force_sequence_.next(*input->force_sequence));
+        state_.position_m = input->position_m.value_or(state_.position_m);
+        state_.rotation = input->rotation.value_or(state_.rotation);
+        state_.buttons = input->buttons.value_or(state_.buttons);
+        state_.calibrated = input->calibrated.value_or(state_.calibrated);
+        if (profile_.rate && input->rate) state_.rate = shaped(*profile_.rate, *input->rate);
+        if (profile_.rate && input->turn_rate) state_.turn_rate = shaped(*profile_.rate, *input->turn_rate);
+        has_place_ = has_place_ || input->position_m || profile_.rate;
+        return has_place_ ? std::optional(state_) : std::nullopt;
     }
+
+    bool is_malformed() const { return is_malformed_; }
 
 private:
     const HidProfile& profile_;
+    const HidField* clock_;
     Unwrapped sequence_, force_sequence_, time_;
     uint32_t reports_ = 0;
+    bool has_place_ = false, is_malformed_ = false;
+    DeviceState state_;
+};
+
+/// Where the speeds have led.
+struct RateMotion {
+    glm::dvec3 wish_m{0.0}, given_way_m{0.0};
+    glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+    uint64_t connection = 0, time_ns = 0, heard_ns = 0;
+    uint32_t sequence = 0;
+    DeviceState heard;
 };
 
 class HidLink : public HapticDevice {
@@ -84,10 +115,10 @@ public:
     HidLink(const HidProfile& profile, std::unique_ptr<HidPort> port, HidOpener reopen, const HidLinkOptions& options)
         : profile_(profile), reopen_(std::move(reopen)), port_(std::move(port)), connection_(1)
     {
-        SHVR_CHECK(port_ && profile_.input);
-        caps_ = ask_limits(*port_);
+        SHVR_CHECK(port_ && !profile_.inputs.empty());
         may_force_ = options.allow_force && profile_.verified && profile_.output.has_value();
-        caps_.outputs_force = may_force_;
+        now_ns_ = options.now_ns ? options.now_ns : steady_ns;
+        caps_.publish(ask_limits(*port_));
         reader_ = std::thread(&HidLink::read_reports, this);
         writer_ = std::thread(&HidLink::write_reports, this);
         name_thread(reader_, "hid reader", options.realtime);
@@ -103,11 +134,17 @@ public:
 
     // ---- The servo's side ----
 
-    DeviceCaps caps() const noexcept override { return caps_; }
+    DeviceCaps caps() const noexcept override
+    {
+        caps_.take();
+        return caps_.value();
+    }
+    const char* trouble() const noexcept override { return connection_ == 0 ? "the device was unplugged" : ""; }
     ReadResult read(DeviceState& state) noexcept override
     {
         const uint64_t connection = connection_;
         if (connection == 0) return ReadResult::lost;
+        if (profile_.rate) return move_on(connection, state);
         if (readings_.take() && readings_.value().connection == connection) {
             state = readings_.value().state;
             malformed_seen_ = malformed_;
@@ -118,12 +155,46 @@ public:
     }
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override
     {
+        force_n_ = force_n;
         commands_.publish({force_n, sequence});
         wake_writer();
         return connection_ != 0;
     }
 
 private:
+    /// Rate control: the next place, by the speeds last heard of.
+    ReadResult move_on(uint64_t connection, DeviceState& state) noexcept
+    {
+        const uint64_t now = now_ns_();
+        RateMotion& motion = motion_;
+        if (std::exchange(motion.connection, connection) != connection) motion.heard = {};
+        if (readings_.take() && readings_.value().connection == connection) {
+            motion.heard = readings_.value().state;
+            motion.heard_ns = now;
+        }
+        const bool rests = now - motion.heard_ns > uint64_t{profile_.rate->rest_ms} * 1'000'000;
+        if (rests) motion.heard.rate = motion.heard.turn_rate = glm::dvec3(0.0);
+        const uint64_t passed = now > motion.time_ns ? now - motion.time_ns : 0;
+        const double dt = motion.time_ns == 0 ? 0.0 : double(std::min(passed, LONGEST_STEP_NS)) * 1e-9;
+        motion.time_ns = now;
+
+        const DeviceCaps limits = caps();
+        motion.wish_m = glm::clamp(motion.wish_m + motion.heard.rate * (profile_.rate->speed * dt),
+                                   limits.usable_lower_m, limits.usable_upper_m);
+        const glm::dvec3 wanted = is_finite(force_n_) ? force_n_ / GIVE_WAY : glm::dvec3(0.0);
+        motion.given_way_m += (wanted - motion.given_way_m) * -std::expm1(-dt / SETTLE_S);
+        const glm::dvec3 turn = motion.heard.turn_rate * (profile_.rate->turn_speed * dt);
+        if (const double angle = glm::length(turn); angle > 0.0)
+            motion.rotation = glm::normalize(glm::angleAxis(angle, turn / angle) * motion.rotation);
+
+        state = motion.heard;
+        state.time_ns = now;
+        state.sequence = ++motion.sequence;
+        state.position_m = motion.wish_m + motion.given_way_m;
+        state.rotation = motion.rotation;
+        return ReadResult::fresh;
+    }
+
     static void name_thread(std::thread& thread, const char* name, bool realtime)
     {
         ::pthread_setname_np(thread.native_handle(), name);
@@ -138,15 +209,19 @@ private:
         wake_.notify_one();
     }
 
+    /// Of the device on that port: it may be another one than before.
     DeviceCaps ask_limits(HidPort& port) const
     {
-        if (!profile_.feature) return profile_.limits;
+        DeviceCaps caps = profile_.limits;
         std::array<uint8_t, 1 + MAX_REPORT_BYTES> report{};
-        const int size = port.read_feature(profile_.feature->id, report);
-        if (size <= 0) return profile_.limits;
-        // hidapi puts the id first even if reports are unnumbered.
-        const std::span<const uint8_t> bytes(report.data(), size_t(size));
-        return decode_feature(profile_, profile_.feature->id == 0 ? bytes.subspan(1) : bytes);
+        const int size = profile_.feature ? port.read_feature(profile_.feature->id, report) : 0;
+        if (size > 0) {
+            // hidapi puts the id first even if reports are unnumbered.
+            const std::span<const uint8_t> bytes(report.data(), size_t(size));
+            caps = decode_feature(profile_, profile_.feature->id == 0 ? bytes.subspan(1) : bytes);
+        }
+        caps.outputs_force = may_force_;
+        return caps;
     }
 
     // ---- The reader's thread ----
@@ -182,10 +257,10 @@ private:
                 continue;
             }
             const SteadyClock::time_point next_try = SteadyClock::now() + REOPEN_EVERY;
-            while (is_running_ && SteadyClock::now() < next_try)
-                std::this_thread::sleep_for(milliseconds(READ_TIMEOUT_MS));
+            while (is_running_ && SteadyClock::now() < next_try) std::this_thread::sleep_for(LOOK_EVERY);
             if (!is_running_) return;
             if (std::unique_ptr<HidPort> found = reopen_()) {
+                caps_.publish(ask_limits(*found));
                 set_port(std::move(found));
                 connection_ = ++connections;
             }
@@ -205,7 +280,7 @@ private:
                 if (size == 0) break;
                 if (const auto state = decoder.next({report.data(), size_t(size)}))
                     newest = state;
-                else
+                else if (decoder.is_malformed())
                     ++malformed_;
             }
             if (!newest) continue;
@@ -238,18 +313,21 @@ private:
 
     const HidProfile profile_;
     const HidOpener reopen_;
-    DeviceCaps caps_;
     bool may_force_ = false;
+    uint64_t (*now_ns_)() = steady_ns;
 
     std::mutex port_mutex_;  ///< shared by reader and writer; the servo never takes it
     std::shared_ptr<HidPort> port_;
     std::atomic<uint64_t> connection_;  ///< 0: none
     std::atomic<bool> is_running_{true}, write_failed_{false};
     std::atomic<uint32_t> malformed_{0}, wake_{0};
-    uint32_t malformed_seen_ = 0;  ///< used by the servo only
+    uint32_t malformed_seen_ = 0;  ///< this and the next two: used by the servo only
+    RateMotion motion_;
+    glm::dvec3 force_n_{0.0};
 
     Latest<Reading> readings_;
     Latest<Command> commands_;
+    mutable Latest<DeviceCaps> caps_;  ///< from the reader to the servo; the constructor writes the first ones
     std::thread reader_, writer_;
 };
 

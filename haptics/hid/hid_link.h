@@ -4,9 +4,12 @@
 //
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
+// A device that states speeds has its place here: read() moves it on, at every call, as long as the device is there; a
+// force moves its wish as it moves a mouse's. Silence is rest.
+//
 // The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
-// port is gone, read() returns `lost` and the reader tries to reopen it every 50 ms. The writer's last report switches
-// the force off.
+// port is gone, read() returns `lost` and the reader tries to reopen it every 15 ms, and asks for its limits anew. The
+// writer's last report switches the force off.
 
 #include <cstdint>
 #include <functional>
@@ -14,7 +17,7 @@
 #include <span>
 
 #include "haptics/device.h"
-#include "haptics/hid_profile.h"
+#include "haptics/hid/hid_profile.h"
 
 namespace shvr {
 
@@ -36,8 +39,9 @@ public:
 using HidOpener = std::function<std::unique_ptr<HidPort>()>;
 
 struct HidLinkOptions {
-    bool allow_force = false;  ///< takes effect only if the profile is verified
-    bool realtime = false;     ///< SCHED_FIFO for both threads, if the system allows it
+    bool allow_force = false;        ///< takes effect only if the profile is verified
+    bool realtime = false;           ///< SCHED_FIFO for both threads, if the system allows it
+    uint64_t (*now_ns)() = nullptr;  ///< moves rate control; null: the steady clock
 };
 
 /// `port` is open and its profile has an input report. `reopen` is called on the reader's thread. Force reports have

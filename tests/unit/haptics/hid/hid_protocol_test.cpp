@@ -1,4 +1,4 @@
-#include "haptics/hid_protocol.h"
+#include "haptics/hid/hid_protocol.h"
 
 #include <algorithm>
 #include <limits>
@@ -50,16 +50,16 @@ TEST_CASE("the reference's input report is decoded byte by byte")
     const std::optional<HidInput> input = decode(reference(), report);
     REQUIRE(input);
     CHECK(input->buttons == 5);
-    CHECK(input->calibrated);
+    CHECK(input->calibrated == true);
     CHECK(input->sequence == 0x1234);
     CHECK(input->time == 0x12345678);
-    CHECK(input->position_m.x == doctest::Approx(1.0));
-    CHECK(input->position_m.y == doctest::Approx(-1e-6));
-    CHECK(input->position_m.z == doctest::Approx(-2147.483648));
-    CHECK(input->rotation.w == doctest::Approx(0.5));
-    CHECK(input->rotation.x == doctest::Approx(-0.5));
-    CHECK(input->rotation.y == doctest::Approx(0.5));
-    CHECK(input->rotation.z == doctest::Approx(0.5));
+    CHECK(input->position_m->x == doctest::Approx(1.0));
+    CHECK(input->position_m->y == doctest::Approx(-1e-6));
+    CHECK(input->position_m->z == doctest::Approx(-2147.483648));
+    CHECK(input->rotation->w == doctest::Approx(0.5));
+    CHECK(input->rotation->x == doctest::Approx(-0.5));
+    CHECK(input->rotation->y == doctest::Approx(0.5));
+    CHECK(input->rotation->z == doctest::Approx(0.5));
     CHECK(input->force_sequence == 0xabcd);
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("10,000 random reports decode to finite places and unit rotations")
         report[0] = 1;
         const std::optional<HidInput> input = decode(profile, report);
         REQUIRE(input);
-        REQUIRE(glm::length(input->position_m) < 4000.0);
-        REQUIRE(glm::dot(input->rotation, input->rotation) == doctest::Approx(1.0));
+        REQUIRE(glm::length(*input->position_m) < 4000.0);
+        REQUIRE(glm::dot(*input->rotation, *input->rotation) == doctest::Approx(1.0));
     }
 }
 
@@ -142,14 +142,14 @@ TEST_CASE("what is encoded and sent back is what was meant, for fields at odd bi
     as_input.fields[2].quantity = HidQuantity::position_y;
     as_input.fields[3].quantity = HidQuantity::position_z;
     HidProfile mirror = profile;
-    mirror.input = as_input;
+    mirror.inputs = {as_input};
     for (const glm::dvec3& force : {glm::dvec3(0.0), glm::dvec3(1.25, -3.5, 7.0), glm::dvec3(-40.0, 19.0, -19.99)}) {
         const HidBytes report = encode(profile, force, 0, true);
         CHECK(report.bytes[0] == 0);
         CHECK(report.size == 10);
         const std::optional<HidInput> input = decode(mirror, report.span().subspan(1));  // read without a number
         REQUIRE(input);
-        CHECK(glm::distance(input->position_m, force) < 1e-9);
+        CHECK(glm::distance(*input->position_m, force) < 1e-9);
     }
 }
 
@@ -161,12 +161,12 @@ TEST_CASE("the axis map turns places in and forces out, so that work stays work"
     std::vector<uint8_t> report = example_report();
     const std::optional<HidInput> input = decode(profile, report);
     REQUIRE(input);
-    CHECK(input->position_m.x == doctest::Approx(1.0));
-    CHECK(input->position_m.y == doctest::Approx(2147.483648));
-    CHECK(input->position_m.z == doctest::Approx(-1e-6));
-    CHECK(input->rotation.x == doctest::Approx(-0.5));
-    CHECK(input->rotation.y == doctest::Approx(-0.5));
-    CHECK(input->rotation.z == doctest::Approx(0.5));
+    CHECK(input->position_m->x == doctest::Approx(1.0));
+    CHECK(input->position_m->y == doctest::Approx(2147.483648));
+    CHECK(input->position_m->z == doctest::Approx(-1e-6));
+    CHECK(input->rotation->x == doctest::Approx(-0.5));
+    CHECK(input->rotation->y == doctest::Approx(-0.5));
+    CHECK(input->rotation->z == doctest::Approx(0.5));
     // Up is the device's -z.
     const HidBytes up = encode(profile, {0.0, 1.0, 0.0}, 0, true);
     CHECK(int16_t(up.bytes[9] | up.bytes[10] << 8) == -1000);
@@ -209,4 +209,44 @@ TEST_CASE("a counter of 16 bits goes on over its overflow, over gaps, and a litt
     Unwrapped wide(32);
     CHECK(wide.next(0xffffffffu) == 0xffffffffu);
     CHECK(wide.next(1) == 0x100000001u);
+}
+
+TEST_CASE("a SpaceMouse's reports: translation, rotation, both in one, buttons, battery")
+{
+    const HidProfile mouse = load_hid_profile("assets/devices/spacemouse.json");
+    // 350 to the right, -350 towards the user, 175 down.
+    const std::vector<uint8_t> moved{1, 0x5e, 0x01, 0xa2, 0xfe, 0xaf, 0x00};
+    std::optional<HidInput> input = decode(mouse, moved);
+    REQUIRE(input);
+    CHECK(glm::distance(*input->rate, glm::dvec3(1.0, -0.5, -1.0)) < 1e-12);
+    CHECK_FALSE(input->turn_rate);
+    CHECK_FALSE(input->position_m);
+    CHECK_FALSE(input->buttons);
+    std::vector<uint8_t> both = moved;
+    both.insert(both.end(), {0x00, 0x00, 0x5e, 0x01, 0x00, 0x00});
+    input = decode(mouse, both);
+    REQUIRE(input);
+    CHECK(glm::distance(*input->rate, glm::dvec3(1.0, -0.5, -1.0)) < 1e-12);
+    CHECK(glm::distance(*input->turn_rate, glm::dvec3(0.0, 0.0, 1.0)) < 1e-12);
+    input = decode(mouse, std::vector<uint8_t>{2, 0x00, 0x00, 0x00, 0x00, 0xa2, 0xfe});
+    REQUIRE(input);
+    CHECK(glm::distance(*input->turn_rate, glm::dvec3(0.0, 1.0, 0.0)) < 1e-12);
+    input = decode(mouse, std::vector<uint8_t>{3, 0x02, 0x00});
+    REQUIRE(input);
+    CHECK(input->buttons == 2);
+    CHECK_FALSE(decode(mouse, std::vector<uint8_t>{23, 80}));
+    CHECK(is_ignored(mouse, std::vector<uint8_t>{23, 80}));
+    CHECK_FALSE(is_ignored(mouse, std::vector<uint8_t>{9, 80}));
+    CHECK_FALSE(is_ignored(mouse, {}));
+}
+
+TEST_CASE("a deflection becomes a speed: a dead zone, then a power, along the deflection")
+{
+    const HidRate rate{.gamma = 2.0, .dead_zone = 0.2};
+    CHECK(shaped(rate, {0.1, 0.1, 0.1}) == glm::dvec3(0.0));
+    CHECK(shaped(rate, {0.2, 0.0, 0.0}) == glm::dvec3(0.0));
+    CHECK(shaped(rate, {0.0, -0.6, 0.0}).y == doctest::Approx(-0.25));
+    CHECK(shaped(rate, {3.0, 4.0, 0.0}).x == doctest::Approx(0.6));
+    CHECK(glm::length(shaped(rate, {3.0, 4.0, 0.0})) == doctest::Approx(1.0));
+    CHECK(shaped(rate, {NAN, 0.0, 0.0}) == glm::dvec3(0.0));
 }

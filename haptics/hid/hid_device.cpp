@@ -1,14 +1,19 @@
-#include "haptics/hid_device.h"
+#include "haptics/hid/hid_device.h"
 
 #include <hidapi/hidapi.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
-#include "haptics/hid_link.h"
+#include "haptics/hid/hid_link.h"
+#include "haptics/hid/hid_recording.h"
 
 namespace shvr {
 namespace {
@@ -66,17 +71,21 @@ bool matches(const HidProfile& profile, const HidListing& device)
                        [&](const HidMatch& match) { return matches(match, device); });
 }
 
+/// "2988:0304"
+std::string ids_of(const HidListing& device)
+{
+    std::string text;
+    for (const uint16_t id : {device.vendor, device.product}) {
+        if (!text.empty()) text += ':';
+        for (int shift = 12; shift >= 0; shift -= 4) text += "0123456789abcdef"[(id >> shift) & 15];
+    }
+    return text;
+}
+
 /// "Touch (2988:0304 at /dev/hidraw3)"
 std::string described(const HidListing& device)
 {
-    constexpr const char* DIGITS = "0123456789abcdef";
-    const auto hexadecimal = [&](uint16_t id) {
-        std::string text;
-        for (int shift = 12; shift >= 0; shift -= 4) text += DIGITS[(id >> shift) & 15];
-        return text;
-    };
-    return sentence(device.name.empty() ? "device" : device.name, " (", hexadecimal(device.vendor), ":",
-                    hexadecimal(device.product), " at ", device.path, ")");
+    return sentence(device.name.empty() ? "device" : device.name, " (", ids_of(device), " at ", device.path, ")");
 }
 
 struct Opened {
@@ -88,6 +97,18 @@ Opened open_port(const std::string& path)
     const std::lock_guard lock(hidapi_mutex());
     if (hid_device* device = hid_open_path(path.c_str())) return {std::make_unique<HidapiPort>(device), {}};
     return {nullptr, printable(hid_error(nullptr))};
+}
+
+/// What the system shows of the device's description of its reports; empty where it shows none (hidapi 0.13 cannot
+/// ask).
+std::vector<uint8_t> descriptor_of(const std::string& path)
+{
+    const std::filesystem::path file =
+        "/sys/class/hidraw" / std::filesystem::path(path).filename() / "device/report_descriptor";
+    std::ifstream stream(file, std::ios::binary);
+    std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    bytes.resize(std::min<size_t>(bytes.size(), 4096));
+    return bytes;
 }
 
 /// The first plugged-in device that the profile matches.
@@ -126,15 +147,42 @@ std::vector<HidListing> list_hid_devices(std::span<const HidProfile> profiles)
     return devices;
 }
 
-std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force)
+size_t record_hid_device(const std::string& device, const std::filesystem::path& file, double most_s,
+                         const std::function<bool(size_t)>& goes_on)
 {
+    if (std::filesystem::exists(file)) fail(file.string(), ": exists; expected the name of a new file");
     const std::vector<HidListing> devices = list_hid_devices({});
+    const auto found = std::ranges::find_if(
+        devices, [&](const HidListing& each) { return each.path == device || ids_of(each) == device; });
+    if (found == devices.end())
+        fail(device, ": is not plugged in; expected ids as in 2988:0304, or a path as in /dev/hidraw3, of one of ",
+             devices.size(), " HID devices");
+    const Opened opened = open_port(found->path);
+    if (!opened.port)
+        fail(described(*found), ": cannot be opened: ", opened.reason, "; expected permission to read it, as the rule ",
+             "tools/udev/70-shvr-haptics.rules grants");
+    HidRecording recording{.vendor = found->vendor,
+                           .product = found->product,
+                           .name = found->name,
+                           .descriptor = descriptor_of(found->path)};
+    record_reports(*opened.port, most_s, goes_on, recording);
+    if (recording.reports.empty()) fail(described(*found), ": sent no report; expected some when it is moved");
+    const std::string text = text_of(recording);
+    write_file_atomically(file, std::as_bytes(std::span(text)));
+    return recording.reports.size();
+}
+
+std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force,
+                                              const std::string& path)
+{
+    std::vector<HidListing> devices = list_hid_devices({});
+    if (!path.empty()) std::erase_if(devices, [&](const HidListing& device) { return device.path != path; });
     const auto device_of = [&](const HidProfile& profile) {
         return std::ranges::find_if(devices, [&](const HidListing& device) { return matches(profile, device); });
     };
     for (const HidProfile& profile : profiles) {
         const auto device = device_of(profile);
-        if (!profile.input || device == devices.end()) continue;
+        if (profile.inputs.empty() || device == devices.end()) continue;
         Opened opened = open_port(device->path);
         if (!opened.port) {
             fail(described(*device), ": cannot be opened: ", opened.reason,

@@ -10,20 +10,26 @@
 #include <optional>
 #include <span>
 
-#include "haptics/hid_profile.h"
+#include "haptics/hid/hid_profile.h"
 
 namespace shvr {
 
-/// The contents of an input report. Counters are raw: `Unwrapped` extends them.
+/// The contents of an input report, in our axes; what it does not state is absent. Counters are raw: `Unwrapped`
+/// extends them.
 struct HidInput {
-    glm::dvec3 position_m{0.0};  ///< in our axes
-    glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
-    uint32_t buttons = 0;
-    bool calibrated = true;
-    uint32_t sequence = 0, force_sequence = 0, time = 0;
+    std::optional<glm::dvec3> position_m;
+    std::optional<glm::dquat> rotation;
+    std::optional<glm::dvec3> rate, turn_rate;  ///< shares of the full deflection, not yet shaped
+    std::optional<uint32_t> buttons;
+    std::optional<bool> calibrated;
+    std::optional<uint32_t> sequence, force_sequence, time;
 };
-/// Nothing if the report is not the profile's input report: its id or length differs.
+/// Nothing if the report is none of the profile's input reports: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
+/// Whether the profile says to pass over such a report.
+bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
+/// The share of the full speed for a deflection; finite, at most 1 long.
+glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);
 
 struct HidBytes {
     std::array<uint8_t, 1 + MAX_REPORT_BYTES> bytes{};

@@ -1,0 +1,53 @@
+#pragma once
+// Raw reports with the times at which they came, so that the owner of a device whose layout is not public can
+// contribute one. Nothing is written to the device. The file is lines of JSON, first about the device, then one for
+// each report:
+//
+//     {"format":"shvr_hid_reports","version":1,"vendor":"0x2988","product":"0x0304","name":"Touch","descriptor":"06"}
+//     {"t_us":1042,"bytes":"01a3ff"}
+//
+// Times are microseconds since the recording began, and never go back; bytes begin with the report's id if the device
+// numbers its reports. The descriptor is the device's own description of its reports, where the system shows it. No
+// serial number is kept.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "haptics/hid/hid_link.h"
+
+namespace shvr {
+
+struct HidRecordedReport {
+    uint64_t t_us = 0;
+    std::vector<uint8_t> bytes;
+};
+
+struct HidRecording {
+    uint16_t vendor = 0, product = 0;
+    std::string name;
+    std::vector<uint8_t> descriptor;  ///< empty: not known
+    std::vector<HidRecordedReport> reports;
+};
+
+inline constexpr size_t MAX_RECORDED_REPORT_BYTES = 1024;
+inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< a quarter of an hour at 1 kHz
+
+/// Adds reports to `recording` until `most_s` seconds have passed, the device is gone or `goes_on` says no; `goes_on`
+/// is asked every 20 ms, with the number of reports so far. False if the device went away.
+bool record_reports(HidPort& port, double most_s, const std::function<bool(size_t)>& goes_on, HidRecording& recording);
+
+/// Records the first device whose ids match ("2988:0304"), or whose path is `device` ("/dev/hidraw3"), into `file`,
+/// which must not exist. Returns the number of reports. Fails with a sentence if there is no such device, it cannot be
+/// opened, or it sent nothing.
+size_t record_hid_device(const std::string& device, const std::filesystem::path& file, double most_s,
+                         const std::function<bool(size_t)>& goes_on);
+
+std::string text_of(const HidRecording& recording);
+/// `origin` names the text in errors.
+HidRecording parse_hid_recording(const std::string& text, const std::string& origin);
+HidRecording load_hid_recording(const std::filesystem::path& file);
+
+}  // namespace shvr

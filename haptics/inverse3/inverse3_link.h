@@ -1,0 +1,60 @@
+#pragma once
+// Haply's Inverse3, by the service of its maker on the own machine: states and forces on one WebSocket, events of
+// safety on another.
+//
+//   servo --Latest--> link thread <--socket--> service          servo <--Latest-- link thread
+//
+// The service answers each message with one state: the link sends when the servo has written, and at most one message
+// is on its way. The servo never waits: its side exchanges latest values and wakes the link.
+//
+// No force is sent unless all of this holds: it is allowed; the channel of events is there; the servo wrote within
+// `write_timeout`; the last message was answered within `answer_timeout`; neither e-brake, stall nor ceiling was told
+// of within `hold`. Otherwise a zero force goes out at once. A message that is not as documented ends the connection;
+// `trouble()` says why. A lost connection is tried again every 20 ms.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "haptics/device.h"
+
+namespace shvr {
+
+struct Inverse3Options {
+    uint16_t port = 10001, event_port = 10020;
+    std::string device_id;  ///< empty: the first one
+    bool allow_force = false;
+    bool realtime = true;                            ///< SCHED_FIFO for the link's thread, if the system allows it
+    std::chrono::milliseconds connect_timeout{300};  ///< for each connection and the first inventory
+    std::chrono::milliseconds write_timeout{12};     ///< with what follows, zero force within 20 ms
+    std::chrono::milliseconds answer_timeout{12};
+    std::chrono::milliseconds keep_alive{10};  ///< between messages while the servo does not write
+    std::chrono::milliseconds hold{1000};      ///< after a stall, and after a message that was refused
+    uint64_t (*now_ns)() = nullptr;            ///< stamps states; null: the steady clock
+};
+
+/// What the link did since it was opened; any thread.
+struct Inverse3Counts {
+    uint64_t sent = 0, answered = 0, refused = 0, connections = 0;
+};
+
+class Inverse3 : public HapticDevice {
+public:
+    virtual const std::string& device_id() const = 0;
+    virtual Inverse3Counts counts() const noexcept = 0;
+};
+
+/// Null if nobody listens on the port. Fails if what listens there is no such service or has no such device. Waits for
+/// `connect_timeout` at most three times.
+std::unique_ptr<Inverse3> open_inverse3(const Inverse3Options& options);
+
+struct Inverse3Found {
+    bool is_service = false;  ///< something listens on the port
+    std::string device_id, trouble;
+};
+/// The device that would be opened, or why there is none. Sends nothing to it.
+Inverse3Found find_inverse3(const Inverse3Options& options);
+
+}  // namespace shvr

@@ -1,0 +1,59 @@
+#pragma once
+// What the Inverse service says and is told, as JSON texts (Inverse SDK 3.5, by its public documentation). A thousand
+// messages a second are read without building a tree: a strict scan that keeps the few numbers needed. Pure; any
+// thread.
+//
+// Places, velocities and forces are in the service's frame (+x right, +y forward, +z up), metres and newtons;
+// `from_inverse3` and `to_inverse3` turn them.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace shvr {
+
+inline glm::dvec3 from_inverse3(const glm::dvec3& v)
+{
+    return {v.x, v.z, -v.y};
+}
+inline glm::dvec3 to_inverse3(const glm::dvec3& v)
+{
+    return {v.x, -v.z, v.y};
+}
+
+struct Inverse3State {
+    std::string device_id;  ///< letters, digits, - and _; empty: there is no device (of the id asked for)
+    bool has_position = false;
+    glm::dvec3 position_m{0.0};
+    bool has_rotation = false;  ///< of the grip
+    glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+    uint32_t buttons = 0;  ///< of the grip: bit 0 is a, bit 1 is b
+};
+/// Reads an inventory or a state into `state`: the device of that id, or the first one if `device_id` is empty. Returns
+/// null, or what is wrong with the message; `state` is then unspecified.
+const char* read_inverse3_state(std::string_view text, std::string_view device_id, Inverse3State& state);
+
+enum class Inverse3Event : uint8_t {
+    other,
+    ebrake_on,
+    ebrake_off,
+    stall,    ///< of a motor
+    ceiling,  ///< of the stability of its control
+    connected,
+    disconnected,
+};
+struct Inverse3Notice {
+    Inverse3Event event = Inverse3Event::other;
+    std::string device_id;  ///< empty: not stated
+};
+/// Reads a message of the channel of events; returns null, or what is wrong with it.
+const char* read_inverse3_notice(std::string_view text, Inverse3Notice& notice);
+
+/// The message that sets a force, written so that it is read back bit for bit. The first one of a connection also names
+/// the program. `force_n` must be finite.
+void append_inverse3_command(std::string& text, std::string_view device_id, const glm::dvec3& force_n, bool is_first);
+
+}  // namespace shvr

@@ -1,0 +1,50 @@
+#pragma once
+// A WebSocket to a port of the own machine. Connecting waits, at most as long as it is told; afterwards nothing waits:
+// a poll on `descriptor()` says when there is something to receive. One thread at a time.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "haptics/inverse3/websocket_frame.h"
+
+namespace shvr {
+
+class WebSocketClient {
+public:
+    /// Null if nobody listens there, or `trouble` says why what listens there is of no use.
+    static std::unique_ptr<WebSocketClient> connect(uint16_t port, std::chrono::milliseconds most,
+                                                    std::string& trouble);
+    ~WebSocketClient();
+    WebSocketClient(const WebSocketClient&) = delete;
+    WebSocketClient& operator=(const WebSocketClient&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    /// False if the other side is gone or does not read what it is sent.
+    bool send_text(std::string_view text);
+    /// Takes what has arrived; false if the connection has ended. What was whole is still in `next()`.
+    bool receive();
+    /// The next message; pings are answered here.
+    WebSocketReader::Event next();
+    std::string_view payload() const { return reader_.payload(); }
+    const char* trouble() const { return reader_.trouble(); }
+    /// Waits until there is something to receive; false if nothing came.
+    bool wait(std::chrono::steady_clock::time_point until) const;
+    /// Says that no more will be sent.
+    void close();
+
+private:
+    explicit WebSocketClient(int descriptor) : descriptor_(descriptor) {}
+    bool shake_hands(uint16_t port, std::chrono::steady_clock::time_point until, std::string& trouble);
+    bool send_bytes(std::string_view bytes);
+    bool send_frame(WebSocketOpcode opcode, std::string_view payload);
+
+    int descriptor_;
+    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, of which there is none here
+    std::string frame_;
+    WebSocketReader reader_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,38 @@
+#pragma once
+// 3D Systems' Touch and its kin through their maker's driver. The driver's own scheduler calls us a thousand times a
+// second in a thread of its own; the servo exchanges latest values with it and never waits:
+//
+//   servo --Latest--> the driver's thread --Latest--> servo
+//
+// The driver's thread sets a force of zero when the servo has not written for 20 ms, when a motor is too warm, and
+// after an error; a fault or a lost connection ends the device. While the driver runs, the HID node of a Touch is gone:
+// this back end and `haptics/hid` exclude each other for one device.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "haptics/device.h"
+
+namespace shvr {
+
+struct OpenHapticsOptions {
+    std::string library = "libHD.so";
+    std::string device;  ///< name given in the driver's configuration; empty: the default one
+    bool allow_force = false;
+    bool may_calibrate = true;  ///< as far as it needs no hand
+};
+
+class OpenHaptics : public HapticDevice {
+public:
+    virtual std::string model() const = 0;
+    virtual std::string serial() const = 0;
+    /// The warmest motor's share of the temperature at which it must rest; any thread.
+    virtual double motor_temperature() const noexcept = 0;
+};
+
+/// Null if the library is not installed. Fails with a sentence if there is no device, or if it needs calibration by
+/// hand. At most one at a time.
+std::unique_ptr<OpenHaptics> open_openhaptics(const OpenHapticsOptions& options);
+
+}  // namespace shvr

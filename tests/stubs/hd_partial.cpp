@@ -1,0 +1,8 @@
+// A libHD.so of another age: it has the first function only.
+
+#include <cstdint>
+
+extern "C" uint32_t hdInitDevice(const char*)
+{
+    return 0xffffffff;
+}
