@@ -221,6 +221,7 @@ private:
             caps = decode_feature(profile_, profile_.feature->id == 0 ? bytes.subspan(1) : bytes);
         }
         caps.outputs_force = may_force_;
+        caps.tells_force_sequence = profile_.find_input(HidQuantity::force_sequence) != nullptr;
         return caps;
     }
 

@@ -135,7 +135,8 @@ public:
                 .stiffness_limit = STIFFNESS_LIMIT,
                 .latency_s = 0.002,
                 .senses_rotation = true,
-                .outputs_force = options_.allow_force};
+                .outputs_force = options_.allow_force,
+                .tells_force_sequence = true};
     }
     ReadResult read(DeviceState& state) noexcept override
     {

@@ -156,6 +156,7 @@ private:
         caps_.stiffness_limit = RECOMMENDED_STIFFNESS;
         caps_.senses_rotation = true;
         caps_.outputs_force = allow_force;
+        caps_.tells_force_sequence = true;
         hd_.get_error();  // what a device does not state is no trouble
     }
 

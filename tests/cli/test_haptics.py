@@ -86,6 +86,14 @@ class Haptics(CliTest):
     def test_devices(self):
         result = self.check_json("haptics", "devices")
         self.assert_keys(result, ["devices", "profiles", "models"])
+        self.assertEqual(result["devices"][-1]["name"], "mouse")
+        self.assertEqual(result["devices"][-1]["why_unusable"], "")
+        said = self.check("haptics", "devices", "--record", "2988:0304", status=2).stderr
+        self.assertIn("--record is given without -o", said)
+        reports = self.folder / "reports.jsonl"
+        said = self.check("haptics", "devices", "--record", "2988:0304", "-o", reports, status=1).stderr
+        self.assertIn("2988:0304", said)
+        self.assertFalse(reports.exists())
         self.assertIn("SHVR reference layout", [profile["name"] for profile in result["profiles"]])
 
     def test_bench(self):

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 
 #include "engine/annotation/work/work_offsets.h"
-#include "engine/base/assets.h"
 #include "engine/base/text.h"
 #include "engine/live/relevance_host.h"
 #include "engine/volume/unit.h"
-#include "haptics/hid_device.h"
 #include "haptics/replay/replay.h"
 #include "haptics/servo.h"
 #include "tools/cli/cli.h"
@@ -116,41 +113,6 @@ void run_replay(const ReplayCommandOptions& options)
         say(options.common, sentence(result.told_equal, " of ", result.told, " forces equal those of the trace"));
 }
 
-void run_devices(const Common& common)
-{
-    const std::filesystem::path folder = asset_folder("devices");
-    const std::vector<HidProfile> profiles = folder.empty() ? std::vector<HidProfile>() : load_hid_profiles(folder);
-    Json devices = Json::array(), known = Json::array();
-    for (const HidListing& one : list_hid_devices(profiles))
-        devices.push_back({{"name", one.name},
-                           {"manufacturer", one.manufacturer},
-                           {"serial", one.serial},
-                           {"vendor", one.vendor},
-                           {"product", one.product},
-                           {"usage_page", one.usage_page},
-                           {"usage", one.usage},
-                           {"path", one.path},
-                           {"profile", one.profile.empty() ? Json(nullptr) : Json(one.profile)}});
-    for (const HidProfile& profile : profiles)
-        known.push_back({{"name", profile.name},
-                         {"reads", profile.input.has_value()},
-                         {"force", profile.verified && profile.output.has_value()},
-                         {"note", profile.note}});
-    if (common.json) return print({{"devices", devices}, {"profiles", known}, {"models", {"touch"}}});
-    if (devices.empty()) std::cout << "no HID device is plugged in, or none may be listed\n";
-    for (const Json& one : devices)
-        std::cout << one["name"].get<std::string>() << ": "
-                  << (one["profile"].is_null() ? "no profile" : one["profile"].get<std::string>()) << '\n';
-    for (const Json& one : known)
-        std::cout << "known: " << one["name"].get<std::string>()
-                  << (!one["reads"].get<bool>()  ? " (recognised only)"
-                      : one["force"].get<bool>() ? " (gives force)"
-                                                 : " (is read; gives no force)")
-                  << '\n';
-    std::cout.flush();
-    if (!std::cout) fail("standard output: cannot be written");
-}
-
 void add_replay(CLI::App& haptics)
 {
     auto options = std::make_shared<ReplayCommandOptions>();
@@ -185,11 +147,7 @@ void add_haptics(CLI::App& program)
     haptics->footer("Example:\n  shvr haptics devices");
     add_replay(*haptics);
     add_haptics_bench(*haptics);
-    auto common = std::make_shared<Common>();
-    CLI::App* devices = haptics->add_subcommand("devices", "Lists HID devices and what is known of them");
-    add_output_options(*devices, *common);
-    devices->footer("Example:\n  shvr haptics devices --json");
-    devices->callback([common] { run_devices(*common); });
+    add_haptics_devices(*haptics);
 }
 
 }  // namespace shvr::cli

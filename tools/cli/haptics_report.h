@@ -14,5 +14,6 @@ Json quantiles_us(std::vector<uint64_t> nanoseconds);
 Json report_of(const ReplayResult& result, const std::string& unit);
 
 void add_haptics_bench(CLI::App& haptics);
+void add_haptics_devices(CLI::App& haptics);
 
 }  // namespace shvr::cli
