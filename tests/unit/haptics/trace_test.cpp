@@ -47,7 +47,7 @@ Trace wandering(int ticks)
         tick.state.time_ns = tick.now_ns - 500;
         tick.state.sequence = uint32_t(i + 1);
         const double y = 0.001 * std::sin(0.01 * i);
-        tick.state.position_m = {1e-9 * double(random()), i < 1500 ? y / 50.0 : y, 1e-4 / 3.0};
+        tick.state.position_m = {1e-14 * double(random()), i < 1500 ? y / 50.0 : y, 1e-4 / 3.0};
         trace.ticks.push_back(tick);
     }
     return trace;
