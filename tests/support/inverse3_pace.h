@@ -16,7 +16,11 @@ namespace shvr {
 
 inline Inverse3Options options_for(const Inverse3Service& service)
 {
-    return {.port = service.port(), .event_port = service.event_port(), .allow_force = true, .realtime = false};
+    return {.port = service.port(),
+            .event_port = service.event_port(),
+            .allow_force = true,
+            .realtime = false,
+            .connect_timeout = std::chrono::seconds(3)};  // of a busy machine
 }
 
 /// From a write to the state that answers it, microseconds; sorted.

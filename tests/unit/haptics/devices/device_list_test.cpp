@@ -1,5 +1,6 @@
 #include "haptics/devices/device_list.h"
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -50,6 +51,7 @@ TEST_CASE("devices of every back end are listed, and opened by their ids")
     DeviceOptions options = nothing_installed();
     options.inverse3.port = service.port();
     options.inverse3.event_port = service.event_port();
+    options.inverse3.connect_timeout = std::chrono::milliseconds(3000);  // of a busy machine
     options.openhaptics.library = stub_library("libhd_stub.so");
     const std::vector<DeviceListing> rows = list_devices(options);
     REQUIRE(rows.size() == 3);
