@@ -61,12 +61,13 @@ class Menus(Seen):
         self.until(is_still, "still screen")
 
     def close_menus(self):
+        """Each Escape leaves one of them, or what is framed in it."""
         for _ in range(12):
-            before = self.seen()
             if not self.seen(window="##Menu_") and not self.seen(window="Open a volume"):
                 return
+            before = self.frame()["frame"]
             self.press("Escape")
-            self.until(lambda: self.seen() != before, "answer to Escape")
+            self.until(lambda: self.frame()["frame"] > before + 1, "two frames after Escape")
         self.fail("a menu stays open")
 
     def expected(self, path, entry):
