@@ -42,7 +42,7 @@ def write_png(path, width, height, rows):
 
 
 class Photographs(Seen):
-    size = (1000, 3000)   # at a scale of 1: high enough for all panels at once
+    size = (1000, 2300)   # at a scale of 1: high enough for most panels at once
 
     def start(self, *arguments, environment=None):
         width, height = (round(self.scale * side) for side in self.size)
