@@ -157,6 +157,8 @@ bool App::refuses_to_close(const std::string& why)
 
 bool App::something_moves() const
 {
+    constexpr uint64_t FIRST_FRAMES = 3;  // windows find their sizes, however long a frame takes
+    if (window_.frames_presented() < FIRST_FRAMES) return true;
     if (window_.now_s() < ui_until_s_ || report_.has_unanswered() || choosers_are_busy()) return true;
     if (!bench_->is_open()) return false;
     constexpr double STIR_VOXELS = 0.05;

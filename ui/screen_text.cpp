@@ -100,9 +100,8 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        // Characters wholly beyond the edge are not drawn at all: where one ends at it, another may follow.
-        const bool is_at_edge = pen + glyph->AdvanceX * size > clip.z - 0.5f * CUT;
-        const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT || is_at_edge;
+        // Characters wholly beyond the edge are not drawn at all: a text that ends between two is not known to be cut.
+        const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});
             has_text_ = true;

@@ -18,7 +18,7 @@ struct ScreenText {
     std::string text;            ///< UTF-8
     std::string window;          ///< Dear ImGui's name of the window that it is in
     glm::vec2 begin{0}, end{0};  ///< box of the visible ink, in pixels of the frame buffer
-    bool is_cut = false;         ///< at its left or right end
+    bool is_cut = false;         ///< at its left or right end, within a character
     bool is_scrolled = false;    ///< partly above or below what its window shows
 };
 

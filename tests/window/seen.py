@@ -67,6 +67,13 @@ class Seen(Window):
                 self.fail(f"there is no {what}; on the screen: {[seen['text'] for seen in self.seen()]}")
             time.sleep(0.02)
 
+    def soon(self, holds, patience_s=2):
+        """Whether that becomes true before long."""
+        end = time.monotonic() + patience_s
+        while not holds() and time.monotonic() < end:
+            time.sleep(0.02)
+        return holds()
+
     # ---- What is seen
 
     def frame(self):
@@ -96,10 +103,13 @@ class Seen(Window):
         return round((x0 + x1) / 2), round((y0 + y1) / 2)
 
     def click_on(self, text, window=None, button=1):
-        """With the mouse, where the words are; the button is held for some frames, as by a hand."""
+        """With the mouse, where the words are; the pointer rests and the button is held for some frames, as by a
+        hand."""
         x, y = self.middle_of(self.see(text, window))
-        self.do("mousemove", x - 1, y, "mousemove", x, y, "sleep", 0.08, "mousedown", button, "sleep", 0.05,
-                "mouseup", button, pause_s=0)
+        for step in (["mousemove", x - 2, y, "mousemove", x, y], ["mousedown", button], ["mouseup", button]):
+            before = self.frame()["frame"]
+            self.do(*step, pause_s=0)
+            self.until(lambda: self.program.poll() is not None or self.frame()["frame"] > before, "a frame")
 
     def press(self, chord):
         """Held for a moment."""

@@ -127,3 +127,23 @@ TEST_CASE("Scale bar, axes and the probe's depth are drawn where they are wanted
     const Marks deep = panes.over(panes.view);
     CHECK(std::ranges::any_of(deep.labels, [](const Label& label) { return label.text.ends_with("middle's depth"); }));
 }
+
+TEST_CASE("The words at the probe lie at its left where there is no room at the right")
+{
+    Panes panes;
+    panes.world.session.interaction.probe_label = true;
+    panes.world.model.reading.depth = 12.5;
+    panes.world.model.reading.relevant_share = 0.25;
+    const auto at_probe = [&](double voxel) {
+        panes.world.model.probe_voxel.x = voxel;
+        const Marks marks = panes.over(panes.view);
+        const auto found = std::ranges::find_if(
+            marks.labels, [](const Label& label) { return label.text.find("deep") != std::string::npos; });
+        REQUIRE(found != marks.labels.end());
+        return *found;
+    };
+    CHECK(at_probe(10.0).anchor.x == 0.0);
+    CHECK(at_probe(10.0).at.x > 70.0);  // of the pane's 300 pixels
+    CHECK(at_probe(50.0).anchor.x == 1.0);
+    CHECK(at_probe(50.0).at.x < 150.0);
+}

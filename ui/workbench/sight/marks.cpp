@@ -259,7 +259,12 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        label(at->pixel + glm::dvec2(0.75 * reach + 6.0 * units_, 0.75 * reach + 6.0 * units_), {0.0, 0.0}, text);
+        // Where there is no room at the right it lies at the left; a character is at most that wide.
+        constexpr double CHARACTER = 8.0;
+        const double beside = 0.75 * reach + 6.0 * units_;
+        const bool has_room =
+            at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
+        label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
     }
     /// An arc about the probe, from the top clockwise: the share of its ball that is relevant.
     void meter(const glm::dvec2& middle, double radius, double share)
