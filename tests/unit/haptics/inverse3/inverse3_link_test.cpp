@@ -135,13 +135,14 @@ TEST_CASE("through the socket the forces are those of the simulated device, bit 
     // The same hand and settings as an arm in its own right, and behind the service.
     const auto forces_of = [&](auto&& next_state, auto&& set_force, const DeviceCaps& caps) {
         ForceMemory memory;
+        const auto growth = std::make_unique<GrowthMemory>();
         std::vector<glm::dvec3> forces;
         DeviceState state;
         for (int tick = 1; tick <= ticks; ++tick) {
             const uint64_t now_ns = uint64_t(tick) * 1'000'000;
             next_state(state, tick);
             patch->time_ns = now_ns;
-            const ForceStep force = step(settings, caps, ReadResult::fresh, state, *patch, now_ns, memory);
+            const ForceStep force = step(settings, caps, ReadResult::fresh, state, *patch, now_ns, memory, *growth);
             set_force(force.force_n, uint32_t(tick));
             forces.push_back(force.force_n);
         }
