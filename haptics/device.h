@@ -43,7 +43,7 @@ struct DeviceCaps {
     bool senses_rotation = false;
     bool outputs_force = false;
     bool tells_force_sequence = false;  ///< its states tell which force is in effect; otherwise `latency_s` must do
-    bool rate_control = false;  ///< it states speeds, not places; it rests where it is silent
+    bool rate_control = false;          ///< it states speeds, not places; it rests where it is silent
 };
 
 enum class ReadResult : uint8_t {
