@@ -10,6 +10,13 @@ PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeSta
                      {session.probe.voxel.value_or(0.5 * glm::dvec3(volume.size))});
 }
 
+void choose_thresholds(Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics)
+{
+    ProbeSettings& probe = session.probe;
+    if (!probe.brush.threshold) probe.brush.threshold = dab_of(session, volume, statistics).threshold;
+    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+}
+
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator)
 {
     const VolumeInfo& volume = renderer.volume().info();

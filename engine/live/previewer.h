@@ -13,6 +13,9 @@ namespace shvr {
 /// The brush of a session's probe, for one dab at the probe's position. Missing settings are chosen for the volume,
 /// except an automatic offset; `in_session` gives it that, and the locks.
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
+/// The probe's thresholds that are not given are chosen for the volume. What is kept of a session has them, whoever
+/// keeps it.
+void choose_thresholds(Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
 /// What pictures of a session show of its probe, its brush's preview included. Waits for the device.
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator);
 

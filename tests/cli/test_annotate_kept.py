@@ -56,6 +56,14 @@ class Kept(CliTest):
 
     # ---- Revert ----
 
+    def test_what_a_script_saved_is_opened_without_a_word_of_changed_settings(self):
+        session = self.write_session()
+        script = self.write_script("script.jsonl", [{"op": "node", "at": [1, 1, 1], "radius": 1}, {"op": "save"}])
+        self.check("annotate", session, "--script", script)
+        said = self.check("annotate", session, "--actions", self.write_script("none.jsonl", [])).stderr
+        self.assertIn("Opened", said)
+        self.assertNotIn("changed since it was saved", said)
+
     def test_revert_is_a_step(self):
         self.assertIn("script.jsonl:2: ", self.annotate([self.dab(1), {"op": "revert"}], status=1))
         said = self.annotate([{"op": "revert"}], status=1)
@@ -67,7 +75,7 @@ class Kept(CliTest):
         said = self.annotate([self.dab(3), count, {"op": "revert"}, saved, {"op": "undo"}, count, {"op": "redo"}, saved,
                               {"op": "revert"}, {"op": "save"}], "--verbose")
         self.assertIn("script.jsonl:3: Reverted to the last save", said)
-        self.assertIn("script.jsonl:9: nothing differs from the last save", said)
+        self.assertIn("script.jsonl:9: Nothing has changed since the last save", said)
         self.annotate([saved, {"op": "undo"}, count, {"op": "revert"}, saved])
         self.assertIn("script.jsonl:1: unknown key count",
                       self.annotate([{"op": "revert", "count": 1}], status=1))

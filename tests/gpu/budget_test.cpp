@@ -195,10 +195,11 @@ TEST_CASE("what no budget of this size draws is refused before a voxel is read")
 {
     // Nobody waits for these to be read: 2^30 voxels, a level of 4096 bricks.
     const Source deep = open_procedural({.kind = "fog", .size = {1024, 1024, 1024}, .levels = 2});
+    const Source flat = open_procedural({.kind = "fog", .size = {512, 512, 512}});
     const auto said = [&](Paging paging, uint64_t mib) -> std::string {
         Renderer renderer({.device = {"", true}, .budget = {mib << 20, 0}, .threads = 1});
         try {
-            renderer.check_sizes(*deep, {.paging = paging}, false);
+            renderer.check_sizes(paging == Paging::never ? *flat : *deep, {.paging = paging}, false);
         } catch (const Error& error) {
             return error.what();
         }

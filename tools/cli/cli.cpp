@@ -6,6 +6,7 @@
 #include "engine/annotation/work/hold.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
+#include "engine/live/previewer.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/volume/unit.h"
@@ -262,10 +263,12 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     const bool is_picture = !session.pictured.empty();
     const VolumeInfo& volume = opened.source->info();
     opened.project = is_picture ? session.pictured : session_file_of(path);
+    Session kept = opened.session;
+    choose_thresholds(kept, volume, session.statistics);
     // A picture has settings of its own, whatever has become of the project's.
-    const WorkFiles files = is_picture ? work_files(opened.session, volume)
-                                       : with_kept_settings(work_files(opened.session, volume, common.settings),
-                                                            opened.session, common.settings);
+    const WorkFiles files =
+        is_picture ? work_files(opened.session, volume)
+                   : with_kept_settings(work_files(opened.session, volume, common.settings), kept, common.settings);
     warn(opened.annotator->open(files, opening), common);
     const Work& left = opened.annotator->work();
     left.expect_choice();

@@ -44,9 +44,7 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
     const std::filesystem::path path = session_path_of(input);
     if (session.mask_path.empty()) session.mask_path = std::filesystem::path(path).replace_extension(".mask");
     if (session.journal_path.empty()) session.journal_path = journal_beside(path);
-    ProbeSettings& probe = session.probe;
-    probe.brush.threshold = dab_of(session, volume, opened.statistics).threshold;
-    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    shvr::choose_thresholds(session, volume, opened.statistics);
     Read read{.opened = {}, .session_path = path, .overridden = overridden, .work = nullptr};
     read.session_text = text_of_session(path);
     const WorkFiles files = with_kept_settings(work_files(session, volume, overridden), session, overridden);
@@ -106,9 +104,7 @@ void Document::begin_with_turning()
 
 void Document::choose_thresholds(Session& of) const
 {
-    ProbeSettings& probe = of.probe;
-    if (!probe.brush.threshold) probe.brush.threshold = dab_of(of, volume(), statistics).threshold;
-    if (!probe.haptic_threshold) probe.haptic_threshold = probe.brush.threshold;
+    shvr::choose_thresholds(of, volume(), statistics);
 }
 
 /// The view and the probe come back as they were left, even where nobody could save them.
