@@ -1,9 +1,12 @@
 // The `main` of every test program.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
+
+#include "tests/support/at_end.h"
 
 namespace {
 
@@ -15,4 +18,22 @@ const bool environment_is_set = [] {
     return true;
 }();
 
+std::vector<std::function<void()>>& acts()
+{
+    static std::vector<std::function<void()>> all;
+    return all;
+}
+
 }  // namespace
+
+void shvr::test::at_end(std::function<void()> act)
+{
+    acts().push_back(std::move(act));
+}
+
+int main(int count, char** arguments)
+{
+    const int status = doctest::Context(count, arguments).run();
+    for (; !acts().empty(); acts().pop_back()) acts().back()();
+    return status;
+}

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/at_end.h"
 #include "tests/support/volume_files.h"
 
 namespace shvr::test {
@@ -17,8 +18,12 @@ constexpr double LARGEST_CODE = 65535.0;
 
 Renderer& renderer_of_the_process()
 {
-    static Renderer renderer({.device = {.device = "", .validation = true}});
-    return renderer;
+    static std::unique_ptr<Renderer> renderer;
+    if (!renderer) {
+        renderer = std::make_unique<Renderer>(Renderer::Options{.device = {.device = "", .validation = true}});
+        at_end([] { renderer.reset(); });  // the validation layer's own statics are still there
+    }
+    return *renderer;
 }
 
 template <class T>
