@@ -86,7 +86,7 @@ class Haptics(CliTest):
     def test_devices(self):
         result = self.check_json("haptics", "devices")
         self.assert_keys(result, ["devices", "profiles", "models"])
-        self.assertEqual(result["devices"][-1]["name"], "mouse")
+        self.assertEqual(result["devices"][-1]["id"], "mouse")
         self.assertEqual(result["devices"][-1]["why_unusable"], "")
         said = self.check("haptics", "devices", "--record", "2988:0304", status=2).stderr
         self.assertIn("--record is given without -o", said)

@@ -53,8 +53,8 @@ class Faults(CliTest):
             return f"{fault}: {lines[0]}"
         return f"{fault}: half a picture" if picture.exists() else ""
 
-    def check_all(self, paging):
-        self.session = self.write_session(light={"shaded": True, "occlusion": {"strength": 0.8}},
+    def check_all(self, paging, side):
+        self.session = self.write_session(volume={"procedural": "sphere", "size": [side] * 3}, light={"shaded": True, "occlusion": {"strength": 0.8}},
                                           render={"size": [24, 16], "paging": paging})
         result, log, picture = self.render("whole", "")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -71,10 +71,10 @@ class Faults(CliTest):
         self.assertEqual([one for one in wrong if one], [])
 
     def test_every_call_of_a_picture_may_fail(self):
-        self.check_all("automatic")
+        self.check_all("automatic", 24)
 
     def test_every_call_of_a_picture_of_paged_bricks_may_fail(self):
-        self.check_all("always")
+        self.check_all("always", 72)
 
 
 if __name__ == "__main__":

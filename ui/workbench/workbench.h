@@ -7,7 +7,7 @@
 //
 // One thread, the one that owns the renderer, besides the servo's (haptics/servo.h), those of jobs and savers, and one
 // that writes a screenshot.
-// `advance` never waits for the device, nor for a disk but where a journal begins: files are read and written by jobs,
+// `advance` never waits for the device, nor for a disk: files are read and written by jobs,
 // and a volume that is opened goes onto the device in slices of a few milliseconds. A turn in which nothing happens
 // costs microseconds (MEASURED.md).
 

@@ -108,9 +108,11 @@ void Journal::begin(const fs::path& rest)
     struct stat status {};
     check(::fstat(file_.number(), &status) == 0 ? 0 : errno);
     if (const auto bytes = uint64_t(status.st_size); bytes > end_) {
-        AtomicWriter writer(rest);
-        copy(end_, bytes, writer);
-        writer.commit();
+        if (end_ > 0 || bytes > journal_header().size()) {  // else half a header of a journal without records
+            AtomicWriter writer(rest);
+            copy(end_, bytes, writer);
+            writer.commit();
+        }
         check(::ftruncate(file_.number(), off_t(end_)) == 0 ? 0 : errno);
     }
     if (end_ == 0) {
@@ -118,9 +120,21 @@ void Journal::begin(const fs::path& rest)
         check(write_all(file_.number(), 0, header));
         end_ = header.size();
     }
-    // Once, and waited for: a journal of which a power cut leaves the name but not the header could not be opened.
-    check(sync(file_.number()));
-    sync_folder(path_);
+    is_to_begin_ = true;
+}
+
+/// Before any record is written: of a journal without a header, as a power cut may leave it, nothing else is there
+/// (has_file_header in journal_file.cpp). Returns why it failed; empty if it did not.
+std::string Journal::sync_beginning() const
+{
+    try {
+        if (const int error = sync(file_.number()); error != 0)
+            fail(path_.string(), ": cannot be synced: ", reason_of(error));
+        sync_folder(path_);
+    } catch (const Error& error) {
+        return sentence(error.what(), "; unsaved work stays in memory, and writing is tried again");
+    }
+    return {};
 }
 
 Journal::~Journal()
@@ -260,7 +274,9 @@ void Journal::write()
         lock.unlock();
 
         frame_all(waiting);
-        std::string failure = write_from(begin + written_bytes, waiting, written);
+        std::string failure = is_to_begin_ ? sync_beginning() : std::string();
+        if (failure.empty()) is_to_begin_ = false;
+        if (failure.empty()) failure = write_from(begin + written_bytes, waiting, written);
         if (failure.empty()) {
             for (; written < waiting.size(); ++written) written_bytes += waiting[written].bytes.size();
             if (is_due && written > 0) {

@@ -69,6 +69,7 @@ private:
     /// Returns why it failed; empty if it did not.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
+    std::string sync_beginning() const;
     /// The file's bytes from `at` to `end`.
     void copy(uint64_t at, uint64_t end, AtomicWriter& to) const;
 
@@ -87,7 +88,8 @@ private:
     bool is_ending_ = false;
     std::string failure_;
 
-    uint64_t checksum_ = 0;  ///< of the last framed record; the thread's
+    uint64_t checksum_ = 0;     ///< of the last framed record; the thread's
+    bool is_to_begin_ = false;  ///< header or length are not known to be on disk; the thread's
     std::thread thread_;
 };
 

@@ -79,11 +79,19 @@ size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, st
     return done;
 }
 
-void check_file_header(const FileDescriptor& file, const fs::path& path, uint64_t file_bytes)
+/// False where it has no header yet, as a power cut leaves a journal that has just begun: of its bytes some or none
+/// are there, and the rest is zero. Fails where it is no journal of ours.
+bool has_file_header(const FileDescriptor& file, const fs::path& path, uint64_t file_bytes)
 {
     std::array<std::byte, FILE_HEADER_BYTES> header{};
     const size_t there = read_at(file, path, 0, header);
     const std::vector<std::byte> ours = journal_header();
+    bool is_whole = there == FILE_HEADER_BYTES, is_ours_in_part = file_bytes <= FILE_HEADER_BYTES;
+    for (size_t i = 0; i < there; ++i) {
+        is_whole = is_whole && header[i] == ours[i];
+        is_ours_in_part = is_ours_in_part && (header[i] == ours[i] || header[i] == std::byte(0));
+    }
+    if (is_ours_in_part && !is_whole) return false;
     const size_t compared = std::min(there, sizeof MAGIC);
     if (std::memcmp(header.data(), ours.data(), compared) != 0)
         fail(path.string(), ": does not begin with SHVRJRNL; expected a journal, or no such file");
@@ -91,6 +99,7 @@ void check_file_header(const FileDescriptor& file, const fs::path& path, uint64_
     if (file_bytes >= FILE_HEADER_BYTES && version != VERSION)
         fail(path.string(), ": is a journal of version ", version, "; expected ", VERSION,
              ", which this program writes");
+    return file_bytes >= FILE_HEADER_BYTES;
 }
 
 }  // namespace
@@ -152,8 +161,7 @@ JournalScan scan_journal(const fs::path& path)
     if (!S_ISREG(status.st_mode)) fail(path.string(), ": is not a regular file; expected a journal, or no such file");
     scan.file_bytes = uint64_t(status.st_size);
     scan.inode = status.st_ino;
-    check_file_header(file, path, scan.file_bytes);
-    if (scan.file_bytes < FILE_HEADER_BYTES) return scan;
+    if (!has_file_header(file, path, scan.file_bytes)) return scan;
     scan.end = FILE_HEADER_BYTES;
 
     std::vector<std::byte> body;

@@ -135,6 +135,30 @@ TEST_CASE("records of one journal are none in another, and none in another order
     CHECK(scan_journal(folder.write("b.journal", first_three + record(2))).records.size() == 3);
 }
 
+TEST_CASE("a journal whose header no disk has seen yet, as a power cut leaves it, has just begun")
+{
+    const TemporaryFolder folder;
+    const std::vector<std::byte> header = journal_header();
+    for (size_t bytes = 0; bytes <= header.size(); ++bytes)
+        for (size_t zeros = 0; zeros <= bytes; ++zeros) {
+            std::string content(reinterpret_cast<const char*>(header.data()), bytes);
+            std::fill(content.end() - ptrdiff_t(zeros), content.end(), '\0');
+            const fs::path path = folder.write("a.journal", content);
+            CHECK(scan_journal(path).records.empty());
+            {
+                Journal journal(path, scan_journal(path));
+                journal.append(RecordKind::command, "a step", bytes_of_text("x"));
+                journal.flush();
+            }
+            CHECK(scan_journal(path).records.size() == 1);
+            CHECK_FALSE(fs::exists(folder.path / "a.journal.rest1"));
+            fs::remove(path);
+        }
+    // More than a header was never written before the header was on disk.
+    folder.write("a.journal", std::string(header.size() + 1, '\0'));
+    CHECK(contains(error_of([&] { scan_journal(folder.path / "a.journal"); }), "does not begin with SHVRJRNL"));
+}
+
 TEST_CASE("what is no journal, or a newer program's, is refused in words")
 {
     const TemporaryFolder folder;
