@@ -411,8 +411,8 @@ class View(Window):
         self.wait_for_window("sphere.* - SHVR")
         window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
         self.do("windowsize", window, 3000, 2400, pause_s=3)
-        self.do("windowsize", window, *WINDOW, pause_s=2)
-        self.do("key", "7", pause_s=2)
+        self.do("windowsize", window, *WINDOW, pause_s=4)
+        self.do("key", "7", pause_s=4)
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertIn("device memory", said)

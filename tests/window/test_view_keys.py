@@ -39,6 +39,8 @@ class Keys(Seen):
         wrong = []
         for row in self.table.values():
             for chord in row[column].split():
+                if chord.startswith("Stylus"):   # no key: tests/gpu/workbench/save_test.cpp presses those
+                    continue
                 found = self.check_row(row, chord, column)
                 if found is not None:
                     wrong.append(f"{row['id']}: {chord} made {found}; expected {self.makes(row)}")
