@@ -108,11 +108,9 @@ void Journal::begin(const fs::path& rest)
     struct stat status {};
     check(::fstat(file_.number(), &status) == 0 ? 0 : errno);
     if (const auto bytes = uint64_t(status.st_size); bytes > end_) {
-        if (end_ > 0 || bytes > journal_header().size()) {  // else half a header of a journal without records
-            AtomicWriter writer(rest);
-            copy(end_, bytes, writer);
-            writer.commit();
-        }
+        AtomicWriter writer(rest);
+        copy(end_, bytes, writer);
+        writer.commit();
         check(::ftruncate(file_.number(), off_t(end_)) == 0 ? 0 : errno);
     }
     if (end_ == 0) {
