@@ -371,8 +371,8 @@ private:
 
     bool refuse(const char* wrong)
     {
-        ++refused_;
         trouble_ = kept(sentence("the Inverse3's service sent what it must not: ", wrong));
+        ++refused_;  // last: who sees the count sees why
         next_try_ = SteadyClock::now() + options_.hold;
         return false;
     }

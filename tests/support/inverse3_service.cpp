@@ -145,7 +145,10 @@ struct Inverse3Service::World {
             const std::lock_guard lock(mutex);
             if (each[2].revents && each[2].fd == states.descriptor) take(states, true);
             if (each[3].revents && each[3].fd == events.descriptor) take(events, false);
-            if (each[0].revents) let_in(states, states_door);
+            if (each[0].revents) {
+                owed.clear();  // to the client before
+                let_in(states, states_door);
+            }
             if (each[1].revents) let_in(events, events_door);
             if (!is_stalled) {
                 for (const glm::dvec3& force : std::exchange(owed, {})) send_text(states, answer(force));
