@@ -90,6 +90,7 @@ class Keys(Seen):
             self.press("Escape")
             if shown:
                 self.see_no_more("", shown)
+                self.do(pause_s=0.3)   # a text that was open has the keyboard for a frame more
         return None if self.makes(row) in found else found
 
     def measure(self):
