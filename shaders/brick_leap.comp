@@ -16,6 +16,9 @@ layout(binding = 3, r8ui) uniform writeonly uimage3D cell_leap;
 #ifdef MASKED
 layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 layout(binding = 5, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
+#define MASK_TABLE_BINDING 6
+#define MASK_TABLE_HASHED
+#include "library/mask.glsl"
 #endif
 
 #include "library/occupancy.glsl"
@@ -30,6 +33,7 @@ CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
     if (job.mask_slot == 0u) return CellPaint(false, false);
     // A coarse cell has too many voxels to examine: some of its brick are painted, so some of the cell may be.
     if (job.level > 0u) return CellPaint(true, true);
+    if (params.paint_reach > 0u) return paint_around(BRICK_CELLS * job.brick + cell, uvec3(0xffffffffu));
     return paint_in(job.mask_slot, cell);
 }
 #endif

@@ -1,6 +1,7 @@
 // The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether it is painted, and which brick holds it.
 //
-// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell is in a group; samples in other
+// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell (or, where borders are smooth,
+// beside it) is in a group; samples in other
 // cells need not read the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
 // Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without sampling.
 #ifndef SHVR_LEAP_H
@@ -26,6 +27,7 @@ struct OccupancyParams {
     uint table_entries;
     uint skipping;        ///< 0: every cell counts as occupied
     uint empty_distance;  ///< distance for cells that are not occupied
+    uint paint_reach;     ///< voxels, 0 or 1: so far around a painted voxel its group may be seen
 };
 
 struct LeapBoundParams {

@@ -1,5 +1,6 @@
 // One cell per thread: is anything in it visible? If so its distance is 0, otherwise `empty_distance`.
-// MASKED: a cell is also occupied if one of its voxels is in a visible group; also records whether it is painted.
+// MASKED: a cell is also occupied if one of its voxels, or of those beside it, is in a visible group; also records
+// whether it is painted.
 // variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -34,7 +35,11 @@ void main()
     uint entry = page_table.slots[brick];
 #ifdef MASKED
     const uint mask_slot = mask_slot_of(cell / BRICK_CELLS);
-    if (mask_slot != 0u) {
+    if (params.paint_reach > 0u) {
+        const CellPaint paint = paint_around(cell, params.brick_counts);
+        occupied = occupied || paint.shows;
+        entry |= paint.is_there ? LEAP_PAINTED : 0u;
+    } else if (mask_slot != 0u) {
         const CellPaint paint = paint_in(mask_slot, cell % BRICK_CELLS);
         occupied = occupied || paint.shows;
         entry |= paint.is_there ? LEAP_PAINTED : 0u;

@@ -33,7 +33,7 @@ struct BrickLeapJob {
     uvec3 brick;  ///< of its level
     uint level;
     uint slot;
-    uint mask_slot;  ///< 0: no painted voxel in it
+    uint mask_slot;  ///< 0: no painted voxel in it, nor, where paint reaches farther, in the bricks around it
 };
 
 /// As OccupancyParams, for bricks anywhere in the atlas.
@@ -43,6 +43,7 @@ struct BrickLeapParams {
     float table_scale;
     uint table_entries;
     uint skipping;
+    uint paint_reach;
 };
 
 SHARED_END

@@ -49,6 +49,8 @@ layout(constant_id = 7) const uint SLICE = 0u;
 // 1: classifies a step by the densities at both of its ends. 2: and there are densities at which rays end.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
+// A sample is in the group that weighs most among the eight voxels around it, not in that of the nearest.
+layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 #endif
@@ -132,6 +134,16 @@ Place place_at(const RaycastParams params, vec3 position)
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
 const float MAX_LEAP = 2147483648.0;
+// A lane that has met this many samples in a row that could not be seen looks at more before it waits for the others:
+// one more for each further one, and at most so many (shaders/MEASURED.md). Not in paged bricks: lavapipe reads
+// buffers, the directory among them, as 0 for lanes that wait, so a lane would lose the place that it has found.
+#ifdef PAGED
+const bool SEARCHES = false;
+#else
+const bool SEARCHES = SHADED != 0u && PREINTEGRATED == 0u;
+#endif
+const uint UNSEEN_TO_SEARCH = 8u;
+const uint MORE_TURNS = 19u;
 const float NO_SHELL = 1e30;   // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
@@ -162,13 +174,13 @@ vec4 slice_look(const RaycastParams params, float density)
 #include "library/classify.glsl"
 
 #ifdef MASKED
-// A painted voxel has the look of its group, whatever its density; the mask is sampled at the nearest voxel.
+#include "library/groups.glsl"
+
+// A painted voxel has the look of its group, whatever its density.
 vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
 {
-    const uvec3 voxel = uvec3(position);
-    const uint slot = mask_slot_of(voxel / BRICK_SIZE);
-    if (slot == 0u) return look;
-    const uint group = imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
+    const uint group = SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit))
+                                            : group_of(uvec3(position));
     if (group == 0u) return look;
     vec4 of_group = imageLoad(groups, ivec2(group, 0));
     if (SLICE == 0u) {
@@ -187,9 +199,15 @@ float value_near(vec3 in_brick, ivec3 slot)
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
-                 inout Work work)
+// What is known of a sample before it is looked at.
+struct Found {
+    vec3 lattice;     // the position in voxels of the brick's level, from a voxel's centre
+    ivec3 to_atlas;   // from such voxels to texels
+    Density density;
+    float value;      // of the density
+};
+
+Found find_sample(const RaycastParams params, vec3 position, const Place place)
 {
     // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
     // volume gives the same bits as one in a single texture.
@@ -203,31 +221,41 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     const vec3 corner = floor(lattice);
     const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
+    return Found(lattice, to_atlas, density, value_of(density));
+}
+
+// Whether a sample may have any opacity. A painted one is not asked for its density.
+bool may_be_seen(const RaycastParams params, const Found found, const Place place)
+{
+    return place.is_painted || (found.value >= params.table_lower && found.value <= params.table_upper);
+}
+
+// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
+                 const Found found)
+{
+    const Density density = found.density;
     vec4 look;
     if (PREINTEGRATED != 0u) {
 #ifdef PAGED
         const float per_voxel = uintBitsToFloat(127u - place.level << 23);
+        const uvec3 brick = uvec3(position) >> place.level + 5u;
 #else
         const float per_voxel = 1.0;
+        const uvec3 brick = uvec3(position) / BRICK_SIZE;
 #endif
-        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
+        const vec3 in_brick = found.lattice - vec3(brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
         look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
                              part);
     } else {
-        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
+        look = SLICE != 0u ? slice_look(params, found.value) : classify(params, found.value, part);
     }
 #ifdef MASKED
     if (place.is_painted) look = painted(params, position, part, look);
 #endif
-    if (COUNT_WORK != 0u) {
-        ++work.samples;
-        work.bricks += uint(place.slot != work.last_slot);
-        work.last_slot = place.slot;
-    }
     if (SHADED != 0u) {
-        if (COUNT_WORK != 0u) ++work.shaded;
         float ambient = params.ambient;
 #ifdef OCCLUDED
 #ifdef PAGED
@@ -235,12 +263,20 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const uvec3 last = uvec3(params.position_limit);
 #endif
-        ambient *= ambient_share(lattice, to_atlas, vec3(last));
+        ambient *= ambient_share(found.lattice, found.to_atlas, vec3(last));
 #endif
         look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
     if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
     return look;
+}
+
+void note_sample(const Place place, inout Work work)
+{
+    if (COUNT_WORK == 0u) return;
+    ++work.samples;
+    work.bricks += uint(place.slot != work.last_slot);
+    work.last_slot = place.slot;
 }
 
 // Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
@@ -292,7 +328,8 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
 #ifdef PAGED
     if (place.distance > 0u || waits) return vec4(0.0);
 #endif
-    return sample_look(params, ray, position, 1.0, place, work);
+    note_sample(place, work);
+    return sample_look(params, ray, position, 1.0, place, find_sample(params, position, place));
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -424,31 +461,48 @@ void main()
     Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
-    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
-    // separate loop, and lanes meet again at the costly sample.
+    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next sample that can be
+    // seen is a separate loop, and lanes meet again at the costly rest. Where few samples are seen, in noise at a
+    // threshold, each lane of a group that met only when all have one would wait for the unluckiest.
     uint i = first_step;
+    uint unseen = 0u;   // samples in a row
     while (i < end_step && sum.a < params.opacity_limit && !waits) {
         vec3 position;
         Place place;
+        Found found;
+        bool is_found = false;
+        const uint last_turn = SEARCHES && unseen > UNSEEN_TO_SEARCH ? min(unseen - UNSEEN_TO_SEARCH, MORE_TURNS) : 0u;
+        uint turn = 0u;
         do {
-            position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
-            place = place_at(params, position);
-            note(place, work);
-            if (place.distance > 0u) {
-                i += steps_to_leave(params, ray, position, place);
-                rises.trough = 0.0;
-                if (COUNT_WORK != 0u) ++work.leaps;
-            }
-        } while (place.distance > 0u && i < end_step);
+            do {
+                position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
+                place = place_at(params, position);
+                note(place, work);
+                if (place.distance > 0u) {
+                    i += steps_to_leave(params, ray, position, place);
+                    rises.trough = 0.0;
+                    if (COUNT_WORK != 0u) ++work.leaps;
+                }
+            } while (place.distance > 0u && i < end_step && turn == 0u);
+            found = find_sample(params, position, place);
+            const bool is_sample = place.distance == 0u && i < end_step;
+            is_found = is_sample && (!SEARCHES || may_be_seen(params, found, place) || place.is_missing);
+            const bool is_unseen = is_sample && !is_found;
+            if (is_unseen) note_sample(place, work);
+            if (is_unseen) rises.trough = 0.0;
+            i += uint(is_unseen);
+            unseen = is_found ? 0u : unseen + uint(is_unseen);
+        } while (!is_found && i < end_step && turn++ < last_turn);
 #ifdef SHELLED
         const float here = begin + (float(i) + 0.5) * params.step;
         if (i < end_step) add_shells(params, ray, here, shell, sum);
         waits = waits || (i < end_step && shell_waits(params, shell, here, sum));
 #endif
         waits = waits || (i < end_step && place.is_missing && sum.a < params.opacity_limit);
-        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < end_step && !waits) {
-            const vec4 look = sample_look(params, ray, position, 1.0, place, work);
+        if (is_found && !waits) {
+            note_sample(place, work);
+            if (COUNT_WORK != 0u && SHADED != 0u) ++work.shaded;
+            const vec4 look = sample_look(params, ray, position, 1.0, place, found);
             if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
             accumulate(sum, look);
             ++i;
@@ -473,7 +527,10 @@ void main()
             note(place, work);
             waits = place.is_missing;
             if (place.distance == 0u && !waits) {
-                const vec4 look = sample_look(params, ray, position, rest / params.step, place, work);
+                note_sample(place, work);
+                if (COUNT_WORK != 0u && SHADED != 0u) ++work.shaded;
+                const vec4 look = sample_look(params, ray, position, rest / params.step, place,
+                                              find_sample(params, position, place));
                 if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
                 accumulate(sum, look);
             }

@@ -239,9 +239,10 @@ const LookTable& LookTables::table_of(const Look& look, const IntensityWindow& w
 Visibility LookTables::visibility_of(const Look& look, const IntensityWindow& window)
 {
     const LookTable& table = table_of(look, window, table_ ? table_->step_voxels : look.render.step_voxels);
-    Visibility visibility{.params = {.skipping = look.render.skip_empty_space},
-                          .visible_intervals = table.visible_intervals,
-                          .visible_groups = visible_groups(look.groups)};
+    Visibility visibility{
+        .params = {.skipping = look.render.skip_empty_space, .paint_reach = look.render.smooth_borders},
+        .visible_intervals = table.visible_intervals,
+        .visible_groups = visible_groups(look.groups)};
     set_table(visibility.params, table_range(look.transfer_function, window, table.preintegrated));
     return visibility;
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <unordered_set>
 #include <utility>
 
 namespace shvr {
@@ -128,7 +129,10 @@ double PagedVolume::loaded() const
 
 bool PagedVolume::is_painted(const BrickKey& key) const
 {
-    return painted_.contains(key);
+    if (visibility_.params.paint_reach == 0) return painted_.contains(key);
+    bool is = false;
+    if (!painted_.empty()) for_each_around(key, [&](const BrickKey& around) { is = is || painted_.contains(around); });
+    return is;
 }
 
 /// Whether the brick is shown whatever the transfer function hides.
@@ -276,11 +280,13 @@ void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const Devi
     std::vector<gpu::BrickLeapJob> jobs;
     const auto keys = std::make_shared<const std::vector<BrickKey>>(std::exchange(leap_jobs_, {}));
     graph.unless_submitted([this, keys] { leap_jobs_.insert(leap_jobs_.end(), keys->begin(), keys->end()); });
+    std::unordered_set<BrickKey, BrickKeyHash> done;
     for (const BrickKey& key : *keys) {
         const std::optional<uint32_t> slot = slots_.find(key);
-        if (!slot) continue;
+        if (!slot || !done.insert(key).second) continue;
         jobs.push_back(job_of(key, *slot));
-        if (key.level == 0 && !mask.empty()) jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
+        if (key.level == 0 && !mask.empty() && visibility_.params.paint_reach == 0)
+            jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
     }
     brick_leap(graph, volume, visibility_, painted, jobs);
 }

@@ -306,7 +306,11 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
                 tree_is_stale = true;
                 if ((painted_[key] += is ? 1 : -1) == 0) painted_.erase(key);
             }
-            if (slots_.contains(key)) leap_jobs_.push_back(key);
+            if (visibility_.params.paint_reach == 0 && slots_.contains(key)) leap_jobs_.push_back(key);
+            if (visibility_.params.paint_reach > 0)
+                for_each_around(key, [&](const BrickKey& around) {
+                    if (slots_.contains(around)) leap_jobs_.push_back(around);
+                });
         }
     }
     if (tree_is_stale) rebuild_tree();  // painted voxels are shown, whatever their density

@@ -322,7 +322,8 @@ LeapGridInput ResidentVolume::leap_input(const std::optional<MaskBinding>& paint
                        .table_upper = visibility_.params.table_upper,
                        .table_scale = visibility_.params.table_scale,
                        .table_entries = visibility_.params.table_entries,
-                       .skipping = visibility_.params.skipping},
+                       .skipping = visibility_.params.skipping,
+                       .paint_reach = visibility_.params.paint_reach},
             .changed = {},
             .visible_intervals = visibility_.visible_intervals,
             .mask = painted,
@@ -362,7 +363,9 @@ void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bri
 {
     for (const int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, mask.brick_counts()));
-        empty_space_.changed({first, first + gpu::BRICK_CELLS});
+        const glm::uvec3 reach(visibility_.params.paint_reach);  // at most a voxel, so at most a cell
+        empty_space_.changed(
+            {first - glm::min(first, reach), glm::min(first + gpu::BRICK_CELLS + reach, cell_counts_)});
     }
 }
 

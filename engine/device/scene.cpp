@@ -275,7 +275,9 @@ void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const
         VoxelBox voxels = voxels_of({0, position_of(brick, mask.brick_counts())}, info().size);
         occlusion_.changed(voxels);
         if (within) voxels = {glm::max(voxels.lower, within->lower), glm::min(voxels.upper, within->upper)};
-        note_changed(voxels, Cause::edit);
+        if (glm::any(glm::greaterThanEqual(voxels.lower, voxels.upper))) continue;
+        voxels = grown(voxels, 1);  // smooth borders end between voxels
+        note_changed({glm::max(voxels.lower, Size3(0)), glm::min(voxels.upper, info().size)}, Cause::edit);
     }
 }
 

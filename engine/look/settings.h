@@ -83,7 +83,10 @@ struct RenderSettings {
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classify steps by both of their ends (preintegration.h); for steps of at most 1
-    double saturation = 1.0;      ///< of all that is drawn, before lines over it; 0: greys of the same luminance
+    /// Of painted groups: between voxels, the label that weighs most among the eight around a sample, instead of the
+    /// nearest voxel's. Slices and occlusion keep to voxels.
+    bool smooth_borders = false;
+    double saturation = 1.0;  ///< of all that is drawn, before lines over it; 0: greys of the same luminance
     bool operator==(const RenderSettings&) const = default;
 };
 

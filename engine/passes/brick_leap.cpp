@@ -32,7 +32,7 @@ bool operator==(const Visibility& a, const Visibility& b)
 {
     const auto members = [](const Visibility& v) {
         return std::tie(v.params.table_lower, v.params.table_upper, v.params.table_scale, v.params.table_entries,
-                        v.params.skipping, v.visible_intervals, v.visible_groups);
+                        v.params.skipping, v.params.paint_reach, v.visible_intervals, v.visible_groups);
     };
     return members(a) == members(b);
 }
@@ -48,6 +48,7 @@ void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visi
         pass.block("visible_intervals", std::span<const uint32_t>(visibility.visible_intervals));
         if (mask) {
             pass.read("mask", mask->mask);
+            pass.read("mask_table", mask->mask_table);
             pass.block("visible_groups", std::span<const uint32_t>(visibility.visible_groups));
         }
         pass.push(visibility.params);

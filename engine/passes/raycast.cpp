@@ -28,7 +28,8 @@ uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, 
     // A step is a turn, and finds its place in a loop for which the lanes wait for one another; in paged bricks that
     // takes a turn for each level of the directory.
     const uint64_t turns_to_place = 1 + (volume.pages ? volume.pages->depth : 0);
-    const uint64_t turns_to_find_paint = volume.pages && input.mask ? gpu::MASK_PROBES : 0;
+    const uint64_t voxels_of_group = input.smooth_borders ? 8 : 1;
+    const uint64_t turns_to_find_paint = volume.pages && input.mask ? voxels_of_group * gpu::MASK_PROBES : 0;
     double turns = double((LANES + 1) * turns_to_place + 1 + turns_to_find_paint);
     // An iso-surface is searched cell by cell: at most three a reference length, and one where the ray enters.
     if (is_shelled) turns += double(LANES * (turns_to_place + 1)) * (3.0 * double(input.params.step) + 1.0);
@@ -82,6 +83,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     pass.constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) pass.constant("SHELL", input.shell);
     pass.constant("PICK", input.pick);
+    if (input.mask) pass.constant("SMOOTH_BORDERS", input.smooth_borders);
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     if (volume.pages || is_shelled) {
         pass.constant("KEPT", input.waiting ? gpu::KEPT_ALL : rays ? gpu::KEPT_SHELL : gpu::KEPT_NOTHING);

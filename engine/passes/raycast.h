@@ -41,6 +41,7 @@ struct RaycastInput {
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
     bool preintegrated = false;        ///< `table` is for steps between two densities
     bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays
+    bool smooth_borders = false;       ///< of groups; with Visibility::params.paint_reach 1
     bool pick = false;                 ///< positions instead of colours, see the kernel
     RaysInWaiting* waiting = nullptr;  ///< of paged bricks; null: rays wait for nothing
 };

@@ -48,6 +48,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
     input.shaded = look.light.shaded && !shot.is_slice;
     input.slice = shot.is_slice;
+    input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
     input.preintegrated = look.render.preintegration && !shot.is_slice;
     input.group_width = scene.traits().is_cpu ? GROUP_WIDTH_OF_CPU : GROUP_WIDTH_OF_GPU;
     input.tile = TILE;

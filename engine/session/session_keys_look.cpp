@@ -121,6 +121,10 @@ void fields(Fields& f, RenderSettings& render)
          "steep edges; steps of at most 1"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
+    f.flag(
+        "smooth_borders", render.smooth_borders,
+        {"painted groups end between voxels, where their labels, interpolated, weigh less than their neighbours'; at "
+         "the middle of a voxel its own label holds, and no third one appears between two. Slices show voxels"});
     f.number(
         "saturation", render.saturation, SHARE,
         {"of the picture's colours, background included; 0: greys of the same luminance, for print, or for anaglyphs "

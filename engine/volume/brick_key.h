@@ -36,4 +36,13 @@ inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
     return {side * Size3(key.brick), glm::min(side * (Size3(key.brick) + int64_t{1}), size)};
 }
 
+/// Calls visit(key) for a brick and the 26 around it, of which some may be outside the volume.
+template <class Visit>
+void for_each_around(const BrickKey& key, const Visit& visit)
+{
+    for (int z = -1; z <= 1; ++z)
+        for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x) visit(BrickKey{key.level, key.brick + glm::ivec3(x, y, z)});
+}
+
 }  // namespace shvr

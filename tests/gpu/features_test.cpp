@@ -117,6 +117,7 @@ const std::vector<Feature> FEATURES{
      {"surfaces", "without the probe"}},
     {"saturation", [](Scenery& s) { s.session.render.saturation = 0.3; }, {"saturation"}},
     {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }, {}},
+    {"smooth borders", [](Scenery& s) { s.session.render.smooth_borders = true; }, {}},
     {"bricks that come and go",
      [](Scenery& s) { s.paging = Paging::always; },
      {"raycast_paged", "brick_leap", "what rays came by", "clear reached", "upload page directory"},
@@ -271,6 +272,7 @@ TEST_CASE_FIXTURE(Everything, "neutral settings change no bit")
          }},
         {"bricks that come and go", [](Scenery& s) { s.paging = Paging::always; }},
         {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }},
+        {"smooth borders of nothing", [](Scenery& s) { s.session.render.smooth_borders = true; }},
         {"work counters", [](Scenery& s) { s.options.count_work = true; }},
         {"surfaces out of sight", [](Scenery& s) {
              s.session.surfaces = {{{500, 0, 0}, {501, 0, 0}, 1.0, 1.0, RED}};

@@ -76,11 +76,11 @@ Members surface_params()
 
 Members occupancy_params()
 {
-    return {MEMBER(OccupancyParams, cell_begin),    MEMBER(OccupancyParams, cell_end),
-            MEMBER(OccupancyParams, brick_counts),  MEMBER(OccupancyParams, table_lower),
-            MEMBER(OccupancyParams, table_upper),   MEMBER(OccupancyParams, table_scale),
-            MEMBER(OccupancyParams, table_entries), MEMBER(OccupancyParams, skipping),
-            MEMBER(OccupancyParams, empty_distance)};
+    return {MEMBER(OccupancyParams, cell_begin),     MEMBER(OccupancyParams, cell_end),
+            MEMBER(OccupancyParams, brick_counts),   MEMBER(OccupancyParams, table_lower),
+            MEMBER(OccupancyParams, table_upper),    MEMBER(OccupancyParams, table_scale),
+            MEMBER(OccupancyParams, table_entries),  MEMBER(OccupancyParams, skipping),
+            MEMBER(OccupancyParams, empty_distance), MEMBER(OccupancyParams, paint_reach)};
 }
 
 Members region_params()
@@ -95,7 +95,7 @@ Members brick_leap_params()
 {
     return {MEMBER(BrickLeapParams, table_lower), MEMBER(BrickLeapParams, table_upper),
             MEMBER(BrickLeapParams, table_scale), MEMBER(BrickLeapParams, table_entries),
-            MEMBER(BrickLeapParams, skipping)};
+            MEMBER(BrickLeapParams, skipping),    MEMBER(BrickLeapParams, paint_reach)};
 }
 
 Members brick_leap_jobs()

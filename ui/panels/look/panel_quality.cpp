@@ -101,6 +101,8 @@ void quality_panel(const Model& model, Actions& actions)
     is_other |= ImGui::Checkbox("Narrow peaks", &render.preintegration);
     ImGui::EndDisabled();
     hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
+    is_other |= ImGui::Checkbox("Smooth borders of groups", &render.smooth_borders);
+    hint("Painted groups end between voxels instead of in steps. What is painted stays the same, and slices show it.");
     if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.render = render; });
     budget(model);
 }
