@@ -86,6 +86,7 @@ void App::turn()
     const double now = window_.now_s();
     if (now < next_frame_s_ || now < next_reason_to_draw_s()) return;
     draw();
+    if (undrawable_since_s_) return;
     const double frames_per_second = bench_->model().session.interaction.frames_per_second;
     next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
 }
@@ -111,7 +112,7 @@ void App::draw()
 {
     constexpr double PATIENCE_S = 10.0;
     try {
-        draw_ui();
+        if (!draw_ui()) try_again_soon();
         frame_failure_.clear();
         return undrawn_since_s_.reset();
     } catch (const DeviceLost&) {
@@ -120,8 +121,20 @@ void App::draw()
         if (std::exchange(frame_failure_, error.what()) != error.what()) bench_->say(error.what(), Weight::error);
     }
     const double now = window_.now_s();
+    undrawable_since_s_.reset();
     if (!undrawn_since_s_) undrawn_since_s_ = now;
     if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", frame_failure_);
+}
+
+/// All images of the window are on their way to the screen, or it is hidden: work goes on, and a frame is tried again,
+/// ever less often.
+void App::try_again_soon()
+{
+    constexpr double FIRST_S = 0.002, LAST_S = 0.05, GROWTH = 0.1;
+    const double now = window_.now_s();
+    if (window_.pixels().x == 0 || window_.pixels().y == 0) return undrawable_since_s_.reset();  // minimised
+    if (!undrawable_since_s_) undrawable_since_s_ = now;
+    next_frame_s_ = now + std::clamp(GROWTH * (now - *undrawable_since_s_), FIRST_S, LAST_S);
 }
 
 /// Never loses work: saves it before the window closes, and if saving fails keeps the window open.
@@ -168,6 +181,7 @@ bool App::something_moves() const
 /// When the interface should be drawn next, as far as known: at once, a little later, or not at all.
 double App::next_reason_to_draw_s() const
 {
+    if (undrawable_since_s_) return 0.0;
     // Until there is something to see, the first picture has the device to itself.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;

@@ -56,7 +56,8 @@ private:
     void follow_focus();
     void leave_panels() const;
     void draw();
-    void draw_ui();
+    bool draw_ui();
+    void try_again_soon();
     void draw_strokes() const;
     void write_screen_texts() const;
     Model model() const;
@@ -90,7 +91,8 @@ private:
 
     // Pace
     double next_frame_s_ = 0.0;
-    double ui_until_s_ = 1.0;  ///< the interface is drawn at least until then
+    std::optional<double> undrawable_since_s_;  ///< there has been no image to draw in since then, or the last was lost
+    double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until then
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     bool drew_cut_box_ = false;

@@ -40,7 +40,8 @@ void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
 
 }  // namespace
 
-void App::draw_ui()
+/// False if the window cannot show it now.
+bool App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves(), is_open = bench_->is_open();
@@ -48,6 +49,7 @@ void App::draw_ui()
     // below; and the view's measured cost then excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
+    if (!window_.is_ready()) return false;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
     follow_appearance();
@@ -62,7 +64,8 @@ void App::draw_ui()
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    if (!window_.present(layers, viewport_.layout().begin)) return;
+    if (!window_.present(layers, viewport_.layout().begin)) return false;
+    undrawable_since_s_.reset();
     if (!options_.screen_texts.empty()) write_screen_texts();
     if (is_open && !layers.empty())
         window_.set_title(bench_->document().volume().name + " - SHVR" +
@@ -73,6 +76,7 @@ void App::draw_ui()
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
+    return true;
 }
 
 /// Whole, or not at all: others read it while frames are drawn.

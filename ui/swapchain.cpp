@@ -56,10 +56,24 @@ void Swapchain::create_surface()
         fail("device ", device_.traits().name, " cannot show pictures in this window; --device chooses another");
 }
 
+namespace {
+
+/// Opaque, or what comes nearest to it: every pixel is drawn opaque.
+VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilities)
+{
+    for (const auto one : {VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR, VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR,
+                           VK_COMPOSITE_ALPHA_PRE_MULTIPLIED_BIT_KHR})
+        if (capabilities.supportedCompositeAlpha & one) return one;
+    return VK_COMPOSITE_ALPHA_POST_MULTIPLIED_BIT_KHR;
+}
+
+}  // namespace
+
 /// The swapchain follows with the next frame.
 void Swapchain::renew_surface()
 {
     device_.wait_idle();
+    acquired_.reset();
     destroy_targets();
     vkDestroySwapchainKHR(device_.handle(), std::exchange(swapchain_, VK_NULL_HANDLE), nullptr);
     vkDestroySurfaceKHR(device_.instance(), std::exchange(surface_, VK_NULL_HANDLE), nullptr);
@@ -76,8 +90,12 @@ void Swapchain::choose_format()
         vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, count, items);
     });
     // The layers are already encoded and are copied byte by byte, so the image must not encode again.
-    for (const VkSurfaceFormatKHR& candidate : formats)
-        if (candidate.format == VK_FORMAT_B8G8R8A8_UNORM || candidate.format == VK_FORMAT_R8G8B8A8_UNORM) {
+    // Some drivers list colour spaces of bright screens with the same formats.
+    for (const bool any_space : {false, true})
+        for (const VkSurfaceFormatKHR& candidate : formats) {
+            const bool has_8_bits =
+                candidate.format == VK_FORMAT_B8G8R8A8_UNORM || candidate.format == VK_FORMAT_R8G8B8A8_UNORM;
+            if (!has_8_bits || (!any_space && candidate.colorSpace != VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)) continue;
             format_ = candidate;
             return;
         }
@@ -173,19 +191,21 @@ void Swapchain::renew_fonts()
 void Swapchain::create_swapchain()
 {
     device_.wait_idle();
+    if (std::exchange(acquired_, std::nullopt)) renew_semaphore(frames_[next_frame_]);
     destroy_targets();
     if (!surface_) create_surface();  // which could not be had when it was lost
-    VkSurfaceCapabilitiesKHR capabilities;
+    glfwGetFramebufferSize(window_, &made_for_.x, &made_for_.y);
+    VkSurfaceCapabilitiesKHR& capabilities = made_of_;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
           "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
     extent_ = capabilities.currentExtent;
     if (extent_.width == ~0u) {  // the surface accepts any size
-        glm::ivec2 size(0);
-        glfwGetFramebufferSize(window_, &size.x, &size.y);
-        extent_ = {uint32_t(size.x), uint32_t(size.y)};
+        const VkExtent2D &least = capabilities.minImageExtent, &most = capabilities.maxImageExtent;
+        extent_ = {std::clamp(uint32_t(made_for_.x), least.width, most.width),
+                   std::clamp(uint32_t(made_for_.y), least.height, most.height)};
     }
     if (extent_.width == 0 || extent_.height == 0) return;  // minimised
-    uint32_t images = std::max(capabilities.minImageCount, FRAMES_IN_FLIGHT);
+    uint32_t images = std::max(capabilities.minImageCount + 1, IMAGES);
     if (capabilities.maxImageCount > 0) images = std::min(images, capabilities.maxImageCount);
     const VkSwapchainKHR old = swapchain_;
     const VkSwapchainCreateInfoKHR info{
@@ -199,7 +219,7 @@ void Swapchain::create_swapchain()
         .imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
         .preTransform = capabilities.currentTransform,
-        .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
+        .compositeAlpha = alpha_of(capabilities),
         .presentMode = VK_PRESENT_MODE_FIFO_KHR,
         .clipped = VK_TRUE,
         .oldSwapchain = old};
@@ -212,6 +232,7 @@ void Swapchain::create_swapchain()
         SHVR_VK(vkGetSwapchainImagesKHR(device_.handle(), swapchain_, count, items));
     });
     for (VkImage image : chain) add_target(image);
+    patient_acquisitions_ = uint32_t(chain.size());
     is_stale_ = false;
 }
 

@@ -7,6 +7,7 @@
 // The main thread.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "engine/gpu/memory.h"
@@ -30,6 +31,10 @@ public:
     void renew_fonts();
     /// Before ImGui::NewFrame.
     static void begin_ui();
+    /// Whether a frame can be drawn and shown without waiting: there is an image for it. There may be none for long,
+    /// while the window is hidden. Never waits, but for some milliseconds where the swapchain was just made. Fails as
+    /// present() does.
+    bool is_ready();
     /// As Window::present, after ImGui::Render. A frame that fails leaves nothing behind that later ones trip over; a
     /// surface that is lost is made anew, and the frame is not shown.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
@@ -39,6 +44,7 @@ public:
 
 private:
     static constexpr uint32_t FRAMES_IN_FLIGHT = 2;
+    static constexpr uint32_t IMAGES = 3;  ///< one is shown, one waits for its turn, one is drawn
     struct Target {
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
@@ -49,7 +55,8 @@ private:
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkSemaphore acquired = VK_NULL_HANDLE;
         VkFence done = VK_NULL_HANDLE;
-        uint64_t number = 0;  ///< last frame that used it
+        uint64_t number = 0;      ///< last frame that used it
+        uint64_t submission = 0;  ///< its number (gpu::Device)
     };
 
     /// Is made anew; other failures are the caller's.
@@ -65,8 +72,14 @@ private:
     void create_render_pass();
     void create_frames();
     void complete(Frame& frame) const;
+    void renew_semaphore(Frame& frame) const;
     void abandon(Frame& frame);
+    bool prepare(Frame& frame);
+    bool acquire(Frame& frame);
+    bool surface_has_changed() const;
     bool show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin);
+    template <class Try>
+    bool attempt(const Try& attempted);
     void create_imgui();
     void create_swapchain();
     void add_target(VkImage image);
@@ -87,12 +100,15 @@ private:
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     VkExtent2D extent_{};
+    glm::ivec2 made_for_{0};              ///< pixels of the window
+    VkSurfaceCapabilitiesKHR made_of_{};  ///< the surface, when the swapchain was made
+    std::optional<uint32_t> acquired_;    ///< index of the image for the next frame
+    uint32_t patient_acquisitions_ = 0;   ///< of a new swapchain, that may wait a little
     std::vector<Target> targets_;
     std::array<Frame, FRAMES_IN_FLIGHT> frames_;
     uint32_t next_frame_ = 0;
     uint64_t presented_ = 0;
-    bool is_stale_ = false;               ///< must be made anew before the next frame
-    bool is_as_good_as_it_gets_ = false;  ///< suboptimal even when it was new
+    bool is_stale_ = false;  ///< must be made anew before the next frame
     bool imgui_is_ready_ = false;
 };
 

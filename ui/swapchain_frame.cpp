@@ -137,27 +137,26 @@ void Swapchain::complete(Frame& frame) const
 /// is never presented. All of them go.
 void Swapchain::abandon(Frame& frame)
 {
-    vkDeviceWaitIdle(device_.handle());
+    device_.wait_idle_or_lost();
+    acquired_.reset();
     vkDestroySemaphore(device_.handle(), std::exchange(frame.acquired, VK_NULL_HANDLE), nullptr);
     vkDestroyFence(device_.handle(), std::exchange(frame.done, VK_NULL_HANDLE), nullptr);
     is_stale_ = true;
 }
 
-bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+/// One that nobody waits for, in place of one that may be signalled. Nothing is under way.
+void Swapchain::renew_semaphore(Frame& frame) const
 {
-    glm::ivec2 size(0);
-    glfwGetFramebufferSize(window_, &size.x, &size.y);
-    if (size.x <= 0 || size.y <= 0) return false;
+    vkDestroySemaphore(device_.handle(), std::exchange(frame.acquired, VK_NULL_HANDLE), nullptr);
+    complete(frame);
+}
+
+template <class Try>
+bool Swapchain::attempt(const Try& attempted)
+{
     Frame& frame = frames_[next_frame_];
     try {
-        if (extent_.width != uint32_t(size.x) || extent_.height != uint32_t(size.y)) {
-            is_as_good_as_it_gets_ = false;
-            is_stale_ = true;
-        }
-        if (!swapchain_ || is_stale_) create_swapchain();
-        if (targets_.empty()) return false;
-        complete(frame);
-        return show(frame, layers, origin);
+        return attempted(frame);
     } catch (const SurfaceLost&) {
         abandon(frame);
         renew_surface();
@@ -168,18 +167,72 @@ bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2
     }
 }
 
-/// Whether it was shown, or will be.
-bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+bool Swapchain::is_ready()
 {
-    SHVR_VK(vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, UINT64_MAX));
+    return attempt([this](Frame& frame) { return prepare(frame); });
+}
+
+bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+{
+    return attempt([&](Frame& frame) { return prepare(frame) && show(frame, layers, origin); });
+}
+
+/// Whether the frame has an image to be drawn in.
+bool Swapchain::prepare(Frame& frame)
+{
+    glm::ivec2 size(0);
+    glfwGetFramebufferSize(window_, &size.x, &size.y);
+    if (size.x <= 0 || size.y <= 0) return false;
+    // Of a swapchain that is out of date when it is made another one is made at once: nobody else asks for the frame.
+    for (int tries = 0; tries < 2; ++tries) {
+        if (!swapchain_ || size != made_for_) is_stale_ = true;
+        if (is_stale_) create_swapchain();
+        if (targets_.empty()) return false;
+        complete(frame);
+        if (acquired_ || acquire(frame)) return true;
+        if (!is_stale_) return false;
+    }
+    return false;
+}
+
+/// Takes an image if there is one. After that a swapchain may have to be made anew.
+bool Swapchain::acquire(Frame& frame)
+{
+    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image yet just after they have made them
+    const VkResult status = vkGetFenceStatus(device_.handle(), frame.done);
+    check(status, "vkGetFenceStatus");
+    if (status == VK_NOT_READY) return false;
+    device_.note_done(frame.submission);
     uint32_t index = 0;
-    VkResult acquired =
-        vkAcquireNextImageKHR(device_.handle(), swapchain_, UINT64_MAX, frame.acquired, VK_NULL_HANDLE, &index);
+    const VkResult acquired =
+        vkAcquireNextImageKHR(device_.handle(), swapchain_, patient_acquisitions_ > 0 ? PATIENCE_NS : 0, frame.acquired,
+                              VK_NULL_HANDLE, &index);
+    if (patient_acquisitions_ > 0) --patient_acquisitions_;
+    if (acquired == VK_NOT_READY || acquired == VK_TIMEOUT) return false;
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
         is_stale_ = true;
         return false;
     }
     check(acquired, "vkAcquireNextImageKHR");
+    acquired_ = index;
+    return true;
+}
+
+/// Some surfaces are suboptimal however often their swapchain is made anew: only what differs is a reason to do so.
+bool Swapchain::surface_has_changed() const
+{
+    VkSurfaceCapabilitiesKHR now{};
+    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &now),
+          "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+    return now.currentExtent.width != made_of_.currentExtent.width ||
+           now.currentExtent.height != made_of_.currentExtent.height ||
+           now.currentTransform != made_of_.currentTransform;
+}
+
+/// Draws and presents the image that was acquired; false if it is lost.
+bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+{
+    const uint32_t index = *acquired_;
     record(frame, targets_[index], layers, origin);
     SHVR_VK(vkResetFences(device_.handle(), 1, &frame.done));
 
@@ -199,6 +252,8 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
                                .signalSemaphoreInfoCount = 1,
                                .pSignalSemaphoreInfos = &signal};
     SHVR_VK(vkQueueSubmit2(device_.queue(), 1, &submit, frame.done));
+    acquired_.reset();
+    frame.submission = device_.note_submission();
     frame.number = ++presented_;
     next_frame_ = (next_frame_ + 1) % FRAMES_IN_FLIGHT;
     const VkPresentInfoKHR present_info{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
@@ -210,11 +265,11 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
     const VkResult shown = vkQueuePresentKHR(device_.queue(), &present_info);
     if (shown == VK_ERROR_OUT_OF_DATE_KHR)
         is_stale_ = true;
-    else if (shown == VK_SUBOPTIMAL_KHR)  // some stay so however often they are made anew
-        is_stale_ = !std::exchange(is_as_good_as_it_gets_, true);
+    else if (shown == VK_SUBOPTIMAL_KHR)
+        is_stale_ = surface_has_changed();
     else
         check(shown, "vkQueuePresentKHR");
-    return true;
+    return shown != VK_ERROR_OUT_OF_DATE_KHR;
 }
 
 uint64_t Swapchain::frames_done() const

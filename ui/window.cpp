@@ -230,6 +230,11 @@ void Window::renew_fonts()
     if (swapchain_) swapchain_->renew_fonts();
 }
 
+bool Window::is_ready()
+{
+    return swapchain_->is_ready();
+}
+
 void Window::begin_ui()
 {
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented

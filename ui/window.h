@@ -87,11 +87,14 @@ public:
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;
 
+    /// Whether a frame can be drawn and shown without waiting. While the window is hidden that may not be for long:
+    /// ask again a little later. Never waits.
+    bool is_ready();
     void begin_ui();
     /// Uploads Dear ImGui's fonts anew, before the next frame. Waits for the device; rare.
     void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
-    /// if there is nothing to draw on (minimised).
+    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost: draw it again.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
 
     /// Frames submitted to the device, and those it has finished, which are visible. Never waits.

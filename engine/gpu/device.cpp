@@ -349,9 +349,16 @@ void Device::end_label(VkCommandBuffer commands) const
     if (end_label_) end_label_(commands);
 }
 
-void Device::wait_idle() const
+void Device::wait_idle()
 {
     SHVR_VK(vkDeviceWaitIdle(device_));
+    done_ = submitted_;
+}
+
+void Device::wait_idle_or_lost() noexcept
+{
+    static_cast<void>(vkDeviceWaitIdle(device_));
+    done_ = submitted_;
 }
 
 std::vector<std::string> Device::take_validation_messages()

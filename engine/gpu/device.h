@@ -4,6 +4,7 @@
 //
 // One thread at a time may use a device. Validation messages may arrive on any thread and are collected under a lock.
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -94,7 +95,16 @@ public:
     void begin_label(VkCommandBuffer commands, const std::string& name) const;
     void end_label(VkCommandBuffer commands) const;
 
-    void wait_idle() const;
+    /// Waits for all that was submitted. The second one does so where nobody can be told that it failed.
+    void wait_idle();
+    void wait_idle_or_lost() noexcept;
+
+    // The queue ends submissions in the order in which they came, whoever made them. Who submits takes a number for it
+    // afterwards, and says once its fence is seen signalled: so everybody knows what the device is done with.
+    uint64_t note_submission() { return ++submitted_; }
+    void note_done(uint64_t number) { done_ = std::max(done_, number); }
+    uint64_t submitted() const { return submitted_; }
+    uint64_t done() const { return done_; }
 
     /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
     std::vector<std::string> take_validation_messages();
@@ -114,6 +124,7 @@ private:
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     uint32_t queue_family_ = 0;
+    uint64_t submitted_ = 0, done_ = 0;  ///< numbers of submissions
     DeviceTraits traits_;
     VkPhysicalDeviceMemoryProperties memory_properties_{};
     uint32_t heap_ = 0;  ///< that of traits_.device_bytes

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -71,6 +72,45 @@ glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
     return (threads + local - 1u) / local;
 }
 
+uint64_t threads_of(const glm::uvec3& groups, const glm::uvec3& local)
+{
+    return uint64_t(groups.x) * groups.y * groups.z * local.x * local.y * local.z;
+}
+
+/// What a pass without tiles runs at once: all of it, or slabs across its longest side that take half a submission.
+glm::uvec3 slab_of(const glm::uvec3& groups, double all_ms)
+{
+    glm::uvec3 slab = groups;
+    const int longest = groups.x >= groups.y && groups.x >= groups.z ? 0 : groups.y >= groups.z ? 1 : 2;
+    const double slabs = std::clamp(std::ceil(all_ms / (0.5 * MAX_SUBMISSION_MS)), 1.0, double(groups[longest]));
+    slab[longest] = (groups[longest] + uint32_t(slabs) - 1) / uint32_t(slabs);
+    return slab;
+}
+
+uint64_t threads_of(const PassData& pass, const Kernel& kernel)
+{
+    const auto& size = kernel.interface().local_size;
+    const glm::uvec3 local(size[0], size[1], size[2]);
+    return threads_of(groups_for(pass.threads, local), local);
+}
+
+/// Its share of what a part may be at most.
+double copy_ms(const std::vector<BufferRegion>& part)
+{
+    uint64_t bytes = 0;
+    for (const BufferRegion& region : part) bytes += region.bytes;
+    return COPY_PART_MS * std::max(double(part.size()) / MAX_COPY_REGIONS, double(bytes) / MAX_COPY_BYTES);
+}
+
+double copy_ms(const std::vector<ImageRegion>& part)
+{
+    constexpr double TEXEL_BYTES = 16.0;  // at most
+    double bytes = 0.0;
+    for (const ImageRegion& region : part)
+        bytes += TEXEL_BYTES * double(region.texels.x) * region.texels.y * region.texels.z;
+    return COPY_PART_MS * std::min(std::max(double(part.size()) / MAX_COPY_REGIONS, bytes / MAX_COPY_BYTES), 1.0);
+}
+
 }  // namespace
 
 /// One graph in flight: everything that lives until the device has finished it.
@@ -84,16 +124,19 @@ struct Submission::Frame {
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
-    VkDescriptorPool descriptors = VK_NULL_HANDLE;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    VkFence fence = VK_NULL_HANDLE;
+    std::unique_ptr<FrameObjects> objects;
+    bool is_timed = false;
+    uint64_t number = 0;                  // of its last submission; 0: none
     std::vector<VkCommandBuffer> chunks;  // one submission each
+    double chunk_ms = 0.0;                // estimated, of the last one so far
+    VkPipeline in_use = VK_NULL_HANDLE;   // bound there
     std::chrono::steady_clock::time_point started;
     struct Prepared {
         const Kernel* kernel = nullptr;
         VkDescriptorSet set = VK_NULL_HANDLE;
         uint64_t counters_offset = 0;
         uint32_t dispatches = 0;
+        uint32_t submissions = 0;
     };
     std::vector<Prepared> prepared;             // per step
     std::vector<Memory::Object*> transitioned;  // images that the first chunk takes out of the undefined layout
@@ -105,11 +148,13 @@ struct Submission::Frame {
     Frame& operator=(const Frame&) = delete;
     ~Frame()
     {
-        const VkDevice device = executor.device_.handle();
-        if (fence) vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX), vkDestroyFence(device, fence, nullptr);
-        if (!chunks.empty()) vkFreeCommandBuffers(device, executor.pool_, uint32_t(chunks.size()), chunks.data());
-        vkDestroyDescriptorPool(device, descriptors, nullptr);
-        vkDestroyQueryPool(device, queries, nullptr);
+        if (number > 0) {
+            const VkFence fence = objects->fence();
+            vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX);
+            executor.device_.note_done(number);
+            executor.memory_.collect();
+        }
+        if (objects) executor.idle_objects_.push_back(std::move(objects));
         for (const auto& transient : executor.transients_)
             for (Storage* storage : taken)
                 if (&transient->storage == storage) transient->taken = false;
@@ -139,15 +184,17 @@ struct Submission::Frame {
     void write_descriptors(const PassData& pass, const Prepared& step, uint64_t& block_offset) const;
     void begin_chunk();
     void end_chunk() const;
+    void make_room(double ms, Prepared& state);
     void record();
     void record_pass(const Step& step, Prepared& state);
     void record_dispatches(const PassData& pass, Prepared& state);
+    void bind(const PassData& pass, const Prepared& state);
     template <class Part, class Copy>
-    void record_parts(const std::string& name, const std::vector<Part>& parts, const Copy& copy);
-    void record_copy(const PassData& pass);
-    void record_copy_to_image(const PassData& pass);
-    void record_read_back(const PassData& pass);
-    void record_fill(const PassData& pass);
+    void record_parts(Prepared& state, const std::string& name, const std::vector<Part>& parts, const Copy& copy);
+    void record_copy(const PassData& pass, Prepared& state);
+    void record_copy_to_image(const PassData& pass, Prepared& state);
+    void record_read_back(const PassData& pass, Prepared& state);
+    void record_fill(const PassData& pass, Prepared& state);
     void note_unknown_states() const;
     void transition_new_images();
     void submit();
@@ -166,8 +213,8 @@ void Submission::Frame::prepare()
     read_backs.resize(graph.read_back_count());
 
     uint64_t block_bytes = 0, counter_bytes = 0;
-    std::map<VkDescriptorType, uint32_t> descriptor_counts;
-    uint32_t sets = 0;
+    is_timed = options.timestamps && executor.device_.traits().timestamp_bits > 0;
+    FrameObjects::Needs needs{.queries = is_timed ? uint32_t(compiled.steps.size()) * 2 : 0};
     prepared.resize(compiled.steps.size());
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const PassData& data = pass(compiled.steps[i]);
@@ -183,8 +230,8 @@ void Submission::Frame::prepare()
             prepared[i].counters_offset = counter_bytes;
             counter_bytes += aligned(COUNTER_BYTES, alignment);
         }
-        for (const KernelInterface::Slot& slot : interface.slots) ++descriptor_counts[slot.type];
-        ++sets;
+        for (const KernelInterface::Slot& slot : interface.slots) ++needs.descriptors[slot.type];
+        ++needs.sets;
     }
     if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), Placement::upload);
     if (counter_bytes) {
@@ -192,24 +239,17 @@ void Submission::Frame::prepare()
         std::memset(counters->mapped().data(), 0, counters->mapped().size());
     }
 
-    if (sets == 0) return;
-    std::vector<VkDescriptorPoolSize> sizes;
-    for (const auto& [type, count] : descriptor_counts) sizes.push_back({type, count});
-    const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                               .maxSets = sets,
-                                               .poolSizeCount = uint32_t(sizes.size()),
-                                               .pPoolSizes = sizes.data()};
-    const VkDevice device = executor.device_.handle();
-    SHVR_VK(vkCreateDescriptorPool(device, &pool_info, nullptr, &descriptors));
+    if (executor.idle_objects_.empty()) {
+        objects = std::make_unique<FrameObjects>(executor.device_);
+    } else {
+        objects = std::move(executor.idle_objects_.back());
+        executor.idle_objects_.pop_back();
+    }
+    objects->renew(needs);
     uint64_t block_offset = 0;
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         if (!prepared[i].kernel) continue;
-        const VkDescriptorSetLayout layout = prepared[i].kernel->set_layout();
-        const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                               .descriptorPool = descriptors,
-                                               .descriptorSetCount = 1,
-                                               .pSetLayouts = &layout};
-        SHVR_VK(vkAllocateDescriptorSets(device, &info, &prepared[i].set));
+        prepared[i].set = objects->allocate(prepared[i].kernel->set_layout());
         write_descriptors(pass(compiled.steps[i]), prepared[i], block_offset);
     }
 }
@@ -252,21 +292,24 @@ void Submission::Frame::write_descriptors(const PassData& data, const Prepared& 
 
 void Submission::Frame::begin_chunk()
 {
-    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                           .commandPool = executor.pool_,
-                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                           .commandBufferCount = 1};
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    SHVR_VK(vkAllocateCommandBuffers(executor.device_.handle(), &info, &commands));
-    chunks.push_back(commands);
-    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    SHVR_VK(vkBeginCommandBuffer(commands, &begin));
+    chunks.push_back(objects->begin_commands());
+    chunk_ms = 0.0;
+    in_use = VK_NULL_HANDLE;
 }
 
 void Submission::Frame::end_chunk() const
 {
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
+}
+
+/// What is recorded next goes into another submission, if this one would take too long with it.
+void Submission::Frame::make_room(double ms, Prepared& state)
+{
+    const bool is_first = state.submissions == 0;
+    const bool is_full = chunk_ms > 0.0 && chunk_ms + ms > MAX_SUBMISSION_MS;
+    if (is_full) end_chunk(), begin_chunk();
+    if (is_first || is_full) ++state.submissions;
+    chunk_ms += ms;
 }
 
 /// Images are created in an undefined layout and stay in GENERAL from the first frame on that is submitted.
@@ -297,14 +340,7 @@ void Submission::Frame::transition_new_images()
 
 void Submission::Frame::record()
 {
-    const VkDevice device = executor.device_.handle();
-    if (options.timestamps && executor.device_.traits().timestamp_bits > 0 && !compiled.steps.empty()) {
-        const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                         .queryCount = uint32_t(compiled.steps.size()) * 2};
-        SHVR_VK(vkCreateQueryPool(device, &info, nullptr, &queries));
-        vkResetQueryPool(device, queries, 0, info.queryCount);
-    }
+    const VkQueryPool queries = objects->queries();
     begin_chunk();
     transition_new_images();
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
@@ -314,10 +350,10 @@ void Submission::Frame::record()
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
         // Once all that was submitted before has ended: its rest would be taken for this pass's time.
-        if (queries)
+        if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
-        if (queries)
+        if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i + 1));
     }
     record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_HOST, true});
@@ -330,51 +366,53 @@ void Submission::Frame::record_pass(const Step& step, Prepared& state)
     if (data.kind == PassData::Kind::compute) return record_dispatches(data, state);
     switch (data.kind) {
         case PassData::Kind::compute: break;
-        case PassData::Kind::fill: return record_fill(data);
-        case PassData::Kind::copy_buffer: return record_copy(data);
-        case PassData::Kind::copy_to_image: return record_copy_to_image(data);
-        case PassData::Kind::read_back: return record_read_back(data);
+        case PassData::Kind::fill: return record_fill(data, state);
+        case PassData::Kind::copy_buffer: return record_copy(data, state);
+        case PassData::Kind::copy_to_image: return record_copy_to_image(data, state);
+        case PassData::Kind::read_back: return record_read_back(data, state);
     }
 }
 
-/// Each part is a submission of its own.
 template <class Part, class Copy>
-void Submission::Frame::record_parts(const std::string& name, const std::vector<Part>& parts, const Copy& copy)
+void Submission::Frame::record_parts(Prepared& state, const std::string& name, const std::vector<Part>& parts,
+                                     const Copy& copy)
 {
     for (const Part& part : parts) {
-        if (&part != &parts.front()) end_chunk(), begin_chunk();
+        make_room(copy_ms(part), state);
         executor.device_.begin_label(chunks.back(), name);
         copy(chunks.back(), part);
         executor.device_.end_label(chunks.back());
     }
 }
 
-void Submission::Frame::record_fill(const PassData& data)
+void Submission::Frame::record_fill(const PassData& data, Prepared& state)
 {
     const Memory::Object& buffer = object(data.bindings[0].resource);
-    record_parts(data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
-        const BufferRegion& r = part[0];
-        const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // whose size may be no multiple of 4
-        vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes, data.fill_value);
-    });
+    record_parts(
+        state, data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
+            const BufferRegion& r = part[0];
+            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // whose size may be no multiple of 4
+            vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes,
+                            data.fill_value);
+        });
 }
 
-void Submission::Frame::record_copy(const PassData& data)
+void Submission::Frame::record_copy(const PassData& data, Prepared& state)
 {
     const VkBuffer from = object(data.bindings[0].resource).buffer, to = object(data.bindings[1].resource).buffer;
-    record_parts(data.name, copy_parts(data.buffer_regions), [&](VkCommandBuffer commands, const auto& part) {
+    record_parts(state, data.name, copy_parts(data.buffer_regions), [&](VkCommandBuffer commands, const auto& part) {
         std::vector<VkBufferCopy> regions;
         for (const BufferRegion& r : part) regions.push_back({r.source_offset, r.target_offset, r.bytes});
         vkCmdCopyBuffer(commands, from, to, uint32_t(regions.size()), regions.data());
     });
 }
 
-void Submission::Frame::record_copy_to_image(const PassData& data)
+void Submission::Frame::record_copy_to_image(const PassData& data, Prepared& state)
 {
     const VkBuffer from = object(data.bindings[0].resource).buffer;
     const Memory::Object& to = object(data.bindings[1].resource);
     const auto parts = copy_parts(data.image_regions, to.desc.format);
-    record_parts(data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
+    record_parts(state, data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
         std::vector<VkBufferImageCopy> regions;
         for (const ImageRegion& r : part)
             regions.push_back({.bufferOffset = r.buffer_offset,
@@ -386,18 +424,18 @@ void Submission::Frame::record_copy_to_image(const PassData& data)
     });
 }
 
-void Submission::Frame::record_read_back(const PassData& data)
+void Submission::Frame::record_read_back(const PassData& data, Prepared& state)
 {
     const Memory::Object& from = object(data.bindings[0].resource);
     const VkBuffer to = executor.memory_.object(read_backs[data.read_back]->import().id).buffer;
     if (!from.image)
-        return record_parts(data.name, copy_parts({{0, 0, from.desc.bytes}}),
+        return record_parts(state, data.name, copy_parts({{0, 0, from.desc.bytes}}),
                             [&](VkCommandBuffer commands, const auto& part) {
                                 const VkBufferCopy region{part[0].source_offset, part[0].target_offset, part[0].bytes};
                                 vkCmdCopyBuffer(commands, from.buffer, to, 1, &region);
                             });
     const auto parts = copy_parts({{0, glm::uvec3(0), from.desc.texels}}, from.desc.format);
-    record_parts(data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
+    record_parts(state, data.name, parts, [&](VkCommandBuffer commands, const auto& part) {
         for (const ImageRegion& r : part) {
             const VkBufferImageCopy region{.bufferOffset = r.buffer_offset,
                                            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
@@ -415,7 +453,11 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     const glm::uvec3 local(size[0], size[1], size[2]);
     const glm::uvec3 groups = groups_for(data.threads, local);
     const bool tiled = data.tile.x > 0;
-    const glm::uvec3 tile = tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : groups;
+    const auto cost_ms = [&](const glm::uvec3& count) {
+        return executor.costs_.ms(data.kernel, threads_of(count, local), tiled);
+    };
+    const glm::uvec3 tile =
+        tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : slab_of(groups, cost_ms(groups));
     const auto& limit = executor.device_.traits().limits.maxComputeWorkGroupCount;
     if (glm::any(glm::greaterThan(groups, glm::uvec3(limit[0], limit[1], limit[2]))))
         fail("pass '", data.name, "' dispatches ", groups.x, " x ", groups.y, " x ", groups.z,
@@ -425,16 +467,12 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     for (at.z = 0; at.z < groups.z; at.z += tile.z)
         for (at.y = 0; at.y < groups.y; at.y += tile.y)
             for (at.x = 0; at.x < groups.x; at.x += tile.x) {
-                if (state.dispatches++ > 0) end_chunk(), begin_chunk();
+                const glm::uvec3 count = glm::min(tile, groups - at);
+                make_room(cost_ms(count), state);
+                ++state.dispatches;
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
-                vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-                vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &state.set, 0,
-                                        nullptr);
-                if (!data.push.empty())
-                    vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                       uint32_t(data.push.size()), data.push.data());
-                const glm::uvec3 count = glm::min(tile, groups - at);
+                bind(data, state);
                 // Validation of hazards does not look at dispatches with a base, so the first tile stands for all.
                 if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);
@@ -442,14 +480,25 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                     vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
                 executor.device_.end_label(commands);
             }
+    in_use = VK_NULL_HANDLE;
+}
+
+/// Once in each submission; tiles share what is bound.
+void Submission::Frame::bind(const PassData& data, const Prepared& state)
+{
+    const Kernel& kernel = *state.kernel;
+    if (std::exchange(in_use, kernel.pipeline()) == kernel.pipeline()) return;
+    const VkCommandBuffer commands = chunks.back();
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &state.set, 0, nullptr);
+    if (!data.push.empty())
+        vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, uint32_t(data.push.size()),
+                           data.push.data());
 }
 
 void Submission::Frame::submit()
 {
-    const VkDevice device = executor.device_.handle();
-    const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    VkFence created = VK_NULL_HANDLE;
-    SHVR_VK(vkCreateFence(device, &fence_info, nullptr, &created));
+    Device& device = executor.device_;
     started = std::chrono::steady_clock::now();
     for (size_t i = 0; i < chunks.size(); ++i) {
         const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
@@ -457,17 +506,16 @@ void Submission::Frame::submit()
         const VkSubmitInfo2 info{
             .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commands};
         const bool last = i + 1 == chunks.size();
-        const VkResult result = vkQueueSubmit2(executor.device_.queue(), 1, &info, last ? created : VK_NULL_HANDLE);
+        const VkResult result = vkQueueSubmit2(device.queue(), 1, &info, last ? objects->fence() : VK_NULL_HANDLE);
         if (result < 0) {
-            vkDeviceWaitIdle(device);
-            vkDestroyFence(device, created, nullptr);
+            device.wait_idle_or_lost();
             if (i > 0) note_unknown_states();
             check(result, "vkQueueSubmit2");
         }
         if (i == 0)
             for (Memory::Object* image : transitioned) image->in_general_layout = true;
     }
-    fence = created;
+    number = device.note_submission();
     // Barriers are global, so they also affect imports that no kept pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
@@ -482,20 +530,24 @@ void Submission::Frame::note_unknown_states() const
 
 bool Submission::Frame::done() const
 {
-    if (!fence) return true;
-    const VkResult result = vkGetFenceStatus(executor.device_.handle(), fence);
+    if (number == 0 || number <= executor.device_.done()) return true;
+    const VkResult result = vkGetFenceStatus(executor.device_.handle(), objects->fence());
     check(result, "vkGetFenceStatus");
+    if (result == VK_SUCCESS) executor.device_.note_done(number);
     return result == VK_SUCCESS;
 }
 
 void Submission::Frame::wait() const
 {
-    if (fence) SHVR_VK(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
+    if (number == 0) return;
+    const VkFence fence = objects->fence();
+    SHVR_VK(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
+    executor.device_.note_done(number);
 }
 
 FrameResult Submission::Frame::collect()
 {
-    if (!fence) return {};  // no step, nothing submitted
+    if (number == 0) return {};  // no step, nothing submitted
     wait();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
     FrameResult result{.wall_ms = wall.count()};
@@ -509,23 +561,29 @@ FrameResult Submission::Frame::collect()
     }
     const DeviceTraits& traits = executor.device_.traits();
     std::vector<uint64_t> ticks(compiled.steps.size() * 2);
-    if (queries)
-        SHVR_VK(vkGetQueryPoolResults(executor.device_.handle(), queries, 0, uint32_t(ticks.size()),
+    if (is_timed)
+        SHVR_VK(vkGetQueryPoolResults(executor.device_.handle(), objects->queries(), 0, uint32_t(ticks.size()),
                                       ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
                                       VK_QUERY_RESULT_64_BIT));
     const uint64_t mask = traits.timestamp_bits >= 64 ? ~uint64_t(0) : (uint64_t(1) << traits.timestamp_bits) - 1;
     const auto milliseconds = [&](uint64_t from, uint64_t to) {
         return double((to - from) & mask) * double(traits.nanoseconds_per_tick) * 1e-6;
     };
-    if (queries && !ticks.empty()) result.gpu_ms = milliseconds(ticks.front(), ticks.back());
+    if (is_timed) result.gpu_ms = milliseconds(ticks.front(), ticks.back());
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const PassData& data = pass(compiled.steps[i]);
-        PassReport report{.name = data.name, .kernel = data.kernel, .dispatches = prepared[i].dispatches};
-        if (queries) {
+        PassReport report{.name = data.name, .kernel = data.kernel};
+        report.dispatches = prepared[i].dispatches;
+        report.submissions = prepared[i].submissions;
+        if (is_timed) {
             report.timed = true;
             report.start_ms = milliseconds(ticks[0], ticks[2 * i]);
             report.gpu_ms = milliseconds(ticks[2 * i], ticks[2 * i + 1]);
         }
+        // Without timestamps a pass takes no longer than all of them, and those before, did on the host's clock.
+        if (prepared[i].kernel)
+            executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
+                                  is_timed ? report.gpu_ms : result.wall_ms);
         for (const Binding& binding : data.bindings) report.bytes += graph.resources()[binding.resource].desc.bytes;
         if (const auto& barrier = compiled.steps[i].barrier)
             report.barrier = names_of(barrier->from) + " -> " + names_of(barrier->to);
@@ -549,21 +607,13 @@ Executor::Executor(Device& device, Memory& memory) : device_(device), memory_(me
                                       .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
     SHVR_VK(vkCreateSampler(device.handle(), &sampler, nullptr, &sampler_));
     device.set_name(VK_OBJECT_TYPE_SAMPLER, reinterpret_cast<uint64_t>(sampler_), "linear clamp");
-    const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                       .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                       .queueFamilyIndex = device.queue_family()};
-    const VkResult result = vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_);
-    if (result < 0) vkDestroySampler(device.handle(), sampler_, nullptr);
-    check(result, "vkCreateCommandPool");
-    device.set_name(VK_OBJECT_TYPE_COMMAND_POOL, reinterpret_cast<uint64_t>(pool_), "executor");
     memory.free_idle_by([this] { trim(); });
 }
 
 Executor::~Executor()
 {
     memory_.free_idle_by({});
-    vkDeviceWaitIdle(device_.handle());
-    vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+    device_.wait_idle_or_lost();
     vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
@@ -593,7 +643,7 @@ void Executor::trim(uint64_t runs)
 
 Submission Executor::submit(FrameGraph graph, const Options& options)
 {
-    constexpr uint64_t RUNS_KEPT = 64;  // sizes change with brushes and windows: unused ones are freed
+    constexpr uint64_t RUNS_KEPT = 512;  // sizes change with brushes and windows: unused ones are freed
     ++runs_;
     trim(RUNS_KEPT);
     auto frame = std::make_unique<Submission::Frame>(*this, std::move(graph), options);

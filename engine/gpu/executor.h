@@ -5,17 +5,19 @@
 //     gpu::Submission frame = executor.submit(std::move(graph));      // returns at once
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
-// Frames run on the device in submission order, and each knows what earlier frames left in flight. Long passes are
-// split by their tile into several queue submissions, and copies by regions and bytes, so that none takes long. Callers
-// that must let other work run in between make several small frames and keep few of them in flight. One thread at a
-// time.
+// Frames run on the device in submission order, and each knows what earlier frames left in flight. A frame is one queue
+// submission, unless it would take long by what its passes have cost so far (pass_costs.h): then it is several, cut
+// between the tiles of passes and the parts of copies. Callers that must let other work run in between make several
+// small frames and keep few of them in flight. One thread at a time.
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "engine/gpu/frame_objects.h"
 #include "engine/gpu/kernel.h"
 #include "engine/gpu/memory.h"
+#include "engine/gpu/pass_costs.h"
 
 namespace shvr::gpu {
 
@@ -29,6 +31,7 @@ struct PassReport {
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     uint32_t dispatches = 0;
+    uint32_t submissions = 0;        ///< that hold parts of it
     uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
@@ -105,8 +108,9 @@ private:
     Memory& memory_;
     Kernels kernels_;
     VkSampler sampler_ = VK_NULL_HANDLE;
-    VkCommandPool pool_ = VK_NULL_HANDLE;
     uint64_t runs_ = 0;
+    PassCosts costs_;
+    std::vector<std::unique_ptr<FrameObjects>> idle_objects_;  ///< for the next frames
     std::vector<std::unique_ptr<Transient>> transients_;
 };
 

@@ -97,13 +97,13 @@ Storage& Storage::operator=(Storage&& other) noexcept
 
 void Storage::reset()
 {
-    if (memory_) memory_->wait_idle();  // a frame in flight may still use it
-    reset_idle();
+    if (memory_) memory_->release(id_, false);
+    memory_ = nullptr;
 }
 
 void Storage::reset_idle()
 {
-    if (memory_) memory_->release(id_);
+    if (memory_) memory_->release(id_, true);
     memory_ = nullptr;
 }
 
@@ -139,6 +139,7 @@ Memory::~Memory()
 {
     SHVR_CHECK(objects_.empty(), objects_.size(), " storages outlive their memory, one is '",
                objects_.begin()->second.name, "'");
+    free_all_retired();
     for (const auto& block : blocks_) vkFreeMemory(device_.handle(), block->memory, nullptr);
 }
 
@@ -264,7 +265,9 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     uint64_t& peak = on_device ? peak_device_bytes_ : peak_host_bytes_;
     const uint64_t budget = on_device ? budget_.device_bytes : budget_.host_bytes;
     const auto fits = [&] { return needs.size <= budget && used <= budget - needs.size; };
+    collect();
     if (!fits()) free_idle();
+    if (!fits()) free_all_retired();
     if (!fits()) refuse(on_device, needs.size, purpose);
     if (!allocate_in_block(object, needs)) {
         const auto from_driver = [&] {
@@ -274,6 +277,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
         VkResult result = from_driver();
         if (is_shortage(result)) {
             free_idle();
+            free_all_retired();
             result = from_driver();
         }
         if (is_shortage(result))
@@ -377,17 +381,31 @@ void Memory::destroy(Object& object) noexcept
     std::erase_if(blocks_, [&](const auto& block) { return block.get() == object.block; });
 }
 
-void Memory::wait_idle() const noexcept
-{
-    vkDeviceWaitIdle(device_.handle());
-}
-
-void Memory::release(uint32_t id) noexcept
+void Memory::release(uint32_t id, bool is_idle) noexcept
 {
     const auto found = objects_.find(id);
     if (found == objects_.end()) return;
-    destroy(found->second);
+    Object object = std::move(found->second);
     objects_.erase(found);
+    if (is_idle || device_.done() == device_.submitted()) return destroy(object);
+    (object.placement == Placement::device ? retired_device_bytes_ : retired_host_bytes_) += object.bytes;
+    retired_.push_back({device_.submitted(), std::move(object)});
+}
+
+void Memory::collect() noexcept
+{
+    for (; !retired_.empty() && retired_.front().last <= device_.done(); retired_.pop_front()) {
+        Object& object = retired_.front().object;
+        (object.placement == Placement::device ? retired_device_bytes_ : retired_host_bytes_) -= object.bytes;
+        destroy(object);
+    }
+}
+
+void Memory::free_all_retired() noexcept
+{
+    if (retired_.empty()) return;
+    device_.wait_idle_or_lost();
+    collect();
 }
 
 std::map<std::string, uint64_t> Memory::bytes_by_name() const

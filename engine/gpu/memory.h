@@ -2,10 +2,12 @@
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
 // (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, or where
 // the driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), of which drivers
-// allow few.
+// allow few. What is given back while the device may still use it is freed once that is over; nobody waits, unless its
+// bytes are needed at once.
 //
 // One thread at a time.
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -45,7 +47,7 @@ std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
-/// A buffer or an image with its own memory. Move-only; its destructor waits for the device.
+/// A buffer or an image with its own memory. Move-only. It may go while the device uses it, and never waits.
 class Storage {
 public:
     Storage() = default;
@@ -60,7 +62,7 @@ public:
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// As reset(), for callers that know the device is idle.
+    /// As reset(), for callers that know that no submission under way uses it.
     void reset_idle();
 
 private:
@@ -107,13 +109,17 @@ public:
     };
     Object& object(uint32_t id);
 
-    uint64_t device_bytes() const { return device_bytes_; }
-    uint64_t host_bytes() const { return host_bytes_; }
+    /// Frees what was given back and is not in use any more.
+    void collect() noexcept;
+
+    // What was given back counts as free: whoever needs it waits for it.
+    uint64_t device_bytes() const { return device_bytes_ - retired_device_bytes_; }
+    uint64_t host_bytes() const { return host_bytes_ - retired_host_bytes_; }
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }
     uint64_t peak_host_bytes() const { return peak_host_bytes_; }
     uint64_t device_budget() const { return budget_.device_bytes; }
-    uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes_; }
-    uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes_; }
+    uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes(); }
+    uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes(); }
     std::map<std::string, uint64_t> bytes_by_name() const;
     /// Allocations of the driver's memory that there are, and that were made so far.
     uint64_t allocations() const { return allocations_; }
@@ -123,8 +129,8 @@ public:
 
 private:
     friend class Storage;
-    void wait_idle() const noexcept;
-    void release(uint32_t id) noexcept;
+    void release(uint32_t id, bool is_idle) noexcept;
+    void free_all_retired() noexcept;
     void create_buffer(Object& object, const char* purpose);
     void create_image(Object& object, const char* purpose);
     void allocate(Object& object, const VkMemoryRequirements& needs, const char* purpose);
@@ -139,6 +145,12 @@ private:
     Device& device_;
     Budget budget_;
     std::unordered_map<uint32_t, Object> objects_;
+    struct Retired {
+        uint64_t last = 0;  ///< submission that may use it
+        Object object;
+    };
+    std::deque<Retired> retired_;
+    uint64_t retired_device_bytes_ = 0, retired_host_bytes_ = 0;
     std::vector<std::unique_ptr<MemoryBlock>> blocks_;
     uint64_t allocations_ = 0, allocations_made_ = 0;
     uint32_t next_id_ = 1;

@@ -1,6 +1,7 @@
 #include "engine/live/view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -11,7 +12,6 @@ namespace shvr {
 
 namespace {
 
-constexpr double PREPARATION_MS = 5.0;
 /// Linear light behind a translucent background.
 constexpr glm::vec3 BEHIND(0.05f);
 
@@ -23,6 +23,12 @@ double now_s()
 glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
 {
     return (pixels + scale - 1u) / scale;
+}
+
+/// Sides to powers of two, so that images are seldom made anew while they grow.
+glm::uvec2 roomy(const glm::uvec2& pixels)
+{
+    return {std::bit_ceil(pixels.x), std::bit_ceil(pixels.y)};
 }
 
 }  // namespace
@@ -98,6 +104,7 @@ void View::reset_tiles()
     const glm::uvec2 counts = tile_counts();
     const bool is_due = base_.shown.share < 1.0 && unsharp_sight_ != shown_sight_;
     tiles_.assign(size_t(counts.x) * counts.y, {.is_shown = false, .is_due = is_due});
+    has_no_strips_ = false;
 }
 
 void View::reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels)
@@ -123,6 +130,7 @@ void View::forget()
     base_ = {};
     patch_ = {};
     work_.reset();
+    for (gpu::Storage& strip : strips_) strip.reset();
     sharp_.reset();
     tiles_.clear();
     changed_during_base_.clear();
@@ -213,7 +221,7 @@ bool View::submit_refinement()
 {
     std::optional<FrameGraph> graph = next_refinement(scene(), shown_sight_->look);
     if (!graph) return false;
-    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .pace = &preparation_, .units = 1.0});
     return true;
 }
 
@@ -221,16 +229,18 @@ bool View::submit_preparation(const Sight& sight)
 {
     std::optional<FrameGraph> graph = next_preparation(scene(), sight.look);
     if (!graph) return false;
-    submit(std::move(*graph), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    submit(std::move(*graph), {.purpose = Purpose::preparation, .pace = &preparation_, .units = 1.0});
     return true;
 }
 
-Resource View::draw(FrameGraph& graph, const PicturePart& part, Running& running)
+Resource View::draw(FrameGraph& graph, const PicturePart& part, Import light, Running& running)
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
     shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts, even those without the probe
-    Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", work_.import()));
+    Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", light));
+    running.pace = &rays_;
+    running.units = double(running.pixels);
     running.feedback = std::move(drawn.feedback);
     return drawn.target;
 }
@@ -254,18 +264,20 @@ bool View::occlusion_is_due() const
 /// Submits a slice of ambient occlusion. Bricks overlap on the screen, so sharp tiles wait until all slices are done.
 bool View::submit_occlusion()
 {
-    constexpr Occlusion::Most MOST{.bricks = 2, .cell_bricks = 16};
+    constexpr double LEAST = 2.0, MOST = 256.0;
+    const auto bricks = uint32_t(std::clamp(occlusion_.affords(options_.step_ms), LEAST, MOST));
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera, MOST);
+    std::optional<FrameGraph> slice =
+        next_occlusion(scene(), sight.look, sight.shot.camera, {.bricks = bricks, .cell_bricks = 8 * bricks});
     if (!slice) {
         occlusion_is_asked_for_ = false;
         patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
         occlusion_was_renewed_ = false;
         return false;
     }
-    submit(std::move(*slice), {.purpose = Purpose::preparation, .estimate_ms = PREPARATION_MS});
+    submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = double(bricks)});
     return true;
 }
 
@@ -338,6 +350,56 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
+/// Of the tiles around one that is due, so many as fit in one step: neighbours in its row, then rows beside that.
+PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
+{
+    constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
+    const glm::uvec2 counts = tile_counts();
+    const double affordable = std::min(rays_.affords(options_.step_ms) / (TILE * TILE), double(MAX_TILES));
+    PixelBox strip{nearest, nearest + 1u};
+    const auto grow = [&](const glm::uvec2& begin, const glm::uvec2& end) {
+        const PixelBox grown{glm::min(strip.begin, begin), glm::max(strip.end, end)};
+        if (double(grown.area()) > affordable) return false;
+        for (uint32_t y = begin.y; y < end.y; ++y)
+            for (uint32_t x = begin.x; x < end.x; ++x)
+                if (!may_draw(tiles_[x + counts.x * y])) return false;
+        strip = grown;
+        return true;
+    };
+    while (strip.end.x < counts.x && grow({strip.end.x, strip.begin.y}, strip.end + glm::uvec2(1, 0))) {
+    }
+    while (strip.begin.x > 0 && grow(strip.begin - glm::uvec2(1, 0), {strip.begin.x, strip.end.y})) {
+    }
+    while (strip.end.y < counts.y && grow({strip.begin.x, strip.end.y}, strip.end + glm::uvec2(0, 1))) {
+    }
+    while (strip.begin.y > 0 && grow(strip.begin - glm::uvec2(0, 1), {strip.end.x, strip.begin.y})) {
+    }
+    return strip;
+}
+
+/// The image for the light of the next sharp tiles.
+Import View::strip_light(const glm::uvec2& pixels)
+{
+    if (!has_no_strips_) try {
+            gpu::Storage& strip = strips_[next_strip_];
+            next_strip_ = (next_strip_ + 1) % strips_.size();
+            const bool fits = strip && glm::all(glm::greaterThanEqual(glm::uvec2(strip.desc().texels), pixels));
+            const glm::uvec2 before = strip ? glm::uvec2(strip.desc().texels) : glm::uvec2(0);
+            if (!fits) {
+                strip.reset();
+                strip = renderer_.memory().create("light of tiles",
+                                                  picture_desc(Format::rgba32_float, glm::max(before, roomy(pixels))),
+                                                  gpu::Placement::device, "the sharp picture on the screen");
+            }
+            return strip.import();
+        } catch (const gpu::MemoryError&) {
+            has_no_strips_ = true;
+            for (gpu::Storage& strip : strips_) strip.reset();
+        }
+    reserve(work_, "light", Format::rgba32_float, pixels);
+    return work_.import();
+}
+
 bool View::submit_tiles()
 {
     const glm::uvec2 counts = tile_counts(), pixels = shown_sight_->pixels;
@@ -358,23 +420,20 @@ bool View::submit_tiles()
     if (!has_room_for_tiles()) return submit_sketch_instead();
     if (submit_preparation(*shown_sight_)) return true;
 
-    // As many neighbours in its row as fit in one step.
-    const auto is_due = [&](uint32_t x) { return may_draw(tiles_[x + counts.x * nearest->y]); };
-    uint32_t begin = nearest->x, end = nearest->x + 1;
-    const double tile_ms = cost_ms(uint64_t(TILE) * TILE);
-    const auto affords_more = [&] { return (end - begin + 1) * tile_ms <= options_.step_ms; };
-    while (affords_more() && end < counts.x && is_due(end)) ++end;
-    while (affords_more() && begin > 0 && is_due(begin - 1)) --begin;
-
+    const PixelBox strip = strip_of_tiles(*nearest);
     Running running{.purpose = Purpose::tiles, .sight = shown_sight_};
-    for (uint32_t x = begin; x < end; ++x) running.tiles.push_back(x + counts.x * nearest->y);
-    PicturePart part{.pixels = pixels, .begin = glm::uvec2(begin, nearest->y) * TILE};
-    part.end = glm::min(glm::uvec2(end, nearest->y + 1) * TILE, pixels);
+    for (uint32_t y = strip.begin.y; y < strip.end.y; ++y)
+        for (uint32_t x = strip.begin.x; x < strip.end.x; ++x) running.tiles.push_back(x + counts.x * y);
+    const PicturePart part{.pixels = pixels, .begin = strip.begin * TILE, .end = glm::min(strip.end * TILE, pixels)};
     running.pixels = PixelBox{part.begin, part.end}.area();
     const glm::uvec2 size = part.end - part.begin;
-    reserve(work_, "light", Format::rgba32_float, size);
     FrameGraph graph;
-    const Resource light = draw(graph, part, running);
+    const Import light_of_strip = strip_light(size);
+    // Imported in each of these graphs, so that their barriers are known to settle the earlier graphs' light as well.
+    for (const gpu::Storage& other : strips_)
+        if (other && other.import().id != light_of_strip.id)
+            static_cast<void>(graph.import("light of other tiles", other.import()));
+    const Resource light = draw(graph, part, light_of_strip, running);
     gpu::EncodeParams params = encoding();
     params.target = part.begin;
     params.size = size;
@@ -393,7 +452,7 @@ bool View::submit_tiles()
 
 void View::submit(FrameGraph graph, Running running)
 {
-    if (running.pixels > 0) running.estimate_ms = cost_ms(running.pixels);
+    if (running.pace) running.estimate_ms = running.pace->ms() * running.units;
     if (running_.empty()) busy_since_ = std::chrono::steady_clock::now();
     running.submission = renderer_.executor().submit(std::move(graph));
     in_flight_ms_ += running.estimate_ms;
@@ -403,38 +462,34 @@ void View::submit(FrameGraph graph, Running running)
 
 // ---- Completed work -------------------------------------------------------------------------------------------------
 
-void View::note(const std::string& pass, double ms)
+void View::note(const std::string& pass, double ms, bool waits)
 {
     auto known = std::ranges::find(pass_times_, pass, &PassTime::name);
     if (known == pass_times_.end()) known = pass_times_.insert(known, {.name = pass});
     ++known->runs;
     known->total_ms += ms;
     known->longest_ms = std::max(known->longest_ms, ms);
+    known->waits += waits;
 }
 
-/// A pixel may cost twenty times more in one place than in another, so the estimate rises at once and falls slowly: a
-/// graph that is too short does less harm than one that is too long.
-void View::learn(double ms, uint64_t pixels)
+void View::account(const gpu::FrameResult& result, const Running& done)
 {
-    constexpr double FALL = 0.1;
-    const double seen = std::max(ms / double(pixels), 1e-7);
-    ms_per_pixel_ = std::max(seen, ms_per_pixel_ + FALL * (seen - ms_per_pixel_));
-}
-
-void View::account(const gpu::FrameResult& result, uint64_t pixels)
-{
+    const auto waits = [](const gpu::PassReport& pass) { return pass.barrier.starts_with("compute"); };
     const auto now = std::chrono::steady_clock::now();
     const double host_ms = std::chrono::duration<double, std::milli>(now - busy_since_).count();
     busy_since_ = now;
     if (!host_tells_time())
-        for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms);
+        for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
     // Passes may overlap, so their sum is more than they take.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
     // If only the host can measure time, all of it is assigned to the pass that takes most.
-    if (host_tells_time() && !result.passes.empty()) note(pixels > 0 ? "raycast" : result.passes.back().name, ms);
-    if (pixels == 0) return;
-    learn(ms, pixels);
-    sketch_ms_ += ms;
+    if (host_tells_time() && !result.passes.empty()) {
+        const auto rays = std::ranges::find(result.passes, "raycast", &gpu::PassReport::name);
+        const bool has_rays = rays != result.passes.end();
+        note(has_rays ? "raycast" : result.passes.back().name, ms, has_rays && waits(*rays));
+    }
+    if (done.pace) done.pace->learn(ms, done.units);
+    if (done.pixels > 0) sketch_ms_ += ms;
 }
 
 void View::wait()
@@ -460,7 +515,7 @@ void View::reap()
         running_.pop_front();
         in_flight_ms_ = running_.empty() ? 0.0 : in_flight_ms_ - done.estimate_ms;
         const gpu::FrameResult result = done.submission.finish();
-        account(result, done.pixels);
+        account(result, done);
         scene().volume().take_feedback(done.feedback, result);
         note_cut_short(done, rays_cut_short(result.passes));
         switch (done.purpose) {

@@ -14,10 +14,12 @@
 // that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is submitted
 // when nothing changed. One thread, the renderer's; no call waits for the device.
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <memory>
 
+#include "engine/live/pace.h"
 #include "engine/look/camera_motion.h"
 #include "engine/picture/renderer.h"
 #include "shaders/encode.h"
@@ -94,6 +96,7 @@ public:
         uint64_t runs = 0;
         double total_ms = 0.0;
         double longest_ms = 0.0;
+        uint64_t waits = 0;  ///< runs that had to wait for what was computed before them
     };
     const std::vector<PassTime>& pass_times() const { return pass_times_; }
     uint64_t submissions() const { return submissions_; }
@@ -142,7 +145,9 @@ private:
         gpu::Submission submission;
         Purpose purpose = Purpose::preparation;
         double estimate_ms = 0.0;
-        uint64_t pixels = 0;
+        Pace* pace = nullptr;         ///< that learns from its time, if any
+        double units = 0.0;           ///< of that
+        uint64_t pixels = 0;          ///< whose rays it follows
         std::vector<uint32_t> tiles;  ///< indices
         SightRef sight;
         DeviceVolume::Feedback feedback;
@@ -157,7 +162,9 @@ private:
     bool submit_preparation(const Sight& sight);
     bool submit_refinement();
     Scene& scene() const { return renderer_.scene(); }
-    Resource draw(FrameGraph& graph, const PicturePart& part, Running& running);
+    Resource draw(FrameGraph& graph, const PicturePart& part, Import light, Running& running);
+    PixelBox strip_of_tiles(const glm::uvec2& nearest) const;
+    Import strip_light(const glm::uvec2& pixels);
     void start(Sketch& sketch, const SightRef& sight, const std::optional<ProbeLook>& probe, double target_ms);
     void start(Sketch& sketch, Sketch::Content content, PixelBox part);
     bool submit_sketch(Sketch& sketch, Purpose purpose);
@@ -178,16 +185,15 @@ private:
     void submit(FrameGraph graph, Running running);
     void reap();
     void note_cut_short(const Running& done, uint64_t rays);
-    void account(const gpu::FrameResult& result, uint64_t pixels);
-    void note(const std::string& pass, double ms);
-    void learn(double ms, uint64_t pixels);
+    void account(const gpu::FrameResult& result, const Running& done);
+    void note(const std::string& pass, double ms, bool waits);
     void finish_sketches();
     void flip(Sketch& sketch);
     void reset_tiles();
     void mark_due(const PixelBox& pixels, bool is_urgent);
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
-    double cost_ms(uint64_t pixels) const { return double(pixels) * ms_per_pixel_; }
+    double cost_ms(uint64_t pixels) const { return double(pixels) * rays_.ms(); }
     /// Timestamps of lavapipe are wrong beside a window's render passes, so the host's clock is used there.
     bool host_tells_time() const
     {
@@ -204,8 +210,12 @@ private:
     std::optional<ProbeLook> probe_;  ///< the wanted probe
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< paint under the probe has changed
-    gpu::Storage work_;            ///< linear light of the part being drawn
-    gpu::Storage sharp_;           ///< all sharp tiles
+    gpu::Storage work_;            ///< linear light of the sketch being drawn
+    /// Linear light of sharp tiles: of the graphs in flight and the next one, so that none waits for another.
+    std::array<gpu::Storage, 3> strips_;
+    size_t next_strip_ = 0;
+    bool has_no_strips_ = false;  ///< for want of memory: tiles are drawn in `work_`
+    gpu::Storage sharp_;          ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
     SightRef finer_sight_;    ///< the last one of which a finer sketch was begun
@@ -214,7 +224,11 @@ private:
     bool occlusion_was_renewed_ = false;  ///< and the pixels under the probe do not show it yet
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
-    double ms_per_pixel_ = 0.002;          ///< measured: in costly areas
+    // Until they are measured, they are those of two cores of a server.
+    Pace rays_{0.002};                     ///< of a pixel
+    Pace enlarging_{2e-5};                 ///< of a pixel of the screen
+    Pace preparation_{5.0};                ///< of a graph
+    Pace occlusion_{1.25};                 ///< of a brick
     double average_ms_per_pixel_ = 0.002;  ///< measured: over whole sketches
     double sketch_ms_ = 0.0;               ///< of the sketch being drawn
     std::chrono::steady_clock::time_point busy_since_;

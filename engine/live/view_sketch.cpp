@@ -97,7 +97,7 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
 {
     const Sketch::Content& job = *sketch.job;
     const uint32_t width = job.part.end.x - job.part.begin.x;
-    const auto affordable = uint32_t(std::min(options_.step_ms / cost_ms(width), 65536.0));
+    const auto affordable = uint32_t(std::min(rays_.affords(options_.step_ms) / width, 65536.0));
     const uint32_t rows = std::min(std::max(affordable / 8 * 8, 8u), job.part.end.y - sketch.next_row);
     const PicturePart part{.pixels = job.pixels,
                            .begin = {job.part.begin.x, sketch.next_row},
@@ -107,7 +107,7 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
                            .probe = job.probe};
     FrameGraph graph;
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
-    const Resource light = draw(graph, part, running);
+    const Resource light = draw(graph, part, work_.import(), running);
     const uint32_t end = sketch.next_row + rows;
     const bool encodes = job.share == 1.0;  // otherwise rows are enlarged beside their neighbours, once all are drawn
     if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
@@ -119,14 +119,13 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
 
 void View::submit_encoding(Sketch& sketch, Purpose purpose)
 {
-    constexpr double ENLARGING_MS = 2e-5;  ///< per pixel, on two cores of a server; negligible on a GPU
     const uint32_t width = sketch.job->target.end.x - sketch.job->target.begin.x;
-    const auto affordable = std::max(uint32_t(options_.step_ms / (ENLARGING_MS * width)), 8u);
+    const auto affordable = uint32_t(std::clamp(enlarging_.affords(options_.step_ms) / width, 8.0, 65536.0));
     const uint32_t end = std::min(sketch.next_encoded + affordable, sketch.job->target.end.y);
     FrameGraph graph;
     encode_rows(graph, graph.import("light", work_.import()), sketch, sketch.next_encoded, end);
-    const double estimate_ms = ENLARGING_MS * width * (end - sketch.next_encoded);
-    submit(std::move(graph), {.purpose = purpose, .estimate_ms = estimate_ms, .sight = sketch.job->sight});
+    const double pixels = double(width) * (end - sketch.next_encoded);
+    submit(std::move(graph), {.purpose = purpose, .pace = &enlarging_, .units = pixels, .sight = sketch.job->sight});
     sketch.next_encoded = end;
     ++sketch.running;
 }

@@ -1,6 +1,7 @@
 // The executor and the memory accounting on a device: data survives a round trip, budgets hold, mistakes are reported,
 // and the validation layer is silent.
 
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <numeric>
@@ -81,7 +82,7 @@ TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch 
         const gpu::FrameResult result = executor.run(graph);
         return std::pair(result.read_backs[back], result.passes[2].dispatches);
     };
-    const auto [whole, one] = run(glm::uvec3(0));
+    const auto [whole, one] = run(glm::uvec3(0));  // in one dispatch, since it is small
     const auto [tiled, many] = run(glm::uvec3(16, 16, 1));
     CHECK(one == 1);
     CHECK(many == 4 * 3 * 3);
@@ -117,8 +118,42 @@ TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same
     const uint64_t after_one = memory.device_bytes();
     for (int i = 0; i < 5; ++i) run(1 << 20);
     CHECK(memory.device_bytes() == after_one);
-    for (int i = 0; i < 80; ++i) run(1024);
+    for (int i = 0; i < 520; ++i) run(1024);
     CHECK(memory.device_bytes() < after_one);
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "a frame's own memory makes no frame wait, neither when it is new nor when it comes from another")
+{
+    for (int frame = 0; frame < 3; ++frame) {
+        FrameGraph graph;
+        static_cast<void>(graph.read_back(graph.fill(graph.create("transient", buffer_desc(4096)), uint32_t(frame))));
+        const gpu::FrameResult result = executor.run(graph);
+        CHECK(result.passes[0].barrier == "");
+        CHECK(values_of<uint32_t>(result.read_backs[0]) == std::vector<uint32_t>(1024, uint32_t(frame)));
+    }
+}
+
+TEST_CASE_FIXTURE(Fixture, "what goes while a frame uses it is freed once that is done, or when its bytes are needed")
+{
+    const auto start = [&](const gpu::Storage& storage) {
+        FrameGraph graph;
+        static_cast<void>(graph.fill(graph.import("some", storage.import()), 7));
+        return executor.submit(std::move(graph));
+    };
+    const uint64_t before = memory.device_bytes();
+    gpu::Storage some = memory.create("some", buffer_desc(uint64_t(40) << 20));
+    gpu::Submission running = start(some);
+    some.reset();
+    CHECK(memory.device_bytes() == before);                         // for whoever asks
+    some = memory.create("more", buffer_desc(uint64_t(41) << 20));  // which the budget does not hold beside it
+    CHECK(memory.peak_device_bytes() <= memory.device_budget());
+    static_cast<void>(running.finish());
+    running = start(some);
+    some.reset();
+    static_cast<void>(running.finish());
+    CHECK(memory.bytes_by_name().count("more") == 0);
+    CHECK(memory.device_bytes() == before);
 }
 
 TEST_CASE_FIXTURE(Fixture, "where a budget would refuse, memory that frames have left idle is freed first")
@@ -232,6 +267,35 @@ TEST_CASE_FIXTURE(Fixture, "every pass has a time, in order, and the sum is with
     CHECK(result.passes[0].name == "fill a");
     CHECK(result.passes[2].barrier == "transfer -> transfer");
     if (device.traits().is_cpu) CHECK(sum <= result.wall_ms * 1.05 + 0.3);  // passes of a GPU may overlap
+}
+
+TEST_CASE("a long pass is several submissions until it is known to be short")
+{
+    setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_speed", 1);  // nothing takes any time
+    gpu::Device fast({.device = "", .validation = false});
+    gpu::Memory memory(fast, {.device_bytes = uint64_t(64) << 20, .host_bytes = uint64_t(64) << 20});
+    for (const bool tiled : {true, false}) {
+        CAPTURE(tiled);
+        gpu::Executor executor(fast, memory);
+        const auto run = [&] {
+            const glm::uvec3 cells(256, 256, 24);
+            FrameGraph graph;
+            const Resource zero = graph.fill(graph.create("zero", buffer_desc(4)), 0);
+            const Resource source = graph.copy_to_image(
+                zero, graph.create("source", image_desc(Format::r32_uint, cells)), {{0, glm::uvec3(0), glm::uvec3(1)}});
+            Pass pass = graph.compute("leap_distance");
+            pass.read("source", source);
+            pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
+            pass.dispatch(cells, tiled ? glm::uvec3(128, 128, 1) : glm::uvec3(0));
+            graph.keep(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
+            const gpu::PassReport report = executor.run(graph).passes.at(2);
+            return std::pair(report.dispatches, report.submissions);
+        };
+        // A tile is taken for 25 ms, and all of the pass without tiles for 157 ms; copies come first.
+        CHECK(run() == (tiled ? std::pair(96u, 25u) : std::pair(4u, 2u)));
+        CHECK(run() == (tiled ? std::pair(96u, 1u) : std::pair(1u, 1u)));
+    }
+    unsetenv("VK_INSTANCE_LAYERS");
 }
 
 TEST_CASE("a device that does not exist is refused with the list of those that do")

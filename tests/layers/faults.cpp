@@ -53,6 +53,7 @@ using layers::table_of;
     X(vkCreateDescriptorPool)                                                                                          \
     X(vkAllocateDescriptorSets)                                                                                        \
     X(vkCreateCommandPool)                                                                                             \
+    X(vkResetCommandPool)                                                                                              \
     X(vkAllocateCommandBuffers)                                                                                        \
     X(vkBeginCommandBuffer)                                                                                            \
     X(vkEndCommandBuffer)                                                                                              \

@@ -16,11 +16,13 @@ class Counts(CliTest):
 
     def test_a_picture_of_a_4k_screen(self):
         counts = self.counts("render", self.write_session(), "-o", self.folder / "a.pfm", "--size", "3840x2160")
-        # 510 tiles of 128 pixels, each a submission, and what twelve parts of the picture copy before and after.
-        self.assertLessEqual(counts["vkQueueSubmit2"], 602)
+        # A submission for each of twelve parts, and some more for the first one, of which nobody knows how long it is.
+        self.assertLessEqual(counts["vkQueueSubmit2"], 26)
         self.assertLessEqual(counts["vkAllocateMemory"], 16)
-        self.assertLessEqual(counts["vkDeviceWaitIdle"], 24)
+        self.assertLessEqual(counts["vkDeviceWaitIdle"], 2)   # at the end
         self.assertLessEqual(counts["vkCreateComputePipelines"], 4)
+        for made_once in ["vkCreateFence", "vkCreateCommandPool", "vkCreateQueryPool", "vkCreateDescriptorPool"]:
+            self.assertEqual(counts[made_once], 1, made_once)
 
     def test_paint_allocates_little(self):
         strokes = [{"op": "paint", "brush": "flood", "region": "ball", "group": 3, "threshold": 60, "radius": radius,

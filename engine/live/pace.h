@@ -1,0 +1,38 @@
+#pragma once
+// What a unit of work costs on the device, from the times of the last graphs: how much of it fits into the next one.
+//
+// A pixel may cost twenty times more in one place than in another, and a graph that is too short does less harm than
+// one that is too long: the estimate rises at once, and is the largest of the last eight. So clocks that ramp up, or a
+// time that was wrong, are forgotten after eight graphs. One thread.
+
+#include <algorithm>
+#include <array>
+
+namespace shvr {
+
+class Pace {
+public:
+    static constexpr size_t GRAPHS = 8;
+
+    /// `first_ms`: assumed until something was measured.
+    explicit Pace(double first_ms) : first_ms_(first_ms) {}
+    /// Of one unit.
+    double ms() const { return count_ == 0 ? first_ms_ : *std::max_element(last_.begin(), last_.begin() + known()); }
+    /// A graph of so many units took that long.
+    void learn(double graph_ms, double units)
+    {
+        constexpr double LEAST_MS = 1e-7;
+        if (!(units > 0.0)) return;
+        last_[count_++ % GRAPHS] = std::max(graph_ms / units, LEAST_MS);
+    }
+    /// How many units fit into that time.
+    double affords(double budget_ms) const { return budget_ms / ms(); }
+
+private:
+    std::ptrdiff_t known() const { return std::ptrdiff_t(std::min(count_, GRAPHS)); }
+    double first_ms_;
+    std::array<double, GRAPHS> last_{};
+    size_t count_ = 0;
+};
+
+}  // namespace shvr

@@ -1,0 +1,185 @@
+// What a session costs in calls of the driver: layers (tests/layers) count them, and stand for a device that is
+// infinitely fast or whose clock changes its speed.
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include "engine/live/view.h"
+#include "tests/support/gpu.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
+constexpr uint64_t MIB = uint64_t{1} << 20;
+
+/// Variables of the environment, for as long as it lives.
+class Environment {
+public:
+    explicit Environment(std::map<const char*, std::string> values) : values_(std::move(values))
+    {
+        for (const auto& [name, value] : values_) setenv(name, value.c_str(), 1);
+    }
+    Environment(const Environment&) = delete;
+    ~Environment()
+    {
+        for (const auto& [name, value] : values_) unsetenv(name);
+    }
+
+private:
+    std::map<const char*, std::string> values_;
+};
+
+struct Worked {
+    Session session;
+    std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = {96, 64, 64}, .seed = 3});
+    Mask mask{source->info().size};
+    Renderer renderer{{.device = {"", false}, .budget = {256 * MIB, 0}, .threads = 1}};
+    View view{renderer, {}};
+
+    Worked(const glm::uvec2& pixels, Paging paging)
+    {
+        session.transfer_function = TransferFunction(
+            {{90.0, glm::dvec3(0.8, 0.3, 0.1), 0.0}, {140.0, glm::dvec3(0.9, 0.7, 0.3), 0.3}, {255.0, WHITE, 0.6}});
+        session.light.shaded = true;
+        session.render.size = pixels;
+        session.render.paging = paging;
+        renderer.load(source, BYTES, session.render);
+    }
+    void settle()
+    {
+        for (int i = 0; !view.complete(); ++i) {
+            REQUIRE(i < 10'000'000);
+            view.advance();
+        }
+    }
+    void turn(const char* side)
+    {
+        view.look(session.look(), session.interaction, Shot(camera_looking(side, source->info())), session.render.size);
+        for (int i = 0; i < 3; ++i) view.advance();
+    }
+    /// Every second time it takes away what it painted the time before.
+    void paint(int64_t brick, bool paints)
+    {
+        mask.apply({.brick = brick, .runs = {{.first = 3000, .last = 29000, .before = 0, .after = 3}}},
+                   paints ? Direction::forwards : Direction::backwards);
+        renderer.scene().update_mask(mask, {&brick, 1});
+    }
+};
+
+/// Calls of the driver in all, from start to end, in a session of so many rounds.
+std::map<std::string, int64_t> calls_of(int rounds, Paging paging, bool grows)
+{
+    const std::filesystem::path log = std::filesystem::temp_directory_path() / sentence("shvr-counts-", getpid());
+    std::filesystem::remove(log);
+    {
+        const Environment environment(
+            {{"VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_faults:VK_LAYER_SHVR_speed"}, {"SHVR_FAULTS_LOG", log.string()}});
+        Worked worked({160, 96}, paging);
+        for (int round = 0; round < rounds; ++round) {
+            worked.paint(0, round % 2 == 0);
+            worked.turn("front");
+            if (grows) {  // everything: the picture, and what is painted
+                worked.paint(round + 1, true);
+                worked.session.render.size += glm::uvec2(32, 16);
+                worked.turn("left");
+            }
+            worked.settle();
+            worked.turn("top");
+            worked.settle();
+        }
+    }
+    std::map<std::string, int64_t> calls;
+    std::ifstream lines(log);
+    std::string call;
+    static std::map<std::string, int64_t> before;  // the layer counts on from device to device
+    for (int64_t count = 0; lines >> call >> count;) calls[call] = count - std::exchange(before[call], count);
+    REQUIRE(calls["vkQueueSubmit2"] > rounds);
+    std::filesystem::remove(log);
+    return calls;
+}
+
+}  // namespace
+
+TEST_CASE("turning and painting never wait for the whole device, whatever grows")
+{
+    for (const Paging paging : {Paging::never, Paging::always}) {
+        CAPTURE(int(paging));
+        const int64_t few = calls_of(1, paging, true)["vkDeviceWaitIdle"];
+        CHECK(few <= 3);  // when the device goes
+        CHECK(calls_of(8, paging, true)["vkDeviceWaitIdle"] == few);
+    }
+}
+
+/// How many are needed depends on how many graphs are in flight at a time, so a few more may be made by chance.
+TEST_CASE("turning and painting allocate and make nothing once all is there")
+{
+    for (const Paging paging : {Paging::never, Paging::always}) {
+        CAPTURE(int(paging));
+        constexpr int FEW = 6, MANY = 36;
+        std::map<std::string, int64_t> few = calls_of(FEW, paging, false), many = calls_of(MANY, paging, false);
+        for (const char* call :
+             {"vkAllocateMemory", "vkMapMemory", "vkCreateFence", "vkCreateCommandPool", "vkAllocateCommandBuffers",
+              "vkCreateQueryPool", "vkCreateDescriptorPool", "vkCreateComputePipelines"}) {
+            CAPTURE(std::string(call));
+            CHECK(many[call] - few[call] < MANY - FEW);  // less than one for each round
+        }
+    }
+}
+
+TEST_CASE("sharp tiles of two graphs wait for each other's light nowhere")
+{
+    Worked worked({320, 200}, Paging::never);
+    worked.turn("front");
+    worked.settle();
+    uint64_t sketched = 0;
+    // Of a picture at rest only its tiles are drawn again.
+    for (int round = 0; round < 4; ++round) {
+        worked.view.changed({Size3(0), worked.source->info().size});
+        worked.settle();
+        for (const View::PassTime& pass : worked.view.pass_times()) {
+            if (pass.name != "raycast") continue;
+            if (round == 0) sketched = pass.waits;
+            CHECK(pass.waits == sketched);
+        }
+    }
+}
+
+TEST_CASE("after a clock that ran ten times slower, or stamps that came early, a picture takes few graphs more")
+{
+    const Environment environment(
+        {{"VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_clocks:VK_LAYER_SHVR_limits:VK_LAYER_SHVR_speed"},
+         {"SHVR_LIMITS", "nvidia"},
+         {"SHVR_CLOCKS", "2000"}});
+    Worked worked({1000, 700}, Paging::never);
+    const auto graphs_of = [&](const char* side) {
+        worked.turn(side);
+        worked.settle();
+        const std::vector<View::PassTime>& passes = worked.view.pass_times();
+        return std::ranges::find(passes, "raycast", &View::PassTime::name)->runs;
+    };
+    for (const char* side : {"front", "left", "top"}) graphs_of(side);
+    const uint64_t usual = graphs_of("front");
+    CAPTURE(usual);
+    setenv("SHVR_CLOCKS", "20000", 1);
+    const uint64_t slow = graphs_of("left");
+    CHECK(slow > 2 * usual);  // each is as long as before
+    setenv("SHVR_CLOCKS", "2000", 1);
+    CHECK(graphs_of("top") <= usual + Pace::GRAPHS + 3);
+    CHECK(graphs_of("front") <= usual + 2);
+    setenv("SHVR_CLOCKS_EARLY", "30000000", 1);
+    graphs_of("left");
+    unsetenv("SHVR_CLOCKS_EARLY");
+    CHECK(graphs_of("top") <= usual + Pace::GRAPHS + 3);
+    CHECK(graphs_of("front") <= usual + 2);
+}
