@@ -91,7 +91,7 @@ TEST_CASE("tubes in 64^3 and 128^3 voxels grow within one tick: so many words ar
 {
     const uint32_t small = growth_steps(64), large = growth_steps(128);
     MESSAGE(small, " words in 64^3, ", large, " in 128^3");
-    CHECK(small <= 300);
-    CHECK(large <= 850);
+    CHECK(small == 292);
+    CHECK(large == 835);
     CHECK(large < GROWTH_STEPS);
 }
