@@ -238,6 +238,10 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
             memory.patches[memory.current].sequence = 0;
         }
     }
+    RelevancePatch& held = memory.patches[memory.current];
+    // The same bits, known to be true for longer: so is what was grown in them.
+    if (patch.sequence == held.sequence && patch.settings == held.settings)
+        held.time_ns = std::max(held.time_ns, patch.time_ns);
     if (!memory.is_growing) return memory.object();
     RelevancePatch& next = memory.patches[1 - memory.current];
     grow(memory.has_mask ? memory.mask : patch, next, memory.list, GROWTH_STEPS);

@@ -78,45 +78,17 @@ const RowRule& rule_for(double radius_voxels)
     return radius_voxels < 7.5 ? GAUSS_3 : radius_voxels < 14.5 ? GAUSS_2 : MIDDLE;
 }
 
-/// The thesis's algorithm 2: points that are evenly distributed in a ball of radius 1, drawn once and kept. The
-/// generator's numbers are the same everywhere.
-std::array<glm::dvec3, SAMPLE_POINTS> draw_points()
-{
-    std::mt19937 random(3000);
-    const auto uniform = [&] { return (double(random()) + 0.5) / 4294967296.0; };
-    std::array<glm::dvec3, SAMPLE_POINTS> points;
-    for (glm::dvec3& point : points) {
-        const double r = std::cbrt(uniform()), z = 2.0 * uniform() - 1.0;
-        const double phi = 2.0 * std::numbers::pi * uniform(), across = std::sqrt(1.0 - z * z);
-        point = r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
-    }
-    return points;
-}
-/// Drawn before main(), so that no tick pays for it.
-const std::array<glm::dvec3, SAMPLE_POINTS> POINTS = draw_points();
-
-Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
-{
-    const glm::dvec3 c = centre / patch.spacing - glm::dvec3(patch.origin), reach = radius / patch.spacing;
-    if (!patch.is_well_formed() || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return {};
-    const glm::dvec3 size(patch.size);
-    glm::dvec3 sum(0.0);
-    int count = 0;
-    for (const glm::dvec3& point : POINTS) {
-        const glm::dvec3 at = c + reach * point;
-        if (!glm::all(glm::greaterThanEqual(at, glm::dvec3(0.0))) || !glm::all(glm::lessThan(at, size))) continue;
-        const glm::ivec3 voxel(at);
-        if (!(patch.row_word(voxel.x / 32, voxel.y, voxel.z) >> (voxel.x % 32) & 1u)) continue;
-        sum += point;
-        ++count;
-    }
-    if (count == 0) return {};
-    return {true, radius * sum / double(count), double(count) / double(SAMPLE_POINTS)};
-}
-
 bool is_empty(const uint32_t* words, int32_t count)
 {
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
+}
+
+/// A point of the ball of radius 1 for three shares of 1, evenly distributed where they are.
+glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
+{
+    const double r = std::cbrt(of_volume), z = 2.0 * of_height - 1.0;
+    const double phi = 2.0 * std::numbers::pi * of_turn, across = std::sqrt(1.0 - z * z);
+    return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
 }  // namespace
@@ -162,9 +134,56 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
     return {ball.volume * row_area, ball.first * row_area, ball.second * row_area};
 }
 
+std::vector<glm::dvec3> random_points(int count)
+{
+    std::mt19937 random(3000);
+    const auto uniform = [&] { return (double(random()) + 0.5) / 4294967296.0; };
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < count; ++i) {
+        const double volume = uniform(), height = uniform(), turn = uniform();
+        points.push_back(point_of(volume, height, turn));
+    }
+    return points;
+}
+
+std::vector<glm::dvec3> even_points(int count)
+{
+    constexpr double PLASTIC = 1.3247179572447460;
+    const auto share = [](double x) { return x - std::floor(x); };
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < count; ++i)
+        points.push_back(point_of((i + 0.5) / count, share(0.5 + i / PLASTIC), share(0.5 + i / (PLASTIC * PLASTIC))));
+    return points;
+}
+
+namespace {
+/// Drawn before main(), so that no tick pays for it.
+const std::vector<glm::dvec3> THESIS_POINTS = random_points(SAMPLE_POINTS);
+}  // namespace
+
+Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
+                         std::span<const glm::dvec3> points) noexcept
+{
+    const glm::dvec3 c = centre / patch.spacing - glm::dvec3(patch.origin), reach = radius / patch.spacing;
+    if (!patch.is_well_formed() || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return {};
+    const glm::dvec3 size(patch.size);
+    glm::dvec3 sum(0.0);
+    int count = 0;
+    for (const glm::dvec3& point : points) {
+        const glm::dvec3 at = c + reach * point;
+        if (!glm::all(glm::greaterThanEqual(at, glm::dvec3(0.0))) || !glm::all(glm::lessThan(at, size))) continue;
+        const glm::ivec3 voxel(at);
+        if (!(patch.row_word(voxel.x / 32, voxel.y, voxel.z) >> (voxel.x % 32) & 1u)) continue;
+        sum += point;
+        ++count;
+    }
+    if (count == 0) return {};
+    return {true, radius * sum / double(count), double(count) / double(points.size())};
+}
+
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept
 {
-    if (law == ProxyLaw::thesis) return find_sampled_proxy(patch, centre, radius);
+    if (law == ProxyLaw::thesis) return find_sampled_proxy(patch, centre, radius, THESIS_POINTS);
     const BallIntegrals ball = integrate(patch, centre, radius);
     if (!(ball.volume > 0.0)) return {};
     const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;

@@ -13,6 +13,9 @@
 //
 // Pure; any thread. Cost: 10 to 20 ns a line.
 
+#include <span>
+#include <vector>
+
 #include <glm/glm.hpp>
 
 #include "haptics/relevance.h"
@@ -37,5 +40,16 @@ struct Proxy {
 };
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
+
+// ---- By sample points, for comparing (`shvr haptics bench --sweep`)
+// --------------------------------------------------
+
+/// Points in a ball of radius 1: at random, evenly distributed (algorithm 2 of the thesis); the same everywhere.
+std::vector<glm::dvec3> random_points(int count);
+/// The same of low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
+std::vector<glm::dvec3> even_points(int count);
+/// The mean of the relevant points among these.
+Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
+                         std::span<const glm::dvec3> points) noexcept;
 
 }  // namespace shvr

@@ -106,7 +106,7 @@ void Servo::run() noexcept
     DeviceState device;
     TimeHistogram lateness, duration, relevance_age;
     uint64_t ticks = 0, late_ticks = 0;
-    bool wrote = true;
+    bool wrote = true, has_settings = false;
 
     uint64_t deadline_ns = pacing_->now_ns() + period_ns;
     while (running_) {
@@ -117,7 +117,7 @@ void Servo::run() noexcept
         if (late_ns > period_ns) ++late_ticks;
         deadline_ns += period_ns * (1 + late_ns / period_ns);  // missed ticks are skipped
 
-        settings_.take();
+        has_settings = settings_.take() || has_settings;
         relevance_.take();
         const ForceSettings& settings = settings_.value();
         const RelevancePatch& relevance = relevance_.value();  // 256 KiB, used in place
@@ -140,7 +140,9 @@ void Servo::run() noexcept
         state.lateness = lateness;
         state.duration = duration;
         state.relevance_age = relevance_age;
+        state.relevance_time_ns = relevance.sequence != 0 ? relevance.time_ns : 0;
         state_.publish();
+        place_.publish({.point = force.probe, .is_known = has_settings && !(force.flags & FORCE_NO_DEVICE)});
     }
     device_->write(glm::dvec3(0.0), memory.sent.sequence + 1);
 }

@@ -1,10 +1,12 @@
 #pragma once
 // The servo reads the device, finds the proxy and writes the force, a thousand times a second, on its own thread. It
-// shares only three latest values with the rest of the program, and never locks, allocates, logs or throws.
+// shares only latest values with the rest of the program, and never locks, allocates, logs or throws.
 //
-//   application --Latest<ForceSettings>, Latest<RelevancePatch>--> servo --Latest<ServoState>--> application
+//   application --Latest<ForceSettings>--> servo --Latest<ServoState>--> application
+//   mirror of relevance --Latest<RelevancePatch>--> servo --Latest<ProbePlace>--> mirror of relevance
 //
-// The application's thread calls everything here; the servo owns the device.
+// The application's thread calls everything here, but that one other thread may have relevance() and place(). The servo
+// owns the device.
 
 #include <array>
 #include <atomic>
@@ -40,6 +42,12 @@ struct TimeHistogram {
     double quantile_us(double share) const noexcept;
 };
 
+/// Where the probe is, for whoever mirrors relevance around it.
+struct ProbePlace {
+    glm::dvec3 point{0.0};  ///< physical
+    bool is_known = false;  ///< the device is there, and the servo has settings
+};
+
 /// The servo's state, as published to the application.
 struct ServoState {
     uint64_t time_ns = 0;
@@ -48,9 +56,10 @@ struct ServoState {
     DeviceState device;
     ForceStep step;
     DeviceCaps caps;
-    TimeHistogram lateness;       ///< how late ticks started
-    TimeHistogram duration;       ///< of each tick's own work
-    TimeHistogram relevance_age;  ///< of the patch used, on ticks with assistance
+    TimeHistogram lateness;          ///< how late ticks started
+    TimeHistogram duration;          ///< of each tick's own work
+    TimeHistogram relevance_age;     ///< of the patch used, on ticks with assistance
+    uint64_t relevance_time_ns = 0;  ///< of that patch; 0: none yet
 };
 
 class Servo {
@@ -68,6 +77,8 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
+    /// One reading thread, which need not be that of state().
+    Latest<ProbePlace>& place() { return place_; }
     /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
 
@@ -80,6 +91,7 @@ private:
     Latest<ForceSettings> settings_;
     Latest<RelevancePatch> relevance_;
     Latest<ServoState> state_;
+    Latest<ProbePlace> place_;
     std::atomic<bool> running_{true};
     bool is_realtime_ = false;
     std::thread thread_;

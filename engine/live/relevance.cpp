@@ -8,11 +8,11 @@ namespace shvr {
 
 namespace {
 
-BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
+BrushRegion region_of(const VoxelBox& box)
 {
     BrushRegion region;
-    region.box = relevance_cube(voxel, volume_size, Relevance::SIDE);
-    const Size3 size = region.box.size();
+    region.box = box;
+    const Size3 size = box.size();
     region.rows.assign(size_t(size.y * size.z), {0, int32_t(size.x)});
     return region;
 }
@@ -21,10 +21,15 @@ BrushRegion cube_around(const glm::dvec3& voxel, const Size3& volume_size)
 
 void Relevance::ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns)
 {
+    ask(relevance_cube(voxel, renderer_.volume().info().size, SIDE), threshold, now_ns);
+}
+
+void Relevance::ask(const VoxelBox& box, double threshold, uint64_t now_ns)
+{
     const PaintOp fill{.brush = Brush::fill, .threshold = threshold};
-    // While bricks are being loaded, the servo fades the force as the last answer ages.
-    if (query_.ask(fill, {{cube_around(voxel, renderer_.volume().info().size), voxel}}, RegionQuery::Wait::no))
-        asked_ns_ = now_ns;
+    const glm::dvec3 middle = 0.5 * glm::dvec3(box.lower + box.upper);
+    // While bricks are being loaded, the host's bits do (relevance_mirror.h).
+    if (query_.ask(fill, {{region_of(box), middle}}, RegionQuery::Wait::no)) asked_ns_ = now_ns;
 }
 
 std::optional<RelevanceBits> Relevance::take()
@@ -35,7 +40,8 @@ std::optional<RelevanceBits> Relevance::take()
                          .words_per_row = answer.region.words_per_row(),
                          .words = std::move(answer.words),
                          .asked_ns = asked_ns_,
-                         .gpu_ms = query_.gpu_ms()};
+                         .gpu_ms = query_.gpu_ms(),
+                         .level = 0};
 }
 
 }  // namespace shvr

@@ -18,11 +18,24 @@ struct RelevanceBits {
     std::vector<uint32_t> words;  ///< word + words_per_row * (y + size.y * z)
     uint64_t asked_ns = 0;        ///< the time given to `ask`: the answer is at least as old
     double gpu_ms = 0.0;          ///< 0 where the device has no timestamps
+    int level = 0;                ///< whose voxels they are
+};
+
+/// A cube of voxels of a level that suits a ball: 64 a side, 128 for balls of more than 24 voxels, coarser levels for
+/// more than 48; so the hand has some way to go in it.
+struct RelevancePlace {
+    int level = 0;
+    Size3 level_size{0};      ///< voxels of the level
+    glm::dvec3 spacing{1.0};  ///< of the level
+    VoxelBox box;             ///< inside the level
+    bool operator==(const RelevancePlace&) const = default;
+    /// Whether the box holds all of the ball (physical) that lies in the volume.
+    bool covers(const glm::dvec3& centre, double radius) const;
 };
 
 class Relevance {
 public:
-    static constexpr int64_t SIDE = 64;  ///< voxels
+    static constexpr int64_t SIDE = 64, LARGE_SIDE = 128;  ///< voxels
 
     explicit Relevance(Renderer& renderer)
         : renderer_(renderer), query_(renderer, {.name = "mirror relevance", .timestamps = true})
@@ -31,6 +44,8 @@ public:
     /// Queries the cube around a point (voxels), clipped to the volume. Drops an answer not yet taken. Submits nothing
     /// while bricks of the cube are being loaded. Fails where the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
+    /// The same for a box of level 0. Fails where the device has no room for its bricks.
+    void ask(const VoxelBox& box, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
     void drop() { query_.drop(); }
     /// The answer; null until the device has finished.

@@ -1,5 +1,7 @@
 #include "engine/live/relevance_host.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/volume/voxel_numbers.h"
@@ -16,6 +18,52 @@ VoxelBox relevance_cube(const glm::dvec3& voxel, const Size3& volume_size, int64
     return {Size3(lower), Size3(lower) + size};
 }
 
+bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
+{
+    const glm::dvec3 lower = (centre - radius) / spacing, upper = (centre + radius) / spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(lower[axis]) || !std::isfinite(upper[axis])) return false;
+        // A ball outside the volume along any axis contains no voxels, so nothing is unknown.
+        if (upper[axis] <= 0.0 || lower[axis] >= double(level_size[axis])) return true;
+    }
+    const glm::dvec3 least = glm::max(lower, glm::dvec3(0.0)), most = glm::min(upper, glm::dvec3(level_size));
+    return glm::all(glm::greaterThanEqual(least, glm::dvec3(box.lower))) &&
+           glm::all(glm::lessThanEqual(most, glm::dvec3(box.upper)));
+}
+
+RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& point, double radius)
+{
+    constexpr double SMALL = 24.0, LARGEST = 48.0;  // radii, voxels
+    const VolumeInfo& info = source.info();
+    const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
+    RelevancePlace place;
+    while (place.level + 1 < source.levels() && radius / std::ldexp(finest, place.level) > LARGEST) ++place.level;
+    place.spacing = info.spacing * std::ldexp(1.0, place.level);
+    place.level_size = size_of_level(info.size, place.level);
+    const bool is_large = radius / std::ldexp(finest, place.level) > SMALL;
+    const int64_t side = is_large ? Relevance::LARGE_SIDE : Relevance::SIDE;
+    place.box = relevance_cube(point / place.spacing, place.level_size, side);
+    return place;
+}
+
+void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits)
+{
+    const Size3 size = bits.box.size();
+    const int64_t step = int64_t{1} << bits.level;
+    const auto group_at = [&](const Size3& voxel) {
+        return mask.at(glm::min(voxel * step + step / 2, mask.size() - int64_t{1}));
+    };
+    for (int64_t z = 0; z < size.z; ++z)
+        for (int64_t y = 0; y < size.y; ++y)
+            for (int64_t w = 0; w < bits.words_per_row; ++w) {
+                uint32_t& word = bits.words[size_t(w + bits.words_per_row * (y + size.y * z))];
+                for (uint32_t left = word; left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    if (!groups[group_at(bits.box.lower + Size3(32 * w + bit, y, z))]) word &= ~(1u << bit);
+                }
+            }
+}
+
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold)
 {
     const Size3 size = box.size();
@@ -23,7 +71,7 @@ RelevanceBits relevance_on_host(const VolumeSource& source, int level, const Vox
     std::vector<std::byte> bytes(values.size() * bytes_of(source.info().type));
     source.read_level(level, box, bytes);
     load_voxels(source.info().type, bytes.data(), values);
-    RelevanceBits bits{.box = box, .words_per_row = (size.x + 31) / 32};
+    RelevanceBits bits{.box = box, .words_per_row = (size.x + 31) / 32, .words = {}, .level = level};
     bits.words.assign(size_t(bits.words_per_row * size.y * size.z), 0u);
     for (int64_t row = 0; row < size.y * size.z; ++row)
         for (int64_t x = 0; x < size.x; ++x)

@@ -3,6 +3,9 @@
 // the device is late. Equal to the device's wherever 16-bit codes hold the intensities exactly (IntensityWindow); of
 // other volumes a voxel within half a code of the threshold may differ. Any thread.
 
+#include <bitset>
+
+#include "engine/annotation/mask.h"
 #include "engine/live/relevance.h"
 #include "engine/volume/source.h"
 
@@ -12,7 +15,14 @@ namespace shvr {
 /// as possible. Fails where the point is not finite.
 VoxelBox relevance_cube(const glm::dvec3& voxel, const Size3& volume_size, int64_t side);
 
+/// Where to look for a ball around `point`, physical units. Fails where the point is not finite.
+RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& point, double radius);
+
 /// Which voxels of a box of a level are at or above the threshold. `source` holds density offsets already.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
+
+/// Clears the bits of voxels in other groups than these; a voxel of a coarser level counts by the voxel of level 0 in
+/// its middle. `mask` is of the volume.
+void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits);
 
 }  // namespace shvr

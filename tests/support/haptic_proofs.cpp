@@ -78,6 +78,23 @@ DeviceCaps caps_of(const ModelledTouch& device, bool is_broken)
     return caps;
 }
 
+/// What the law's potential has given a probe that stands there, J: the depth of its well, or less what a spring to the
+/// pin has taken up. Work beyond it was made by delay, holding and limits.
+double given_by_potential(const ForceSettings& settings, const RelevancePatch& patch, double stiffness,
+                          const glm::dvec3& position_m, const SurfaceMemory& surface)
+{
+    const glm::dvec3 probe = settings.workspace.to_point(position_m);
+    if (settings.mode == HapticMode::surface) {
+        const double away_m = surface.is_pinned ? glm::distance(probe, surface.pin) / settings.workspace.scale() : 0.0;
+        return -0.5 * stiffness * away_m * away_m;
+    }
+    const double r = settings.probe_radius, r_m = r / settings.workspace.scale();
+    const BallIntegrals ball = integrate(patch, probe, r);
+    const double whole = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    const double weighted = std::max(ball.volume - ball.second / (r * r), 0.0);
+    return 0.5 * stiffness * r_m * r_m * std::log1p(weighted / (POTENTIAL_FLOOR * whole));
+}
+
 }  // namespace
 
 Contact contact(const ContactCase& one)
@@ -117,16 +134,16 @@ Contact contact(const ContactCase& one)
             step(settings, caps_of(device, one.is_broken), ReadResult::fresh, state, patch, now_ns, memory, *growth);
         if (is_first) memory.engagement = engaged, memory.has_begun = true;
         device.write(now.force_n, now.sequence);
-        result.gained_j = device.work_j();
         if (tick < ticks - 500) continue;
         lowest = std::min(lowest, device.true_position_m().z);
         highest = std::max(highest, device.true_position_m().z);
         least = std::min(least, now.force_n.z);
         most = std::max(most, now.force_n.z);
     }
-    // A tube that has drawn the hand in has given it the depth of its well, which it takes back on the way out.
-    const bool is_inside = std::abs(device.true_position_m().z) < begin_m;
-    if (one.is_tube && !one.is_held && is_inside) result.gained_j = 0.0;
+    result.is_inside = std::abs(device.true_position_m().z) < begin_m;
+    const double stiffness = stiffness_at_hand(settings, caps_of(device, one.is_broken), memory.sent);
+    result.gained_j =
+        device.work_j() - given_by_potential(settings, patch, stiffness, device.true_position_m(), memory.surface);
     result.swing_m = one.is_held ? highest - lowest : 0.0;
     result.force_swing_n = one.is_held ? most - least : 0.0;
     return result;
@@ -135,7 +152,8 @@ Contact contact(const ContactCase& one)
 void check_contacts(int count, uint32_t seed)
 {
     Chance dice{std::mt19937(seed)};
-    double most_gained = -1.0, most_swing = 0.0, most_force = 0.0;
+    double most_gained = -1.0, most_gained_inside = -1.0, most_swing = 0.0, most_force = 0.0;
+    int inside = 0;
     for (int i = 0; i < count; ++i) {
         // Thrown by nobody: nothing but the wall can take energy out of it.
         const ContactCase thrown{.has_friction = false,
@@ -144,7 +162,9 @@ void check_contacts(int count, uint32_t seed)
                                  .speed = dice.between(0.05, 0.3),
                                  .seed = uint32_t(i + 1),
                                  .is_tube = i % 2 == 0};
-        most_gained = std::max(most_gained, contact(thrown).gained_j);
+        const Contact one = contact(thrown);
+        most_gained = std::max(most_gained, one.gained_j);
+        if (thrown.is_tube && one.is_inside) most_gained_inside = std::max(most_gained_inside, one.gained_j), ++inside;
         if (i % 10 != 0) continue;
         const bool has_friction = i % 20 == 0;
         const ContactCase pushed{.stiffness = has_friction ? dice.between(50.0, 400.0) : dice.between(50.0, 250.0),
@@ -157,8 +177,9 @@ void check_contacts(int count, uint32_t seed)
         most_swing = std::max(most_swing, swung.swing_m);
         most_force = std::max(most_force, swung.force_swing_n);
     }
-    MESSAGE("worst of ", count, " contacts: ", 1e3 * most_gained, " mJ gained, ", 1e3 * most_swing, " mm and ",
-            most_force, " N of swing");
+    MESSAGE("worst of ", count, " contacts: ", 1e3 * most_gained, " mJ gained, ", 1e3 * most_gained_inside,
+            " mJ by the ", inside, " that stay in a tube; ", 1e3 * most_swing, " mm and ", most_force, " N of swing");
+    CHECK(inside >= count / 10);  // or nothing is known of them
     CHECK(most_gained <= 0.05e-3);
     CHECK(most_swing <= 0.11e-3);
     CHECK(most_force <= 0.3);
@@ -176,6 +197,17 @@ void check_contacts(int count, uint32_t seed)
     };
     CHECK(broken(false).gained_j > 0.05e-3);
     CHECK(broken(true).swing_m > 0.11e-3);
+    // A throw with half of the damping that stays in the tube: work alone cannot tell, as the well gives more.
+    const Contact drawn_in = contact({.damping = 0.0,
+                                      .has_friction = false,
+                                      .is_held = false,
+                                      .delay_ticks = 4,
+                                      .jitter_s = 0.0,
+                                      .speed = 0.1,
+                                      .seed = 1,
+                                      .is_tube = true,
+                                      .is_broken = true});
+    CHECK(drawn_in.gained_j > 0.05e-3);
 }
 
 void check_nonsense(int ticks, uint32_t seed)

@@ -7,7 +7,8 @@ namespace shvr {
 
 /// One throw at a wall, or a push into it: what the hand gained and whether it still swings at the end.
 struct Contact {
-    double gained_j = 0.0;
+    double gained_j = 0.0;   ///< beyond what the law's potential gives at the place where it ends
+    bool is_inside = false;  ///< it ends in contact
     double swing_m = 0.0;
     double force_swing_n = 0.0;
 };

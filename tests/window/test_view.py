@@ -204,7 +204,6 @@ class View(Window):
         self.do("key", "Page_Up", "key", "End", "key", "Home", pause_s=0.5)
         report = self.finish()
         self.assertGreater(report["servo"]["ticks"], 300)
-        self.assertGreater(report["relevance_ms"]["count"], 5)
         self.assertGreater(report["servo"]["relevance_age"]["count"], 100)
         self.assertTrue(any("Guidance on" in line for line in report["messages"]), report["messages"])
 

@@ -39,32 +39,24 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Cubes of 64 voxels, of 128 for large probes, and coarser levels for larger ones.
+/// As the window mirrors it.
 class HostRelevance {
 public:
     explicit HostRelevance(std::shared_ptr<const VolumeSource> source) : source_(std::move(source)) {}
     void operator()(const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) const
     {
-        const VolumeInfo& info = source_->info();
-        const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
-        int level = 0;
-        while (level + 1 < source_->levels() && radius / std::ldexp(finest, level) > LARGEST) ++level;
-        const glm::dvec3 spacing = info.spacing * std::ldexp(1.0, level);
-        const Size3 size = size_of_level(info.size, level);
-        const int64_t side = radius / std::ldexp(finest, level) > SMALL ? 128 : 64;
-        const RelevanceBits bits =
-            relevance_on_host(*source_, level, relevance_cube(point / spacing, size, side), threshold);
+        const RelevancePlace place = relevance_place(*source_, point, radius);
+        const RelevanceBits bits = relevance_on_host(*source_, place.level, place.box, threshold);
         patch.origin = glm::ivec3(bits.box.lower);
         patch.size = glm::ivec3(bits.box.size());
         patch.words_per_row = int32_t(bits.words_per_row);
-        patch.spacing = spacing;
-        patch.volume_size = glm::ivec3(size);
-        patch.level = level;
+        patch.spacing = place.spacing;
+        patch.volume_size = glm::ivec3(place.level_size);
+        patch.level = place.level;
         std::ranges::copy(bits.words, patch.words.begin());
     }
 
 private:
-    static constexpr double SMALL = 24.0, LARGEST = 48.0;  ///< radii, voxels, that leave the hand some way to go
     std::shared_ptr<const VolumeSource> source_;
 };
 

@@ -18,6 +18,7 @@ namespace {
 struct BenchCommandOptions {
     Common common;
     double seconds = 2.0;
+    std::string sweep, plot;
 };
 
 constexpr double SPACING_UM = 10.0;
@@ -161,6 +162,14 @@ Json run_servo(const std::vector<uint8_t>& scene, double seconds, LongWork& work
 void run_bench(const BenchCommandOptions& options)
 {
     LongWork work(options.common.quiet);
+    if (!options.sweep.empty()) {
+        static_cast<void>(work.begin("timing the proxy"));
+        const std::vector<std::string> rows = sweep_proxy(options.sweep, options.plot, work);
+        clear_progress();
+        if (options.common.json) return print({{"csv", options.sweep}, {"rows", rows.size()}});
+        for (const std::string& row : rows) say(options.common, row);
+        return;
+    }
     static_cast<void>(work.begin("timing the servo"));
     const std::vector<uint8_t> scene = make_scene();
     Json first, cases = Json::array();
@@ -226,8 +235,11 @@ void add_haptics_bench(CLI::App& haptics)
     command->add_option("--seconds", options->seconds, "How long the servo runs on the clock")
         ->check(CLI::Range(0.1, 3600.0))
         ->capture_default_str();
+    CLI::Option* sweep = command->add_option(
+        "--sweep", options->sweep, "Instead: speed against error of the proxy by points and exactly, to this CSV file");
+    command->add_option("--plot", options->plot, "The sweep as a picture, to this SVG file")->needs(sweep);
     add_output_options(*command, options->common);
-    command->footer("Example:\n  shvr haptics bench --seconds 10");
+    command->footer("Example:\n  shvr haptics bench --sweep proxy.csv --plot proxy.svg");
     command->callback([options] { run_bench(*options); });
 }
 

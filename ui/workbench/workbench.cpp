@@ -192,7 +192,11 @@ TouchSettings Workbench::touch_settings() const
             .target = document_->camera.target,
             .view_height =
                 pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target)),
-            .scale = document_->session.interaction.workspace_scale};
+            .scale = document_->session.interaction.workspace_scale,
+            .source = document_->source,
+            .offsets = &document_->annotator.document().density,
+            .mask = &document_->annotator.document().mask,
+            .voxels = document_->annotator.revision()};
 }
 
 void Workbench::follow_touch()

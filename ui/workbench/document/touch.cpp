@@ -11,8 +11,6 @@ namespace {
 constexpr double VOXEL_M = 0.00025;
 /// Width of a haptic device's workspace, mapped to the height of the view.
 constexpr double WORKSPACE_M = 0.12;
-/// Relevance is requested at this interval, so that it is never older than a few intervals.
-constexpr uint64_t ASK_EVERY_NS = 16'000'000;
 
 uint64_t now_ns()
 {
@@ -21,17 +19,48 @@ uint64_t now_ns()
     return uint64_t(time.tv_sec) * 1'000'000'000u + uint64_t(time.tv_nsec);
 }
 
+void publish(const MirroredRelevance& mirrored, Latest<RelevancePatch>& relevance)
+{
+    RelevancePatch& patch = relevance.writing();
+    patch.sequence = mirrored.sequence;
+    patch.time_ns = mirrored.true_at_ns;
+    patch.origin = glm::ivec3(mirrored.place.box.lower);
+    patch.size = glm::ivec3(mirrored.place.box.size());
+    patch.words_per_row = int32_t(mirrored.bits.words_per_row);
+    patch.spacing = mirrored.place.spacing;
+    patch.volume_size = glm::ivec3(mirrored.place.level_size);
+    patch.level = mirrored.place.level;
+    patch.settings = mirrored.settings;
+    std::ranges::copy(mirrored.bits.words, patch.words.begin());
+    relevance.publish();
+}
+
 }  // namespace
 
 Touch::Touch(Renderer& renderer) : renderer_(renderer), relevance_(renderer) {}
 
 void Touch::use(std::unique_ptr<HapticDevice> device, const std::string& name)
 {
-    servo_.reset();
     mouse_ = nullptr;
     is_mouse_ = false;
     device_name_ = name;
+    start_servo(std::move(device));
+}
+
+void Touch::start_servo(std::unique_ptr<HapticDevice> device)
+{
+    mirror_.reset();
+    servo_.reset();
     servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
+    Servo& servo = *servo_;
+    mirror_ = std::make_unique<RelevanceMirror>(RelevanceMirror::Ends{
+        .probe = [&servo]() -> std::optional<glm::dvec3> {
+            servo.place().take();
+            const ProbePlace& place = servo.place().value();
+            return place.is_known ? std::optional(place.point) : std::nullopt;
+        },
+        .publish = [&servo](const MirroredRelevance& mirrored) { publish(mirrored, servo.relevance()); },
+        .now_ns = now_ns});
 }
 
 Workspace Touch::mouse_workspace() const
@@ -78,10 +107,9 @@ void Touch::start_mouse()
     auto device = std::make_unique<SimulatedDevice>();
     mouse_ = device.get();
     state_ = {};
-    published_ns_ = 0;
     wish_ = probe_;
     send_wish(true);
-    servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
+    start_servo(std::move(device));
 }
 
 void Touch::send_settings(const TouchSettings& settings)
@@ -90,46 +118,61 @@ void Touch::send_settings(const TouchSettings& settings)
                                 .law = settings.law,
                                 .probe_radius = settings.probe_radius,
                                 .workspace = is_mouse_ ? mouse_workspace() : device_workspace(settings),
-                                .reset = resets_});
+                                .reset = resets_,
+                                .relevance_settings = chosen_.settings});
 }
 
-void Touch::ask(const TouchSettings& settings)
+void Touch::choose(const TouchSettings& settings)
 {
-    const uint64_t now = now_ns();
-    if (relevance_.is_asking() || now - asked_ns_ < ASK_EVERY_NS) return;
-    asked_ns_ = now;
-    relevance_.ask(probe_ / renderer_.volume().info().spacing, settings.threshold, now);
+    const bool is_same = chosen_.threshold == settings.threshold && chosen_.groups == settings.groups;
+    const bool has_new_voxels = chosen_.voxels != settings.voxels || chosen_.source != settings.source;
+    chosen_.settings += !is_same;
+    chosen_.threshold = settings.threshold;
+    chosen_.radius = settings.probe_radius;
+    if (has_new_voxels || !is_same) {  // copies share their bricks
+        const bool has_offsets = settings.offsets && settings.offsets->voxels() > 0;
+        chosen_.offsets = has_offsets ? std::make_shared<const DensityField>(*settings.offsets) : nullptr;
+        chosen_.mask = settings.groups && settings.mask ? std::make_shared<const Mask>(*settings.mask) : nullptr;
+    }
+    chosen_.groups = settings.groups;
+    chosen_.source = settings.source;
+    chosen_.voxels = settings.voxels;
+    mirror_->choose(chosen_);
 }
 
-void Touch::mirror()
+void Touch::ask()
 {
-    const std::optional<RelevanceBits> bits = relevance_.take();
-    if (!bits) return;
-    const VolumeInfo& info = renderer_.volume().info();
-    RelevancePatch& patch = servo_->relevance().writing();
-    patch.sequence = ++patches_;
-    patch.time_ns = bits->asked_ns;
-    patch.origin = glm::ivec3(bits->box.lower);
-    patch.size = glm::ivec3(bits->box.size());
-    patch.words_per_row = int32_t(bits->words_per_row);
-    patch.spacing = info.spacing;
-    patch.volume_size = glm::ivec3(info.size);
-    std::ranges::copy(bits->words, patch.words.begin());
-    servo_->relevance().publish();
-    published_ns_ = bits->asked_ns;
-    relevance_gpu_ms_ = bits->gpu_ms;
-    mirror_ms_.push_back(double(now_ns() - bits->asked_ns) * 1e-6);
+    if (asked_ && relevance_.is_asking()) {
+        std::optional<RelevanceBits> bits = relevance_.take();
+        if (!bits) return;
+        relevance_gpu_ms_ = bits->gpu_ms;
+        mirror_ms_.push_back(double(now_ns() - bits->asked_ns) * 1e-6);
+        mirror_->offer(*asked_, std::move(*bits));
+        asked_.reset();
+        return;
+    }
+    const std::optional<RelevanceMirror::Wanted> wanted = mirror_->wanted();
+    if (!wanted) return;
+    asked_ = wanted;
+    try {
+        relevance_.ask(wanted->place.box, wanted->threshold, now_ns());
+    } catch (const DeviceLost&) {
+        throw;
+    } catch (const Error&) {  // no room on the device for such a cube
+        mirror_->decline(*wanted);
+    }
 }
 
 double Touch::relevance_age_ms() const
 {
-    return servo_ && published_ns_ > 0 ? double(now_ns() - published_ns_) * 1e-6 : 0.0;
+    return servo_ && state_.relevance_time_ns > 0 ? double(now_ns() - state_.relevance_time_ns) * 1e-6 : 0.0;
 }
 
 void Touch::advance(const TouchSettings& settings)
 {
     if (settings.assistance && !servo_) start_mouse();
     if (is_mouse_ && !settings.assistance && servo_) {
+        mirror_.reset();
         servo_.reset();
         mouse_ = nullptr;
         wish_ = probe_;  // it stays where assistance left it
@@ -137,9 +180,11 @@ void Touch::advance(const TouchSettings& settings)
     resets_ += settings.assistance && !was_assisting_;  // users clear a fault by switching assistance on again
     was_assisting_ = settings.assistance;
     if (!servo_) return;
+    TouchSettings now = settings;
+    if (!settings.assistance) now.source = nullptr;  // nothing is computed
+    choose(now);
     send_settings(settings);
-    mirror();
-    if (settings.assistance) ask(settings);
+    if (settings.assistance) ask();
     if (servo_->state().take()) {
         state_ = servo_->state().value();
         if (state_.ticks > 0) probe_ = state_.step.probe;

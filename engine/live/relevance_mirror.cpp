@@ -1,0 +1,218 @@
+#include "engine/live/relevance_mirror.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "engine/annotation/work/work_offsets.h"
+
+namespace shvr {
+
+RelevanceMirror::RelevanceMirror(Ends ends) : ends_(std::move(ends))
+{
+    SHVR_CHECK(ends_.probe && ends_.publish && ends_.now_ns);
+    thread_ = std::thread(&RelevanceMirror::run, this);
+    ::pthread_setname_np(thread_.native_handle(), "relevance");
+}
+
+RelevanceMirror::~RelevanceMirror()
+{
+    {
+        const std::scoped_lock lock(mutex_);
+        ends_now_ = true;
+    }
+    woken_.notify_all();
+    thread_.join();
+}
+
+void RelevanceMirror::choose(RelevanceChoice choice)
+{
+    auto shared = std::make_shared<const RelevanceChoice>(std::move(choice));
+    const std::scoped_lock lock(mutex_);
+    choice_.swap(shared);
+}
+
+std::optional<RelevanceMirror::Wanted> RelevanceMirror::wanted() const
+{
+    const std::scoped_lock lock(mutex_);
+    return wanted_;
+}
+
+void RelevanceMirror::offer(const Wanted& wanted, RelevanceBits bits)
+{
+    {
+        const std::scoped_lock lock(mutex_);
+        offered_ = Offered{wanted, std::move(bits)};
+        is_woken_ = true;
+    }
+    woken_.notify_all();
+}
+
+void RelevanceMirror::decline(const Wanted& wanted)
+{
+    {
+        const std::scoped_lock lock(mutex_);
+        declined_ = wanted;
+        is_woken_ = true;
+    }
+    woken_.notify_all();
+}
+
+std::string RelevanceMirror::trouble() const
+{
+    const std::scoped_lock lock(mutex_);
+    return trouble_;
+}
+
+uint64_t RelevanceMirror::made_on_host() const
+{
+    const std::scoped_lock lock(mutex_);
+    return made_on_host_;
+}
+
+// ---- The thread -----------------------------------------------------------------------------------------------------
+
+void RelevanceMirror::run()
+{
+    while (true) {
+        {
+            const std::scoped_lock lock(mutex_);
+            if (ends_now_) return;
+            now_ = choice_;
+        }
+        const uint64_t now_ns = ends_.now_ns();
+        if (now_ && now_->source) turn(now_ns);
+        sleep_until(now_ns + TURN_NS);
+    }
+}
+
+void RelevanceMirror::sleep_until(uint64_t until_ns)
+{
+    if (ends_.wait) return ends_.wait(until_ns);
+    const uint64_t now_ns = ends_.now_ns();
+    std::unique_lock lock(mutex_);
+    if (until_ns > now_ns)
+        woken_.wait_for(lock, std::chrono::nanoseconds(until_ns - now_ns), [this] { return ends_now_ || is_woken_; });
+    is_woken_ = false;
+}
+
+bool RelevanceMirror::is_of(const Wanted& wanted) const
+{
+    return held_.sequence > 0 && held_.place == wanted.place && held_.threshold == wanted.threshold &&
+           held_.settings == wanted.settings && held_.voxels == wanted.voxels;
+}
+
+void RelevanceMirror::hold(const Wanted& wanted, RelevanceBits bits, bool is_from_host)
+{
+    if (now_->groups && now_->mask) limit_to_groups(*now_->mask, *now_->groups, bits);
+    held_.place = wanted.place;
+    held_.bits = std::move(bits);
+    ++held_.sequence;
+    held_.settings = wanted.settings;
+    held_.voxels = wanted.voxels;
+    held_.threshold = wanted.threshold;
+    held_.is_from_host = is_from_host;
+}
+
+void RelevanceMirror::take_offer()
+{
+    std::optional<Offered> offered;
+    {
+        const std::scoped_lock lock(mutex_);
+        offered.swap(offered_);
+    }
+    // Only what is waited for: the host may have answered meanwhile, and a person chosen anew.
+    if (!offered || waiting_for_ != offered->wanted || offered->bits.box != offered->wanted.place.box) return;
+    if (offered->wanted.settings == now_->settings && offered->wanted.voxels == now_->voxels) {
+        hold(offered->wanted, std::move(offered->bits), false);
+        waiting_for_.reset();
+    }
+}
+
+void RelevanceMirror::set_wanted(const std::optional<Wanted>& wanted)
+{
+    const std::scoped_lock lock(mutex_);
+    wanted_ = wanted;
+}
+
+void RelevanceMirror::turn(uint64_t now_ns)
+{
+    take_offer();
+    const std::optional<glm::dvec3> probe = ends_.probe();
+    if (!probe || !std::isfinite(probe->x + probe->y + probe->z)) return;
+    const double radius = now_->radius;
+    const Wanted best{relevance_place(*now_->source, *probe, radius), now_->threshold, now_->settings, now_->voxels};
+
+    // A new cube is due before the ball reaches the border: half of the way that the cube leaves it.
+    const double finest = std::min({best.place.spacing.x, best.place.spacing.y, best.place.spacing.z});
+    const double slack = 0.5 * double(best.place.box.size().x) * finest - radius;
+    const bool is_current = is_of({held_.place, best.threshold, best.settings, best.voxels});
+    const bool suits =
+        is_current && held_.place.level == best.place.level && held_.place.box.size() == best.place.box.size();
+    const bool is_near = suits && held_.place.covers(*probe, radius + std::max(0.5 * slack, 0.0));
+    if (is_near || is_of(best)) {
+        waiting_for_.reset();
+        set_wanted({});
+    } else {
+        // What is waited for is the same while it would still do.
+        const bool still_does = waiting_for_ && waiting_for_->threshold == best.threshold &&
+                                waiting_for_->settings == best.settings && waiting_for_->voxels == best.voxels &&
+                                waiting_for_->place.level == best.place.level &&
+                                waiting_for_->place.box.size() == best.place.box.size() &&
+                                waiting_for_->place.covers(*probe, radius + std::max(0.25 * slack, 0.0));
+        if (!still_does) {
+            if (!waiting_for_) waiting_since_ns_ = now_ns;
+            waiting_for_ = best;
+        }
+        const bool asks_device = now_->has_device && best.place.level == 0;
+        set_wanted(asks_device ? waiting_for_ : std::nullopt);
+        const bool is_declined = [&] {
+            const std::scoped_lock lock(mutex_);
+            return declined_ == waiting_for_;
+        }();
+        const bool may_try = failed_ns_ == 0 || now_ns - failed_ns_ >= TROUBLE_NS;
+        // While the held bits leave the hand some way, the device may take its time.
+        const bool is_urgent = !is_current || !held_.place.covers(*probe, radius + std::max(0.25 * slack, 0.0));
+        const uint64_t patience_ns = is_urgent ? DEVICE_NS : 4 * DEVICE_NS;
+        if (may_try && (!asks_device || is_declined || now_ns - waiting_since_ns_ >= patience_ns))
+            make_on_host(best, now_ns);
+    }
+    if (held_.sequence == 0) return;
+    if (held_.settings == now_->settings && held_.voxels == now_->voxels && held_.threshold == now_->threshold)
+        held_.true_at_ns = now_ns;
+    ends_.publish(held_);
+}
+
+void RelevanceMirror::make_on_host(const Wanted& wanted, uint64_t now_ns)
+{
+    std::string trouble;
+    try {
+        hold(wanted, relevance_on_host(*source_with_offsets(), wanted.place.level, wanted.place.box, wanted.threshold),
+             true);
+        waiting_for_.reset();
+        failed_ns_ = 0;
+    } catch (const std::exception& failure) {
+        trouble = failure.what();  // the force fades, as with a device that does not answer
+        failed_ns_ = now_ns;
+    }
+    const std::scoped_lock lock(mutex_);
+    wanted_.reset();
+    trouble_ = std::move(trouble);
+    made_on_host_ += trouble_.empty();
+}
+
+std::shared_ptr<const VolumeSource> RelevanceMirror::source_with_offsets()
+{
+    if (!now_->offsets || now_->offsets->voxels() == 0) return now_->source;
+    if (!with_offsets_ || offsets_of_it_ != now_->offsets) {
+        with_offsets_ = with_offsets(now_->source, *now_->offsets);
+        offsets_of_it_ = now_->offsets;
+    }
+    return with_offsets_;
+}
+
+}  // namespace shvr
