@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
+
+#include "haptics/simulated_device.h"
 
 namespace shvr::ui {
 
@@ -9,8 +12,6 @@ namespace {
 
 /// One voxel under the hand: the scale at which the force law's stiffness was chosen (micro-CT of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
-/// Width of a haptic device's workspace, mapped to the height of the view.
-constexpr double WORKSPACE_M = 0.12;
 /// Relevance is requested at this interval, so that it is never older than a few intervals.
 constexpr uint64_t ASK_EVERY_NS = 16'000'000;
 
@@ -21,76 +22,157 @@ uint64_t now_ns()
     return uint64_t(time.tv_sec) * 1'000'000'000u + uint64_t(time.tv_nsec);
 }
 
+bool is_same(const Workspace& a, const Workspace& b)
+{
+    return a.to_volume == b.to_volume && a.origin == b.origin;
+}
+
+bool is_same(const ForceSettings& a, const ForceSettings& b)
+{
+    return a.assistance == b.assistance && a.law == b.law && a.probe_radius == b.probe_radius &&
+           a.stiffness == b.stiffness && a.damping == b.damping && is_same(a.workspace, b.workspace) &&
+           a.reset == b.reset && a.mode == b.mode && a.to_camera == b.to_camera && a.surface_share == b.surface_share &&
+           a.movement_scale == b.movement_scale && a.strength == b.strength && a.let_go == b.let_go &&
+           a.relevance_settings == b.relevance_settings;
+}
+
+bool is_same(const TapOrder& a, const TapOrder& b)
+{
+    return is_same(a.settings.force, b.settings.force) && a.settings.threshold == b.settings.threshold &&
+           a.plane.is_on == b.plane.is_on && a.plane.normal == b.plane.normal && a.plane.point_m == b.plane.point_m &&
+           a.plane.count == b.plane.count && a.recording == b.recording;
+}
+
 }  // namespace
 
 Touch::Touch(Renderer& renderer) : renderer_(renderer), relevance_(renderer) {}
 
-void Touch::use(std::unique_ptr<HapticDevice> device, const std::string& name)
+void Touch::start(std::shared_ptr<HapticDevice> device)
+{
+    servo_.reset();
+    sent_.reset();
+    state_ = {};
+    tap_ = {};
+    published_ns_ = 0;
+    servo_ = std::make_unique<TappedServo>(std::move(device));
+}
+
+void Touch::use(std::shared_ptr<HapticDevice> device, bool moves_view)
+{
+    if (device == device_ && moves_view == moves_view_) return;
+    servo_.reset();
+    puck_.reset();
+    puck_state_ = {};
+    mouse_ = nullptr;
+    wish_ = probe_;
+    device_ = std::move(device);
+    moves_view_ = moves_view && device_;
+    if (moves_view_)
+        puck_ = std::make_unique<TappedServo>(device_);
+    else if (device_)
+        start(device_);
+}
+
+void Touch::start_mouse()
+{
+    auto device = std::make_shared<SimulatedDevice>();
+    mouse_ = device.get();
+    wish_ = probe_;
+    send_wish(true);
+    start(std::move(device));
+}
+
+void Touch::stop_mouse()
 {
     servo_.reset();
     mouse_ = nullptr;
-    is_mouse_ = false;
-    device_name_ = name;
-    servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
+    wish_ = probe_;  // it stays where assistance left it
 }
 
-Workspace Touch::mouse_workspace() const
+Workspace Touch::workspace(const TouchSettings& settings) const
 {
+    if (!is_mouse()) return workspace_in_view(settings.camera, settings.view_height, settings.scale);
     const VolumeInfo& info = renderer_.volume().info();
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-Workspace Touch::device_workspace(const TouchSettings& settings)
-{
-    const CameraAxes& axes = settings.axes;
-    return {.to_volume =
-                glm::dmat3(axes.right, axes.up, -axes.forward) * (settings.scale * settings.view_height / WORKSPACE_M),
-            .origin = settings.target};
-}
-
+/// A plane lies where the probe is put.
 void Touch::place(const glm::dvec3& point)
 {
+    if (plane_ != TouchPlane::none) on_plane_ = point;
     wish_ = probe_ = point;
     send_wish(true);
 }
 
 void Touch::wish(const glm::dvec3& point)
 {
-    if (!is_mouse_) return;  // the device's hand is elsewhere
-    wish_ = point;
+    if (!is_mouse()) return;  // the device's hand is elsewhere
+    wish_ = in_plane(plane_, on_plane_, point);
     if (servo_)
         send_wish(false);
     else
-        probe_ = point;
+        probe_ = wish_;
 }
 
 void Touch::send_wish(bool jump)
 {
     if (!mouse_) return;
     jumps_ += jump;
-    const Workspace space = mouse_workspace();
+    const Workspace space = workspace({});
     mouse_->wish().publish({.position_m = (wish_ - space.origin) / space.scale(), .buttons = 0, .jump = jumps_});
 }
 
-void Touch::start_mouse()
+uint32_t Touch::buttons() const
 {
-    auto device = std::make_unique<SimulatedDevice>();
-    mouse_ = device.get();
-    state_ = {};
-    published_ns_ = 0;
-    wish_ = probe_;
-    send_wish(true);
-    servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
+    return puck_ ? puck_state_.device.buttons : is_mouse() ? 0 : state_.device.buttons;
 }
 
+bool Touch::is_realtime() const
+{
+    return servo_ ? servo_->servo.is_realtime() : puck_ && puck_->servo.is_realtime();
+}
+
+// ---- Turns
+
+void Touch::hold_to_plane(const TouchSettings& settings)
+{
+    if (settings.guide.feel.plane == plane_) return;
+    plane_ = settings.guide.feel.plane;
+    on_plane_ = probe_;
+    ++planes_;
+}
+
+/// Those that the servo has already are not sent again, so that a recording holds changes alone.
 void Touch::send_settings(const TouchSettings& settings)
 {
-    servo_->settings().publish({.assistance = settings.assistance,
-                                .law = settings.law,
-                                .probe_radius = settings.probe_radius,
-                                .workspace = is_mouse_ ? mouse_workspace() : device_workspace(settings),
-                                .reset = resets_});
+    const GuideSettings& guide = settings.guide;
+    if (threshold_ != guide.threshold || groups_ != guide.feel.groups) {
+        threshold_ = guide.threshold;
+        groups_ = guide.feel.groups;
+        ++relevance_settings_;
+    }
+    TapOrder order;
+    order.settings.threshold = guide.threshold;
+    order.settings.force = {.assistance = guide.assists && !awaits_relevance_,
+                            .law = guide.law,
+                            .probe_radius = guide.probe_radius,
+                            .stiffness = guide.feel.stiffness,
+                            .damping = guide.feel.damping,
+                            .workspace = workspace(settings),
+                            .reset = resets_,
+                            .mode = guide.mode,
+                            .to_camera = -axes_of(settings.camera).forward,
+                            .surface_share = guide.feel.surface_share,
+                            .movement_scale = is_mouse() ? 1.0 : settings.scale,
+                            .strength = guide.feel.strength,
+                            .let_go = settings.lets_go,
+                            .relevance_settings = relevance_settings_};
+    order.plane = plane_of(plane_, on_plane_, order.settings.force.workspace, planes_);
+    order.recording = recorder_ ? recorder_->number() : 0;
+    if (sent_ && is_same(*sent_, order)) return;
+    sent_ = order;
+    servo_->link->orders().publish(order);
 }
 
 void Touch::ask(const TouchSettings& settings)
@@ -98,15 +180,18 @@ void Touch::ask(const TouchSettings& settings)
     const uint64_t now = now_ns();
     if (relevance_.is_asking() || now - asked_ns_ < ASK_EVERY_NS) return;
     asked_ns_ = now;
-    relevance_.ask(probe_ / renderer_.volume().info().spacing, settings.threshold, now);
+    asked_settings_ = relevance_settings_;
+    relevance_.ask(probe_ / renderer_.volume().info().spacing, settings.guide.threshold, now);
 }
 
-void Touch::mirror()
+/// What was asked with other settings is dropped: the servo would not use it.
+void Touch::mirror(const TouchSettings& settings)
 {
-    const std::optional<RelevanceBits> bits = relevance_.take();
-    if (!bits) return;
+    std::optional<RelevanceBits> bits = relevance_.take();
+    if (!bits || asked_settings_ != relevance_settings_) return;
+    if (settings.mask) keep_felt_groups(bits->words, bits->box, bits->words_per_row, *settings.mask, groups_);
     const VolumeInfo& info = renderer_.volume().info();
-    RelevancePatch& patch = servo_->relevance().writing();
+    RelevancePatch& patch = servo_->servo.relevance().writing();
     patch.sequence = ++patches_;
     patch.time_ns = bits->asked_ns;
     patch.origin = glm::ivec3(bits->box.lower);
@@ -114,8 +199,11 @@ void Touch::mirror()
     patch.words_per_row = int32_t(bits->words_per_row);
     patch.spacing = info.spacing;
     patch.volume_size = glm::ivec3(info.size);
+    patch.level = 0;
+    patch.settings = asked_settings_;
     std::ranges::copy(bits->words, patch.words.begin());
-    servo_->relevance().publish();
+    servo_->servo.relevance().publish();
+    awaits_relevance_ = false;
     published_ns_ = bits->asked_ns;
     relevance_gpu_ms_ = bits->gpu_ms;
     mirror_ms_.push_back(double(now_ns() - bits->asked_ns) * 1e-6);
@@ -126,24 +214,53 @@ double Touch::relevance_age_ms() const
     return servo_ && published_ns_ > 0 ? double(now_ns() - published_ns_) * 1e-6 : 0.0;
 }
 
-void Touch::advance(const TouchSettings& settings)
+void Touch::receive()
 {
-    if (settings.assistance && !servo_) start_mouse();
-    if (is_mouse_ && !settings.assistance && servo_) {
-        servo_.reset();
-        mouse_ = nullptr;
-        wish_ = probe_;  // it stays where assistance left it
-    }
-    resets_ += settings.assistance && !was_assisting_;  // users clear a fault by switching assistance on again
-    was_assisting_ = settings.assistance;
-    if (!servo_) return;
-    send_settings(settings);
-    mirror();
-    if (settings.assistance) ask(settings);
-    if (servo_->state().take()) {
-        state_ = servo_->state().value();
+    if (servo_->servo.state().take()) {
+        state_ = servo_->servo.state().value();
         if (state_.ticks > 0) probe_ = state_.step.probe;
     }
+    if (servo_->link->state().take()) tap_ = servo_->link->state().value();
+    if (recorder_) recorder_->advance(*servo_->link);
+}
+
+void Touch::advance(const TouchSettings& settings)
+{
+    const bool assists = settings.guide.assists;
+    hold_to_plane(settings);
+    if (is_mouse()) {
+        if ((assists || recorder_) && !servo_) start_mouse();
+        if (!assists && !recorder_ && servo_) stop_mouse();
+    }
+    if (puck_ && puck_->servo.state().take()) puck_state_ = puck_->servo.state().value();
+    resets_ += assists && !was_assisting_;  // users clear a fault by switching assistance on again
+    was_assisting_ = assists;
+    if (!servo_) return;
+    send_settings(settings);
+    mirror(settings);
+    if (assists) ask(settings);
+    receive();
+}
+
+// ---- Recording
+
+void Touch::begin_recording(const std::filesystem::path& path)
+{
+    recorder_ = std::make_unique<StylusRecorder>(path, renderer_.volume().info().unit, ++recordings_);
+    awaits_relevance_ = true;
+    relevance_.drop();
+    if (is_mouse())
+        start_mouse();
+    else
+        start(device_);
+}
+
+Trace Touch::end_recording()
+{
+    const std::unique_ptr<StylusRecorder> recorder = std::exchange(recorder_, nullptr);
+    awaits_relevance_ = false;
+    if (servo_) recorder->advance(*servo_->link);
+    return recorder->take(state_.caps);
 }
 
 }  // namespace shvr::ui
