@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "engine/annotation/brush.h"
 #include "engine/formats/open_volume.h"
@@ -67,12 +68,47 @@ constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
 }
 
 /// How the probe is pulled to what is relevant: haptics/proxy.h.
-enum class Guidance { potential, mean };
-inline constexpr Spelling<Guidance> GUIDANCES[] = {{Guidance::potential, "potential"}, {Guidance::mean, "mean"}};
+enum class Guidance { potential, mean, thesis };
+inline constexpr Spelling<Guidance> GUIDANCES[] = {
+    {Guidance::potential, "potential"}, {Guidance::mean, "mean"}, {Guidance::thesis, "thesis"}};
 constexpr std::span<const Spelling<Guidance>> spellings_of(Guidance)
 {
     return GUIDANCES;
 }
+
+/// What of it pulls the probe: haptics/settings.h.
+enum class TouchMode { proximity, surface, object };
+inline constexpr Spelling<TouchMode> TOUCH_MODES[] = {
+    {TouchMode::proximity, "proximity"}, {TouchMode::surface, "surface"}, {TouchMode::object, "object"}};
+constexpr std::span<const Spelling<TouchMode>> spellings_of(TouchMode)
+{
+    return TOUCH_MODES;
+}
+
+/// The plane of voxels that the probe stays in, by the axis across it.
+enum class TouchPlane { none, x, y, z };
+inline constexpr Spelling<TouchPlane> TOUCH_PLANES[] = {
+    {TouchPlane::none, "none"}, {TouchPlane::x, "x"}, {TouchPlane::y, "y"}, {TouchPlane::z, "z"}};
+constexpr std::span<const Spelling<TouchPlane>> spellings_of(TouchPlane)
+{
+    return TOUCH_PLANES;
+}
+
+/// How a hand feels the volume and is helped, with whatever device.
+struct FeelSettings {
+    TouchMode mode = TouchMode::proximity;
+    double strength = 1.0;        ///< share of the force
+    double surface_share = 0.4;   ///< of the probe's ball: above it a surface holds
+    double stiffness = 300.0;     ///< N/m of a probe of 2.5 mm in the hand
+    double damping = 1.0;         ///< N s/m
+    std::vector<uint8_t> groups;  ///< those that are felt, ascending, 0: what no group holds; empty: everything
+    bool at_proxy = false;        ///< tools act at the middle of what is touched
+    bool overlap_radius = false;  ///< new nodes are as wide as the ball's filling tells
+    bool to_nodes = false;        ///< tools act at a node that lies in the ball
+    TouchPlane plane = TouchPlane::none;
+    bool operator==(const FeelSettings&) const = default;
+};
+inline constexpr double MAX_STIFFNESS = 1000.0, MAX_FELT_DAMPING = 1.2;
 
 /// The probe and the brush. Values not given here are chosen for the volume.
 struct ProbeSettings {
@@ -88,6 +124,7 @@ struct ProbeSettings {
     Tool tool = Tool::turn;
     bool guided = false;
     Guidance guidance = Guidance::potential;
+    FeelSettings touch;
     std::optional<glm::dvec3> color;           ///< linear light; default: its group's
     double opacity = 1.0;                      ///< of its ball
     bool silhouette = true;                    ///< its outline over whatever hides it

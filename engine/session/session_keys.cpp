@@ -3,6 +3,7 @@
 
 #include "engine/session/session_keys.h"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
@@ -242,6 +243,27 @@ void annotation_fields(Fields& f, Session& session)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
 }
 
+/// Groups by number, each once; none: everything is felt.
+void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
+{
+    const auto read = [&](const JsonNode& node) {
+        groups.clear();
+        for (const JsonNode& each : node.elements()) groups.push_back(uint8_t(each.whole(0, 255)));
+        std::ranges::sort(groups);
+        groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+    };
+    const auto written = [&]() -> std::optional<std::string> {
+        if (groups.empty()) return std::nullopt;
+        std::string text;
+        for (const uint8_t group : groups) text += sentence(text.empty() ? "[" : ",", int(group));
+        return text + "]";
+    };
+    f.other("groups", read, written,
+            {.meaning = "the groups that are felt; 0: what no group holds",
+             .allowed = "numbers from 0 to 255",
+             .standard = "none: everything"});
+}
+
 }  // namespace
 
 void fields(Fields& f, Groups& groups)
@@ -260,6 +282,28 @@ void fields(Fields& f, Groups& groups)
                .standard = "one of ten colours in turn"});
     if (const std::optional<uint8_t> group = group_in_cycle(groups))
         f.check(sentence("groups.", int{*group}, ".parent"), false, "a group other than itself and those below it");
+}
+
+void fields(Fields& f, FeelSettings& touch)
+{
+    f.choice("mode", touch.mode,
+             {"what pulls the probe: all that is felt in its ball (proximity), a surface that holds it (surface), or "
+              "the object first touched (object)"});
+    f.number("strength", touch.strength, SHARE, {"of the force"});
+    f.number("surface_share", touch.surface_share, above_zero(0.01, 1.0),
+             {"of the probe's ball: a surface holds where more of it is felt"});
+    f.number("stiffness", touch.stiffness, {0.0, MAX_STIFFNESS},
+             {.meaning = "of the pull, for a probe of 2.5 mm in the hand; a device's own limit holds besides",
+              .allowed = "N/m, 0 ... 1000"});
+    f.number("damping", touch.damping, {0.0, MAX_FELT_DAMPING},
+             {.meaning = "of the hand in contact", .allowed = "N s/m, 0 ... 1.2"});
+    felt_groups_field(f, touch.groups);
+    f.flag("at_proxy", touch.at_proxy,
+           {"tools paint and trace at the middle of what the probe touches, where it is guided"});
+    f.flag("overlap_radius", touch.overlap_radius,
+           {"new nodes get the radius of a tube that fills the probe's ball as much as what is felt does"});
+    f.flag("to_nodes", touch.to_nodes, {"tools act at the nearest node that lies in the probe's ball"});
+    f.choice("plane", touch.plane, {"the probe stays in its plane of voxels across that axis"});
 }
 
 void fields(Fields& f, ProbeSettings& probe)
@@ -293,6 +337,7 @@ void fields(Fields& f, ProbeSettings& probe)
     f.choice("tool", probe.tool, {"what the left mouse button does in the window"});
     f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"the law that pulls it"});
+    f.section("touch", probe.touch);
     f.number("node_radius", probe.node_radius_voxels, above_zero(1e-3, 127.0),
              {.meaning = "of new nodes of the trace, along x",
               .allowed = "voxels, above 0 ... 127",

@@ -24,6 +24,7 @@ void setting_fields(Fields& f, Session& session);
 void kept_fields(Fields& f, Session& session);
 void fields(Fields& f, Groups& groups);
 void fields(Fields& f, SurfaceLook& surface);
+void fields(Fields& f, FeelSettings& touch);
 void fields(Fields& f, ProbeSettings& probe);
 void fields(Fields& f, CutBox& cut);
 void fields(Fields& f, InteractionSettings& interaction);

@@ -72,6 +72,8 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
         if (entry.is_regular_file() && entry.path().extension() != ".journal" && entry.path().extension() != ".lock")
             state["file " + entry.path().filename().string()] = read_text(entry.path(), int64_t{1} << 30);
     if (!model.is_open) return state;
+    state["hand"] =
+        sentence(model.hand->is_let_go, ' ', model.hand->is_grabbing, ' ', model.hand->recorded_s.has_value());
     Session session = model.session;
     for (const char* section : {"transfer_function", "groups", "unpainted", "light", "blend", "cut", "render", "view",
                                 "interaction", "probe"}) {

@@ -19,6 +19,7 @@
 #include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/sight/words.h"
+#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 
@@ -265,12 +266,32 @@ void trace_menu(const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
+void hand_menu(const Model& model, Actions& actions)
+{
+    if (!ImGui::BeginMenu("The hand")) return;
+    const FeelSettings& touch = model.session.probe.touch;
+    item("next_mode", model, actions);
+    item("let_go", model, actions, model.hand && model.hand->is_let_go);
+    item("stronger", model, actions);
+    item("weaker", model, actions);
+    ImGui::Separator();
+    item("at_proxy", model, actions, touch.at_proxy);
+    item("overlap_radius", model, actions, touch.overlap_radius);
+    item("to_nodes", model, actions, touch.to_nodes);
+    item("next_plane", model, actions);
+    ImGui::Separator();
+    item("find_devices", model, actions);
+    item("record_stylus", model, actions, model.hand && model.hand->recorded_s);
+    ImGui::EndMenu();
+}
+
 void probe_menu(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginMenu("Probe", model.is_open)) return;
     item("probe_onto", model, actions);
     item("guide", model, actions, model.session.probe.guided);
     item("next_guidance", model, actions);
+    hand_menu(model, actions);
     item("shell", model, actions, model.session.probe.shell);
     item("silhouette", model, actions, model.session.probe.silhouette);
     item("arrow", model, actions, model.session.probe.arrow);

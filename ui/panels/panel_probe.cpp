@@ -196,107 +196,11 @@ void painting(const Model& model, Actions& actions)
     preview(model, actions);
 }
 
-// ---- Feeling
-
-void guidance(const Model& model, Actions& actions)
-{
-    bool assists = model.session.probe.guided;
-    if (ImGui::Checkbox(sentence("Guidance", key_in_brackets("guide", model.keymap), "##guide").c_str(), &assists))
-        set(actions, model, [&](Session& s) { s.probe.guided = assists; });
-    hint("Pulls the probe towards the middle of what it touches, so that it stays on a root while you move along.");
-
-    label("Haptic threshold");
-    double intensity = model.haptic_threshold();
-    const bool is_other = intensity_slider("##felt", model, intensity);
-    if (!resets("probe.haptic_threshold", actions) && is_other)
-        set(actions, model, [&](Session& s) { s.probe.haptic_threshold = intensity; });
-    hint(
-        "Voxels at or above this intensity are felt, and guide the probe. The line \"feel\" in the transfer function.");
-
-    label("Kind");
-    const Guidance guidance = model.session.probe.guidance;
-    if (ImGui::RadioButton("smooth", guidance == Guidance::potential))
-        set(actions, model, [](Session& s) { s.probe.guidance = Guidance::potential; });
-    hint("The pull grows from nothing at the first touch, and never drives the hand by itself.");
-    ImGui::SameLine();
-    if (ImGui::RadioButton("to the mean", guidance == Guidance::mean))
-        set(actions, model, [](Session& s) { s.probe.guidance = Guidance::mean; });
-    hint(sentence("Pulls to the mean of what lies in the probe. ", name_with_key("next_guidance", model.keymap), ".")
-             .c_str());
-
-    text_label("Moved by");
-    ImGui::TextUnformatted(model.device_name.data(), model.device_name.data() + model.device_name.size());
-}
-
-struct FlagText {
-    uint32_t flag;
-    const char* text;
-};
-constexpr FlagText FLAGS[] = {
-    {FORCE_NO_DEVICE, "The device does not answer, is unplugged or is not calibrated."},
-    {FORCE_NO_REGION, "The probe is too large to feel, or the felt region is out of date."},
-    {FORCE_FAULT, "Stopped for safety after an impossible reading. Switch guidance off and on."},
-    {FORCE_CLAMPED, "At the strongest force the device can give."},
-    {FORCE_ENGAGING, "Fading in."},
-};
-
-void touch(const Model& model, const ServoState& servo)
-{
-    text_label("Touch");
-    ImGui::Text("%s, %.2f N", servo.step.in_contact ? "in contact" : "not in contact", glm::length(servo.step.force_n));
-    hint("Whether the probe touches something, and the force on the hand; with the mouse, the force that it would be.");
-    text_label("Felt region");
-    ImGui::Text("%.0f ms old", model.relevance_age_ms);
-    hint("Age of the region around the probe that is felt. Above 50 ms the force fades out.");
-    if (!model.session.probe.guided) return;
-    for (const FlagText& flag : FLAGS) {
-        if (!(servo.step.flags & flag.flag)) continue;
-        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-        ImGui::TextWrapped("%s", flag.text);
-        ImGui::PopStyleColor();
-    }
-}
-
-/// Logarithmic, so that one late tick in a million is visible.
-void lateness_plot(const TimeHistogram& lateness)
-{
-    std::array<float, TimeHistogram::BINS> heights{};
-    for (size_t bin = 0; bin < heights.size(); ++bin) heights[bin] = std::log1p(float(lateness.counts[bin]));
-    const ImVec2 size{ImGui::GetContentRegionAvail().x, 2.2f * ImGui::GetFontSize()};
-    // A disabled plot does not show its own tooltip, which would give the logarithms.
-    ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
-    ImGui::BeginDisabled();
-    ImGui::PlotHistogram("##lateness", heights.data(), int(heights.size()), 0, nullptr, 0.0f, FLT_MAX, size);
-    ImGui::EndDisabled();
-    ImGui::PopStyleVar();
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-    ImGui::SetTooltip(
-        "How late ticks began: the first bar below 1 \u00b5s, each further one twice as late;\n"
-        "heights are logarithmic. Half below %.0f \u00b5s, 99.9 %% below %.0f \u00b5s, worst %.3f ms.",
-        lateness.quantile_us(0.5), lateness.quantile_us(0.999), double(lateness.worst_ns) * 1e-6);
-}
-
-void servo_panel(const ServoState& servo)
-{
-    text_label("Servo");
-    ImGui::Text("%llu ticks, %llu late", static_cast<unsigned long long>(servo.ticks),
-                static_cast<unsigned long long>(servo.late_ticks));
-    hint(
-        "The force is updated a thousand times a second; a tick is late if it began more than a period after its "
-        "time.");
-    lateness_plot(servo.lateness);
-}
-
 }  // namespace
 
 void probe_panel(const Model& model, Actions& actions)
 {
     painting(model, actions);
-    ImGui::Separator();
-    guidance(model, actions);
-    if (!model.servo) return;
-    touch(model, *model.servo);
-    servo_panel(*model.servo);
 }
 
 }  // namespace shvr::ui

@@ -24,6 +24,7 @@ constexpr PanelBody BODIES[] = {
     {"transfer_function", transfer_function_panel},
     {"groups", groups_panel},
     {"probe", probe_panel},
+    {"touch", touch_panel},
     {"trace", trace_panel},
     {"trace_list", trace_list_panel},
     {"light", light_panel},

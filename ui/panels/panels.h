@@ -26,6 +26,9 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
 
 // What panels show, each in its own file; which there are and where is in ui/workbench/appearance/layout.h.
 void probe_panel(const Model& model, Actions& actions);
+void touch_panel(const Model& model, Actions& actions);
+/// In it: the devices that are there, and how the one in use fares.
+void device_section(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);

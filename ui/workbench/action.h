@@ -292,6 +292,31 @@ struct ShowFullScreen {
 };
 struct Quit {};
 
+// ---- The hand. Devices are those of haptics/devices; what is chosen is kept for all scans.
+struct LetGo {  ///< no force from the next tick on, until it is switched off again
+    bool on = true;
+};
+struct GrabVolume {  ///< the volume moves and turns with the stylus until released; the probe stays on its voxel
+    bool on = false;
+};
+struct UseDevice {
+    std::string device;  ///< id of a listed one; empty: the first that can be used, whatever is plugged in
+};
+struct FindDevices {};      ///< looks again for what is plugged in
+struct CalibrateDevice {};  ///< opens it anew, so that it takes its place of rest as its origin
+/// What the stylus does and feels, tick by tick, into a file (haptics/replay/README.md).
+struct RecordStylus {
+    std::filesystem::path path;  ///< empty: a free name beside the session
+};
+struct StopRecording {};
+/// Leads the probe along such a file, tick by tick, as a hand would with the present guidance: its first button paints,
+/// or adds nodes in the trace tool.
+struct FollowStylus {
+    std::filesystem::path path;
+    bool by_hand = true;             ///< a modelled hand holds a modelled stylus; false: the device's own answers
+    double node_every_voxels = 8.0;  ///< between nodes, along x
+};
+
 using Action = std::variant<
     // looking
     Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, GoTo, MoveCut,
@@ -308,7 +333,9 @@ using Action = std::variant<
     UndoOp, RedoOp, SaveOp, RevertOp, SaveAs, CopySession, ExportTask, ImportTask, LabelTask, EvaluateTask, CancelJob,
     Screenshot, Open, LookAtFile, TakeFile, CorrectSpacing, DismissNotices, ForgetRecent, ChooseBelief, WorkOnCopy,
     OpenExample, AskOpen, ChooseKeys, BindKeys, Resize, AwaitKey, ShowHelp, ShowMessages, ShowPasses, SavePasses,
-    ComparePasses, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit>;
+    ComparePasses, ShowPalette, Prefer, ShowPreferences, FocusOn, ShowFullScreen, Quit,
+    // the hand
+    LetGo, GrabVolume, UseDevice, FindDevices, CalibrateDevice, RecordStylus, StopRecording, FollowStylus>;
 using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -4,6 +4,7 @@
 
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/preferences.h"
+#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 
@@ -249,6 +250,40 @@ std::string why(const Model& model, const ForgetRecent& action)
 std::string why(const Model& model, const ChooseBelief&)
 {
     return model.disputes.empty() ? "no saved file was changed by another program" : "";
+}
+
+std::string why(const Model& model, const GrabVolume& action)
+{
+    return !action.on || (model.hand && model.hand->moves_probe) ? "" : "no stylus moves the probe";
+}
+
+std::string why(const Model& model, const UseDevice& action)
+{
+    if (action.device.empty()) return {};
+    const auto& devices = model.hand ? model.hand->devices : std::vector<DeviceListing>();
+    return std::ranges::find(devices, action.device, &DeviceListing::id) != devices.end()
+               ? ""
+               : sentence("no device ", action.device, " is plugged in");
+}
+
+std::string why(const Model& model, const CalibrateDevice&)
+{
+    return model.hand && model.hand->moves_probe ? "" : "no haptic device moves the probe";
+}
+
+std::string why(const Model& model, const RecordStylus&)
+{
+    return model.hand && model.hand->recorded_s ? "the stylus is being recorded" : "";
+}
+
+std::string why(const Model& model, const StopRecording&)
+{
+    return model.hand && model.hand->recorded_s ? "" : "nothing is being recorded";
+}
+
+std::string why(const Model& model, const FollowStylus&)
+{
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
 }
 
 template <class Kind, class... Others>

@@ -14,7 +14,8 @@ namespace {
 // ---- The table, in the order of the alternatives of Action ----------------------------------------------------------
 
 constexpr const char *LOOKING = "Looking", *SETTINGS = "Settings", *PROBE = "Probe", *PAINTING = "Painting",
-                     *TRACING = "Tracing", *MEASURING = "Measuring", *WORK = "Work", *WINDOW = "Window";
+                     *TRACING = "Tracing", *MEASURING = "Measuring", *WORK = "Work", *WINDOW = "Window",
+                     *HAND = "The hand";
 
 constexpr ActionRow ROWS[] = {
     {"orbit", "Turn the view", LOOKING, "turns the camera about its target, to the right and up"},
@@ -106,13 +107,21 @@ constexpr ActionRow ROWS[] = {
     {"focus", "Use panels by keyboard", WINDOW, "gives the keyboard to the panels or to the menu"},
     {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
     {"quit", "Quit", WINDOW, "saves the work and closes the window"},
+    {"let_go", "Let go", HAND, "no force at once, until it is switched off again"},
+    {"grab_volume", "Take hold of the volume", HAND, "the volume moves and turns with the stylus until it is let go"},
+    {"use_device", "Use a device", HAND, "takes a listed haptic device, or the first that can be used"},
+    {"find_devices", "Look for devices", HAND, "looks again for what is plugged in"},
+    {"calibrate_device", "Calibrate", HAND, "takes the stylus's place of rest as the origin"},
+    {"record_stylus", "Record the stylus", HAND, "writes what the stylus does and feels, tick by tick, into a file"},
+    {"stop_recording", "End the recording", HAND, "ends the recording of the stylus, and writes its file"},
+    {"follow_stylus", "Follow a recorded stylus", HAND, "leads the probe along a recording, with the present guidance"},
 };
 static_assert(std::size(ROWS) == std::variant_size_v<Action>);
 
 // ---- Arguments ------------------------------------------------------------------------------------------------------
 
 const NumberRange DEGREES{-36000.0, 36000.0}, PIXELS{-1e6, 1e6}, FACTOR{1e-6, 1e6}, SHARES{-100.0, 100.0};
-const NumberRange VOXELS{-1e12, 1e12}, DISTANCES{0.0, 1e15}, SPACINGS{1e-12, 1e12};
+const NumberRange VOXELS{-1e12, 1e12}, DISTANCES{0.0, 1e15}, SPACINGS{1e-12, 1e12}, NODE_STEPS{0.5, 1000.0};
 
 void pane_field(Fields& f, size_t& pane)
 {
@@ -385,6 +394,28 @@ void fields(Fields& f, Resize& a)
 void fields(Fields& f, ShowFullScreen& a)
 {
     f.flag("on", a.on, {});
+}
+void fields(Fields& f, LetGo& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, GrabVolume& a)
+{
+    f.flag("on", a.on, {});
+}
+void fields(Fields& f, UseDevice& a)
+{
+    f.text("device", a.device, {});
+}
+void fields(Fields& f, RecordStylus& a)
+{
+    f.path("path", a.path, {});
+}
+void fields(Fields& f, FollowStylus& a)
+{
+    f.path("path", a.path, {.is_required = true});
+    f.flag("by_hand", a.by_hand, {});
+    f.number("node_every_voxels", a.node_every_voxels, NODE_STEPS, {"between nodes, along x"});
 }
 template <class Bare>
 requires std::is_empty_v<Bare>

@@ -21,6 +21,7 @@
 #include "ui/workbench/sight/sight.h"
 
 namespace shvr::ui {
+struct HandView;
 class Keymap;
 class RecentActions;
 struct PassRun;
@@ -58,7 +59,9 @@ struct Model {
     glm::dvec3 probe_voxel{0.0};
     bool is_painting = false;
     const ServoState* servo = nullptr;  ///< null while no servo runs
-    std::string_view device_name{};     ///< device that moves the probe: "mouse", ...
+    glm::dvec3 tool_voxel{0.0};         ///< where tools act: the probe, or what it touches (FeelSettings)
+    std::optional<uint32_t> tool_node;  ///< the node that they act at
+    const HandView* hand = nullptr;     ///< devices and what the hand does; null where nothing is open
 
     std::optional<Pointer> pointer{};  ///< of the mouse, while it is over the picture
     Reading reading{};

@@ -73,6 +73,11 @@ void fields(Fields& f, Preferences& preferences)
              NumberRange{Preferences::MIN_FONT_PIXELS, Preferences::MAX_FONT_PIXELS}, {});
     f.number("scale", preferences.scale, NumberRange{Preferences::MIN_SCALE, Preferences::MAX_SCALE}, {});
     f.section("layout", [&](Fields& inner) { fields(inner, preferences.layout); });
+    f.section("device", [&](Fields& inner) {
+        inner.text("name", preferences.device.name, {});
+        inner.text("serial", preferences.device.serial, {});
+    });
+    f.choice("puck", preferences.puck, {});
     f.whole("hints_seen", preferences.hints_seen, 0, 1000, {});
     key_fields(f, preferences.keys);
     std::vector<RecentFile> recent;

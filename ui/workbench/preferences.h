@@ -11,6 +11,20 @@
 
 namespace shvr::ui {
 
+/// What a device that states speeds (a SpaceMouse) moves.
+enum class PuckMoves { view, probe };
+inline constexpr Spelling<PuckMoves> PUCK_MOVES[] = {{PuckMoves::view, "view"}, {PuckMoves::probe, "probe"}};
+constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
+{
+    return PUCK_MOVES;
+}
+
+/// A haptic device by what stays the same when it is plugged in elsewhere. Without a name: the first that can be used.
+struct ChosenDevice {
+    std::string name, serial;
+    bool operator==(const ChosenDevice&) const = default;
+};
+
 struct Preferences {
     static constexpr size_t MAX_RECENT = 12;
     static constexpr double MIN_FONT_PIXELS = 9.0, MAX_FONT_PIXELS = 32.0, MIN_SCALE = 0.5, MAX_SCALE = 4.0;
@@ -22,6 +36,8 @@ struct Preferences {
     double font_pixels = 14.0;    ///< at a scale of 1
     std::optional<double> scale;  ///< of everything; none: the screen's
     WindowLayout layout;
+    ChosenDevice device;
+    PuckMoves puck = PuckMoves::view;
     int hints_seen = 0;  ///< of the three for a first start (appearance/hints.h)
 
     void note_opened(const std::filesystem::path& path);

@@ -34,7 +34,16 @@ double scaled_radius(const Model& model, const Mean& mean, double factor)
 
 NodeOp node_at_probe(const Model& model)
 {
-    return NodeOp{.at = model.probe_voxel, .radius_voxels = {}, .group = model.brush().group};
+    return NodeOp{.at = model.tool_voxel, .radius_voxels = {}, .group = model.brush().group};
+}
+
+Action node_or_link_at_probe(const Model& model)
+{
+    if (!model.tool_node) return node_at_probe(model);
+    const std::optional<uint32_t> selected = model.trace.selection().node();
+    const bool is_linked = selected && model.trace.internode_between(*selected, *model.tool_node);
+    if (selected && *selected != *model.tool_node && !is_linked) return LinkOp{.near = {}, .node = model.tool_node};
+    return SelectOp{.near = {}, .number = model.tool_node, .within_voxels = {}};
 }
 
 SelectOp nearest_selection(const Model& model)

@@ -9,6 +9,8 @@ namespace shvr::ui {
 
 /// A node at the probe, of the probe's group and as wide as new nodes are, linked to the selected node.
 NodeOp node_at_probe(const Model& model);
+/// The same; at a node that the tool acts at, a link of the selected node with it or, where that is there, its choice.
+Action node_or_link_at_probe(const Model& model);
 /// Selects the nearest node or, if that is selected already, the nearest of its internodes.
 SelectOp nearest_selection(const Model& model);
 /// Links the selected node to the nearest other one.

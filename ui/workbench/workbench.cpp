@@ -181,31 +181,6 @@ void Workbench::advance()
     attempt(photographing_, [this] { follow_screenshots(); });
 }
 
-TouchSettings Workbench::touch_settings() const
-{
-    const ProbeSettings& probe = document_->session.probe;
-    return {.assistance = probe.guided && options_.has_servo,
-            .threshold = *probe.haptic_threshold,
-            .probe_radius = document_->probe_radius(),
-            .law = probe.guidance == Guidance::potential ? ProxyLaw::potential : ProxyLaw::mean,
-            .axes = axes_of(document_->camera),
-            .target = document_->camera.target,
-            .view_height =
-                pixel_size(document_->camera, {1, 1}, glm::distance(document_->camera.eye, document_->camera.target)),
-            .scale = document_->session.interaction.workspace_scale,
-            .source = document_->source,
-            .offsets = &document_->annotator.document().density,
-            .mask = &document_->annotator.document().mask,
-            .voxels = document_->annotator.revision()};
-}
-
-void Workbench::follow_touch()
-{
-    Touch& touch = document_->touch;
-    touch.advance(touch_settings());
-    follow_buttons(touch.buttons());
-}
-
 void Workbench::follow_stroke()
 {
     Annotator& annotator = document_->annotator;
@@ -298,7 +273,9 @@ Model Workbench::model() const
             .probe_voxel = document.probe_voxel(),
             .is_painting = document.annotator.stroke_is_running(),
             .servo = document.touch.servo(),
-            .device_name = document.touch.device_name(),
+            .tool_voxel = document.tool_voxel(),
+            .tool_node = document.tool_node(),
+            .hand = &hand_,
             .pointer = pointer_,
             .reading = reading_,
             .picked_pivot = document.picked_pivot,

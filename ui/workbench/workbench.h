@@ -27,6 +27,8 @@
 #include "ui/workbench/messages.h"
 #include "ui/workbench/preferences.h"
 #include "ui/workbench/sight/hits.h"
+#include "ui/workbench/touch/device_watch.h"
+#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 
@@ -43,6 +45,7 @@ struct WorkbenchOptions {
     std::filesystem::path preferences{};  ///< the file (preferences.h); empty: none are read or kept
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< of the program, for reports; empty: not told
+    DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
 };
 
 class Workbench {
@@ -69,8 +72,8 @@ public:
     /// calls `make_anew`, and shows all again. What is recorded is all there; of a stroke under way, what was not
     /// painted yet is not.
     void restart_device(const std::function<void()>& make_anew);
-    /// From now on this device moves the probe of what is open, and its button paints.
-    void use_device(std::unique_ptr<HapticDevice> device, const std::string& name);
+    /// From now on this device moves the probe, whatever is plugged in, and its button paints.
+    void use_device(std::shared_ptr<HapticDevice> device, const std::string& name);
     /// Called with each action that was carried out, as a line that replays it (action_rows.h).
     void log_to(std::function<void(const std::string& line)> log) { log_ = std::move(log); }
 
@@ -242,6 +245,14 @@ private:
     void act(const FocusOn& action);
     void act(const ShowFullScreen& action);
     void act(const Quit& action);
+    void act(const LetGo& action);
+    void act(const GrabVolume& action);
+    void act(const UseDevice& action);
+    void act(const FindDevices& action);
+    void act(const CalibrateDevice& action);
+    void act(const RecordStylus& action);
+    void act(const StopRecording& action);
+    void act(const FollowStylus& action);
 
     // Documents (workbench_open.cpp)
     struct Opening;
@@ -275,7 +286,6 @@ private:
     void drop_queries();
 
     void load_once_more();
-    std::unique_ptr<HapticDevice> find_device(std::string& said) const;
     std::filesystem::path screenshot_stem() const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 
@@ -340,9 +350,22 @@ private:
     template <class Way>
     void step(int count, const char* done, const char* nothing, Way way);
 
-    // Turns
+    // The hand (workbench_touch.cpp)
     TouchSettings touch_settings() const;
     void follow_touch();
+    void follow_devices();
+    void follow_puck();
+    void follow_grab();
+    void choose_device();
+    void take_device(std::shared_ptr<HapticDevice> device, const DeviceListing& row);
+    void leave_device();
+    const DeviceListing* wanted_device() const;
+    void note_hand();
+    void finish_recording();
+    void add_node_here();
+    void follow_points(const std::vector<StylusPoint>& points, double node_every);
+
+    // Turns
     void follow_buttons(uint32_t buttons);
     void follow_settings();
     void follow_stroke();
@@ -407,7 +430,14 @@ private:
     std::optional<double> to_keep_since_s_;       ///< since when the journal does not hold the view as it is
     double last_change_s_ = 0.0;                  ///< of what is to be kept
     std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
-    uint32_t buttons_ = 0;                        ///< of a stylus, as they were in the last turn
+    std::unique_ptr<DeviceWatch> watch_;          ///< null: no device is looked for
+    std::shared_ptr<HapticDevice> device_;        ///< null: none is open
+    HandView hand_;
+    std::set<std::string> refused_;  ///< ids of devices that could not be opened, until they are asked for again
+    bool is_given_device_ = false;   ///< by the caller
+    double look_again_s_ = 0.0, puck_at_s_ = 0.0;
+    std::optional<Grab> grab_;
+    uint32_t buttons_ = 0;  ///< of a stylus, as they were in the last turn
     double buttons_at_s_ = 0.0;
     glm::dvec3 stroke_end_voxel_{0.0};  ///< where an open stroke was extended to
     std::string journal_failure_;       ///< as last reported

@@ -39,6 +39,7 @@ void Workbench::load_again()
                      " cannot be shown on it: ", error.what()),
             Weight::error);
         away_ = std::move(document_);
+        away_->touch.use(nullptr);  // one servo at a time on a device
     }
 }
 

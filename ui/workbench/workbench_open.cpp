@@ -235,6 +235,7 @@ void Workbench::begin_loading()
         if (document_) {
             document_->screen.clear();
             away_ = std::move(document_);
+            away_->touch.use(nullptr);  // one servo at a time on a device
         }
         renderer_.take_scene();
     }
@@ -298,8 +299,6 @@ void Workbench::take(Document::Read read)
 /// Says what was opened, and what is not as it was left: that stays to be seen until it is dismissed.
 void Workbench::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses)
 {
-    std::string device_said;
-    if (std::unique_ptr<HapticDevice> device = find_device(device_said)) use_device(std::move(device), "haptic device");
     recovered_ = losses;
     for (const Notice& notice : document_->messages) recovered_.push_back(notice.text);
     std::string status = "Opened " + path.string();
@@ -307,7 +306,6 @@ void Workbench::welcome(const std::filesystem::path& path, const std::vector<std
     for (const std::string& loss : losses) status += "; " + loss;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const Notice& notice : document_->messages) status += "; " + notice.text;
-    if (!device_said.empty()) status += "; " + device_said;
     const bool is_as_left = recovered_.empty() && !document_->only_looks();
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
@@ -406,25 +404,6 @@ void Workbench::stop_loading()
 void Workbench::load_once_more()
 {
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
-}
-
-void Workbench::use_device(std::unique_ptr<HapticDevice> device, const std::string& name)
-{
-    document_->touch.use(std::move(device), name);
-}
-
-/// If the device cannot be used, reports that; the mouse is used instead.
-std::unique_ptr<HapticDevice> Workbench::find_device(std::string& said) const
-{
-    if (!options_.has_servo) return nullptr;
-    try {
-        const std::filesystem::path profiles = asset_folder("devices");
-        if (profiles.empty()) return nullptr;
-        return open_first_device({.profiles = load_hid_profiles(profiles), .allow_force = options_.allow_force});
-    } catch (const Error& error) {
-        said = error.what();
-        return nullptr;
-    }
 }
 
 std::filesystem::path Workbench::screenshot_stem() const

@@ -132,7 +132,7 @@ void Workbench::act(const Paint& action)
 {
     Annotator& annotator = document_->annotator;
     if (document_->session.probe.tool == Tool::trace) {
-        if (action.on) trace(NodeOp{.at = document_->probe_voxel(), .radius_voxels = {}, .group = {}});
+        if (action.on) add_node_here();
         return;
     }
     if (action.on && !annotator.stroke_is_running()) {
@@ -142,7 +142,7 @@ void Workbench::act(const Paint& action)
         check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
         record_settings();
         annotator.begin_stroke(document_->stroke());
-        stroke_end_voxel_ = document_->probe_voxel();
+        stroke_end_voxel_ = document_->tool_voxel();
         annotator.extend_stroke(stroke_end_voxel_);
     } else if (!action.on && annotator.stroke_is_running()) {
         extend_stroke();
@@ -160,8 +160,8 @@ void Workbench::act(const PaintOp& op)
 
 void Workbench::extend_stroke()
 {
-    if (!document_->annotator.stroke_is_open() || document_->probe_voxel() == stroke_end_voxel_) return;
-    stroke_end_voxel_ = document_->probe_voxel();
+    if (!document_->annotator.stroke_is_open() || document_->tool_voxel() == stroke_end_voxel_) return;
+    stroke_end_voxel_ = document_->tool_voxel();
     document_->annotator.extend_stroke(stroke_end_voxel_);
     if (log_ && document_->touch.servo()) log_(line_of(PlaceProbe{stroke_end_voxel_}));
 }

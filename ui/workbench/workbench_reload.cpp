@@ -30,6 +30,7 @@ void Workbench::begin_reload()
         drop_queries();
         document_->screen.clear();
         away_ = std::move(document_);
+        away_->touch.use(nullptr);  // one servo at a time on a device
         return bring_back();
     }
     reload_->scene = renderer_.begin_loading(document_->source, document_->statistics, session.render, has_light,

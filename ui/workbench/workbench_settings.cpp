@@ -70,6 +70,28 @@ std::string sentence_about(const TransferFunction& was, const TransferFunction& 
     return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
 }
 
+/// Empty where only numbers changed, which say enough themselves.
+std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
+{
+    if (was.mode != is.mode) {
+        switch (is.mode) {
+            case TouchMode::proximity: return "Touching: pulled to the middle of all that is near";
+            case TouchMode::surface: return "Touching: held on surfaces, until you pull towards yourself";
+            case TouchMode::object: return "Touching: follows the object first touched, and no neighbour";
+        }
+    }
+    if (was.strength != is.strength) return sentence("Strength ", std::round(100.0 * is.strength), " %");
+    if (was.groups != is.groups && is.groups.empty()) return "Everything at or above the haptic threshold is felt";
+    if (was.plane != is.plane)
+        return is.plane == TouchPlane::none ? std::string("The probe moves freely")
+                                            : sentence("The probe stays in its plane across ", spelled(is.plane));
+    if (was.at_proxy != is.at_proxy)
+        return is.at_proxy ? "Tools act at the middle of what is touched" : "Tools act at the probe";
+    if (was.to_nodes != is.to_nodes)
+        return is.to_nodes ? "Tools act at a node in the probe's ball" : "Nodes draw no tool";
+    return {};
+}
+
 /// Changes for which there is more to say than what was set.
 std::string special_sentence(const Session& was, const Session& is)
 {
@@ -82,7 +104,10 @@ std::string special_sentence(const Session& was, const Session& is)
         return after.guided ? "Guidance on: the probe is pulled to what is at or above the haptic threshold"
                             : "Guidance off";
     if (before.guidance != after.guidance)
-        return after.guidance == Guidance::potential ? "Guidance: smooth" : "Guidance: mean of what is relevant";
+        return after.guidance == Guidance::potential ? "Guidance: smooth"
+               : after.guidance == Guidance::mean    ? "Guidance: mean of what is relevant"
+                                                     : "Guidance: as in the thesis, of 3000 points";
+    if (before.touch != after.touch) return sentence_about(before.touch, after.touch);
     if (before.shell != after.shell)
         return after.shell ? "Iso-surface around the probe on, at the paint threshold"
                            : "Iso-surface around the probe off";

@@ -84,6 +84,11 @@ bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
 TraceOp Workbench::with_radius(TraceOp op) const
 {
     NodeOp* const node = std::get_if<NodeOp>(&op);
+    const ServoState* const servo = document_->touch.servo();
+    if (node && !node->radius_voxels && document_->session.probe.touch.overlap_radius && servo &&
+        servo->step.in_contact)
+        if (const auto radius = radius_from_overlap(servo->step.relevant_share, document_->probe_radius()))
+            node->radius_voxels = *radius / document_->volume().spacing.x;
     if (node && !node->radius_voxels && document_->session.probe.measured_radius)
         node->radius_voxels = document_->measured_radius(node->at);
     return op;
@@ -244,7 +249,7 @@ void Workbench::act(const DragNode& action)
         document_->drags_node = true;
         return say(sentence("Node ", *node, " follows the probe until the key is released"));
     }
-    if (document_->drags_node) this->trace(MoveOp{document_->probe_voxel()});
+    if (document_->drags_node) this->trace(MoveOp{document_->tool_voxel()});
 }
 
 }  // namespace shvr::ui

@@ -170,6 +170,13 @@ const Row ROWS[] = {
     {R"({"op":"focus","what":"menu"})", ""},
     {R"({"op":"full_screen","on":true})", "full_screen"},
     {R"({"op":"quit"})", ""},
+    {R"({"op":"let_go","on":true})", "hand"},
+    {R"({"op":"use_device"})", ""},
+    {R"({"op":"find_devices"})", ""},
+    {R"({"op":"follow_stylus","path":"FOLDER/hand.trace"})", "place, saved, undo, voxels"},
+    {R"({"op":"follow_stylus","path":"FOLDER/hand.trace","by_hand":false})",
+     "place, saved, selection, trace, undo",
+     {TRACING}},
 };
 
 /// A workbench on a scan of its own.
@@ -191,6 +198,10 @@ struct Bench {
             R"({"note":"n","points":[{"at":0,"color":"#100000","opacity":0},{"at":1,"color":"#ff2010","opacity":1}]})");
         folder.write("look.json", R"({"points":[{"intensity":70,"opacity":0},{"intensity":210,"opacity":0.8}]})");
         folder.write("line.txt", "-v 10, 12, 14, 1, 2\n-v 20, 12, 14, 1, 2\n-l 0, 1, 2\n");
+        folder.write("hand.trace",
+                     "{\"shvr_stylus_trace\":1,\"unit\":\"voxel\"}\n"
+                     "{\"settings\":{\"to_volume\":[1000,0,0,0,1000,0,0,0,1000],\"origin\":[20,18,16]}}\n"
+                     "{\"at\":[0,0,0],\"buttons\":1}\n{\"at\":[0.001,0,0]}\n");
         folder.write("other.mask", std::string(40 * 36 * 32, '\4'));
         bench->open(write_tubes_session(folder.path), {});
         settle(*bench);
@@ -236,7 +247,9 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
         applied.insert(row_of(action).id);
     }
     // Those that need what this table does not set up, and the tests that do.
-    applied.insert({"choose_belief", "cancel_job", "dismiss_notices", "correct_spacing"});
+    applied.insert({"choose_belief", "cancel_job", "dismiss_notices", "correct_spacing",
+                    // tests/gpu/workbench/hand_test.cpp
+                    "grab_volume", "calibrate_device", "record_stylus", "stop_recording"});
     for (const ActionRow& row : action_rows()) CHECK_MESSAGE(applied.contains(row.id), row.id);
 }
 

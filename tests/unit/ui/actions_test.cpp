@@ -112,7 +112,15 @@ std::vector<Action> samples()
             ShowPreferences{false},
             FocusOn{"menu"},
             ShowFullScreen{false},
-            Quit{}};
+            Quit{},
+            LetGo{true},
+            GrabVolume{true},
+            UseDevice{"hid:/dev/hidraw3"},
+            FindDevices{},
+            CalibrateDevice{},
+            RecordStylus{"/scans/a b.trace"},
+            StopRecording{},
+            FollowStylus{.path = "/scans/hand.trace", .by_hand = false, .node_every_voxels = 2.5}};
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ constexpr Printed APPENDIX_C[] = {
     {"[", "Decrease Painting Size", "smaller_brush"},
     // Interaction
     {"Space", "Toggle Haptic Assistance", "guide"},
-    {"Home", "Cycle Haptic Modes", "next_guidance"},
+    {"Home", "Cycle Haptic Modes", "next_mode"},
     {"PageUp", "Increase Probe Size", "larger_probe"},
     {"PageDown", "Decrease Probe Size", "smaller_probe"},
     // Navigation

@@ -135,7 +135,7 @@ TEST_CASE("the thesis's set has the keys of its appendix C, and today's set thos
                                                                      {"next_brush", "End"},
                                                                      {"larger_brush", "]"},
                                                                      {"guide", "Space"},
-                                                                     {"next_guidance", "Home"},
+                                                                     {"next_mode", "Home"},
                                                                      {"larger_probe", "Page Up"},
                                                                      {"turn_up", "Alt + W"},
                                                                      {"move_back", "S"},
@@ -328,7 +328,7 @@ void trace_three(World& world)
     for (uint32_t i = 0; i < 2; ++i)
         world.trace.apply(TraceInternodeChange{i, {}, TraceInternode{i, i + 1, 2}}, Direction::forwards);
     world.trace.select({{2}, {}});
-    world.model.probe_voxel = {29.0, 10.0, 10.0};
+    world.model.probe_voxel = world.model.tool_voxel = {29.0, 10.0, 10.0};
 }
 
 }  // namespace
@@ -357,7 +357,7 @@ TEST_CASE("a full stop selects the nearest node, and where that is selected its 
     const SelectOp again = only<SelectOp>(actions_of(world, '.', 0));
     CHECK(again.is_internode);
     CHECK_FALSE(again.within_voxels);
-    world.model.probe_voxel = {12.0, 10.0, 10.0};
+    world.model.probe_voxel = world.model.tool_voxel = {12.0, 10.0, 10.0};
     const SelectOp other = only<SelectOp>(actions_of(world, '.', 0));
     CHECK_FALSE(other.is_internode);
     CHECK(other.within_voxels == 16.0);

@@ -12,7 +12,8 @@ namespace {
 constexpr PanelRow PANELS[] = {
     {.id = "transfer_function", .title = "Transfer function", .hint = "Colour and opacity of intensities."},
     {.id = "groups", .title = "Colour groups", .hint = "What paint and traces belong to."},
-    {.id = "probe", .title = "Brush and probe", .hint = "What a stroke paints, and what guidance feels."},
+    {.id = "probe", .title = "Brush and probe", .hint = "What a stroke paints."},
+    {.id = "touch", .title = "Touch and guidance", .hint = "What is felt, how it pulls, and the device in the hand."},
     {.id = "trace", .title = "Tracing", .hint = "Nodes, internodes and what is selected."},
     {.id = "trace_list", .title = "Tracing list", .hint = "All segments and nodes, to go to.", .is_folded = true},
     {.id = "light", .title = "Light and depth", .hint = "Light, highlight and distance blending.", .is_folded = true},

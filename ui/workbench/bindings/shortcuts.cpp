@@ -7,6 +7,7 @@
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/preferences.h"
+#include "ui/workbench/touch/hand_view.h"
 #include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
@@ -20,6 +21,7 @@ constexpr double CUT_SHARE = 0.01;
 constexpr double CLIP_SHARE = 0.01;
 constexpr double PROBE_FACTOR = 1.1;
 constexpr double BLEND_STEP = 0.05;
+constexpr double STRENGTH_STEP = 0.05;
 constexpr double MAX_BLEND = 20.0;
 
 // ---- Actions. Those with parameters appear several times in the table.
@@ -119,8 +121,50 @@ Action toggle(const Model& model, double)
 Action next_guidance(const Model& model, double)
 {
     return edited(model.session, [](Session& s) {
-        s.probe.guidance = s.probe.guidance == Guidance::potential ? Guidance::mean : Guidance::potential;
+        s.probe.guidance = GUIDANCES[(size_t(s.probe.guidance) + 1) % std::size(GUIDANCES)].value;
     });
+}
+
+Action next_mode(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        TouchMode& mode = s.probe.touch.mode;
+        mode = TOUCH_MODES[(size_t(mode) + 1) % std::size(TOUCH_MODES)].value;
+    });
+}
+
+/// Off, then across each axis in turn.
+Action next_plane(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        TouchPlane& plane = s.probe.touch.plane;
+        plane = TOUCH_PLANES[(size_t(plane) + 1) % std::size(TOUCH_PLANES)].value;
+    });
+}
+
+template <int DIRECTION>
+Action scale_strength(const Model& model, double amount)
+{
+    return edited(model.session, [&](Session& s) {
+        s.probe.touch.strength = std::clamp(s.probe.touch.strength + STRENGTH_STEP * DIRECTION * amount, 0.0, 1.0);
+    });
+}
+
+template <bool FeelSettings::*FLAG>
+Action toggle_feel(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.touch.*FLAG = !(s.probe.touch.*FLAG); });
+}
+
+Action toggle_let_go(const Model& model, double)
+{
+    return LetGo{!(model.hand && model.hand->is_let_go)};
+}
+
+Action toggle_recording(const Model& model, double)
+{
+    if (model.hand && model.hand->recorded_s) return StopRecording{};
+    return RecordStylus{};
 }
 
 template <Tool TOOL>
@@ -243,7 +287,7 @@ using Mode = Shortcut::Mode;
 constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *TOOL_KEYS = "Tools", *PAINTING_KEYS = "Painting",
                      *TRACING_KEYS = "Tracing", *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view",
                      *MOVE_KEYS = "Move the view", *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes",
-                     *BLEND_KEYS = "Distance blending";
+                     *BLEND_KEYS = "Distance blending", *HAND_KEYS = "The hand";
 
 /// By one key in both sets.
 constexpr Shortcut both(const char* id, const char* group, const char* name, Mode mode,
@@ -366,7 +410,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("next_tool", TRACING_KEYS, "Trace, or back to turning", Mode::tap, trace_or_turn, "X"),
     both(
         "add_node", TRACING_KEYS, "Add a node, linked with the selected one", Mode::tap,
-        [](const Model& model, double) -> Action { return node_at_probe(model); }, "N"),
+        [](const Model& model, double) -> Action { return node_or_link_at_probe(model); }, "N"),
     both("drag_node", TRACING_KEYS, "Move the selected node while held", Mode::while_held, begin_and_end<DragNode>,
          "M"),
     both(
@@ -408,7 +452,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("probe_onto", PROBE_KEYS, "Put the probe onto what is under the pointer", Mode::tap, at_pointer<ProbeOnto>,
          "L"),
     both("shell", PROBE_KEYS, "Iso-surface around the probe", Mode::tap, toggle<&ProbeSettings::shell>, "F4"),
-    {"next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, {"Shift+Space", "Home"}},
+    both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Shift+Space"),
     {"arrow", PROBE_KEYS, "Arrow towards the probe", Mode::tap, toggle<&ProbeSettings::arrow>, {"Shift+F1", "F1"}},
     both("silhouette", PROBE_KEYS, "Silhouette of the probe", Mode::tap, toggle<&ProbeSettings::silhouette>, ""),
     both("larger_workspace", PROBE_KEYS, "Larger workspace", Mode::hold, scale_workspace<1>, "F7"),
@@ -462,6 +506,22 @@ constexpr Shortcut SHORTCUTS[] = {
     {"near_clip_closer", CLIP_KEYS, "Near clip plane closer", Mode::hold, move_clip<false, -1>, {"Alt+C", "Ctrl+C"}},
     {"far_clip_closer", CLIP_KEYS, "Far clip plane closer", Mode::hold, move_clip<true, -1>, {"V", "V"}},
     {"far_clip_away", CLIP_KEYS, "Far clip plane away", Mode::hold, move_clip<true, 1>, {"Alt+V", "Ctrl+V"}},
+
+    {"next_mode", HAND_KEYS, "Next way of touching", Mode::tap, next_mode, {"Ctrl+Space", "Home"}},
+    both("let_go", HAND_KEYS, "Let go: no force", Mode::tap, toggle_let_go, "Pause"),
+    both("grab_volume", HAND_KEYS, "Move the volume with the stylus while held", Mode::while_held,
+         begin_and_end<GrabVolume>, "Stylus2"),
+    both("stronger", HAND_KEYS, "Stronger", Mode::hold, scale_strength<1>, "Ctrl+]"),
+    both("weaker", HAND_KEYS, "Weaker", Mode::hold, scale_strength<-1>, "Ctrl+["),
+    both("next_plane", HAND_KEYS, "Hold the probe in the next plane", Mode::tap, next_plane, ""),
+    both("at_proxy", HAND_KEYS, "Act at the middle of what is touched", Mode::tap, toggle_feel<&FeelSettings::at_proxy>,
+         ""),
+    both("overlap_radius", HAND_KEYS, "New nodes as wide as what is felt", Mode::tap,
+         toggle_feel<&FeelSettings::overlap_radius>, ""),
+    both("to_nodes", HAND_KEYS, "Act at nodes in the probe's ball", Mode::tap, toggle_feel<&FeelSettings::to_nodes>,
+         ""),
+    both("record_stylus", HAND_KEYS, "Record the stylus, or end it", Mode::tap, toggle_recording, ""),
+    both("find_devices", HAND_KEYS, "Look for devices", Mode::tap, plain<FindDevices>, ""),
 };
 
 }  // namespace

@@ -169,6 +169,20 @@ ProbeLook Document::probe_look() const
     return look;
 }
 
+std::optional<uint32_t> Document::tool_node() const
+{
+    if (!session.probe.touch.to_nodes || drags_node) return std::nullopt;
+    return node_within(annotator.document().trace, touch.probe(), probe_radius());
+}
+
+glm::dvec3 Document::tool_point() const
+{
+    if (const std::optional<uint32_t> node = tool_node()) return annotator.document().trace.node(*node).position;
+    const ServoState* const servo = touch.servo();
+    const bool has_proxy = session.probe.touch.at_proxy && servo && servo->ticks > 0 && servo->step.in_contact;
+    return has_proxy ? servo->step.proxy : touch.probe();
+}
+
 VoxelBox Document::voxels_around_probe() const
 {
     const glm::dvec3 size(volume().size), reach = probe_radius() / volume().spacing;
@@ -238,7 +252,7 @@ PaintOp Document::stroke() const
 PaintOp Document::dab() const
 {
     PaintOp dab = stroke();
-    dab.path = {probe_voxel()};
+    dab.path = {tool_voxel()};
     return dab;
 }
 
@@ -290,7 +304,7 @@ TraceMarks Document::trace_marks() const
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
     return shvr::trace_marks(annotator.document().trace,
                              session.probe.tool == Tool::trace ? nearby_node() : std::nullopt, least,
-                             drags_node ? std::optional(touch.probe()) : std::nullopt);
+                             drags_node ? std::optional(tool_point()) : std::nullopt);
 }
 
 }  // namespace shvr::ui

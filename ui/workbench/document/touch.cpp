@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
+
+#include "haptics/simulated_device.h"
 
 namespace shvr::ui {
 
@@ -9,8 +12,6 @@ namespace {
 
 /// One voxel under the hand: the scale at which the force law's stiffness was chosen (micro-CT of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
-/// Width of a haptic device's workspace, mapped to the height of the view.
-constexpr double WORKSPACE_M = 0.12;
 
 uint64_t now_ns()
 {
@@ -35,24 +36,48 @@ void publish(const MirroredRelevance& mirrored, Latest<RelevancePatch>& relevanc
     relevance.publish();
 }
 
+/// Groups that are felt; none named: all, painted or not.
+std::optional<std::bitset<256>> felt(const std::vector<uint8_t>& groups)
+{
+    if (groups.empty()) return std::nullopt;
+    std::bitset<256> set;
+    for (const uint8_t group : groups) set.set(group);
+    return set;
+}
+
+bool is_same(const Workspace& a, const Workspace& b)
+{
+    return a.to_volume == b.to_volume && a.origin == b.origin;
+}
+
+bool is_same(const ForceSettings& a, const ForceSettings& b)
+{
+    return a.assistance == b.assistance && a.law == b.law && a.probe_radius == b.probe_radius &&
+           a.stiffness == b.stiffness && a.damping == b.damping && is_same(a.workspace, b.workspace) &&
+           a.reset == b.reset && a.mode == b.mode && a.to_camera == b.to_camera && a.surface_share == b.surface_share &&
+           a.movement_scale == b.movement_scale && a.strength == b.strength && a.let_go == b.let_go &&
+           a.relevance_settings == b.relevance_settings;
+}
+
+bool is_same(const TapOrder& a, const TapOrder& b)
+{
+    return is_same(a.settings.force, b.settings.force) && a.settings.threshold == b.settings.threshold &&
+           a.plane.is_on == b.plane.is_on && a.plane.normal == b.plane.normal && a.plane.point_m == b.plane.point_m &&
+           a.plane.count == b.plane.count && a.recording == b.recording;
+}
+
 }  // namespace
 
 Touch::Touch(Renderer& renderer) : renderer_(renderer), relevance_(renderer) {}
 
-void Touch::use(std::unique_ptr<HapticDevice> device, const std::string& name)
+void Touch::start(std::shared_ptr<HapticDevice> device)
 {
-    mouse_ = nullptr;
-    is_mouse_ = false;
-    device_name_ = name;
-    start_servo(std::move(device));
-}
-
-void Touch::start_servo(std::unique_ptr<HapticDevice> device)
-{
-    mirror_.reset();
-    servo_.reset();
-    servo_ = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});
-    Servo& servo = *servo_;
+    stop();
+    sent_.reset();
+    state_ = {};
+    tap_ = {};
+    servo_ = std::make_unique<TappedServo>(std::move(device));
+    Servo& servo = servo_->servo;
     mirror_ = std::make_unique<RelevanceMirror>(RelevanceMirror::Ends{
         .probe = [&servo]() -> std::optional<glm::dvec3> {
             servo.place().take();
@@ -63,79 +88,142 @@ void Touch::start_servo(std::unique_ptr<HapticDevice> device)
         .now_ns = now_ns});
 }
 
-Workspace Touch::mouse_workspace() const
+void Touch::stop()
 {
+    mirror_.reset();
+    servo_.reset();
+}
+
+void Touch::use(std::shared_ptr<HapticDevice> device, bool moves_view)
+{
+    if (device == device_ && moves_view == moves_view_) return;
+    stop();
+    puck_.reset();
+    puck_state_ = {};
+    mouse_ = nullptr;
+    wish_ = probe_;
+    device_ = std::move(device);
+    moves_view_ = moves_view && device_;
+    if (moves_view_)
+        puck_ = std::make_unique<TappedServo>(device_);
+    else if (device_)
+        start(device_);
+}
+
+void Touch::start_mouse()
+{
+    auto device = std::make_shared<SimulatedDevice>();
+    mouse_ = device.get();
+    wish_ = probe_;
+    send_wish(true);
+    start(std::move(device));
+}
+
+void Touch::stop_mouse()
+{
+    stop();
+    mouse_ = nullptr;
+    wish_ = probe_;  // it stays where assistance left it
+}
+
+Workspace Touch::workspace(const TouchSettings& settings) const
+{
+    if (!is_mouse()) return workspace_in_view(settings.camera, settings.view_height, settings.scale);
     const VolumeInfo& info = renderer_.volume().info();
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-Workspace Touch::device_workspace(const TouchSettings& settings)
-{
-    const CameraAxes& axes = settings.axes;
-    return {.to_volume =
-                glm::dmat3(axes.right, axes.up, -axes.forward) * (settings.scale * settings.view_height / WORKSPACE_M),
-            .origin = settings.target};
-}
-
+/// A plane lies where the probe is put.
 void Touch::place(const glm::dvec3& point)
 {
+    if (plane_ != TouchPlane::none) on_plane_ = point;
     wish_ = probe_ = point;
     send_wish(true);
 }
 
 void Touch::wish(const glm::dvec3& point)
 {
-    if (!is_mouse_) return;  // the device's hand is elsewhere
-    wish_ = point;
+    if (!is_mouse()) return;  // the device's hand is elsewhere
+    wish_ = in_plane(plane_, on_plane_, point);
     if (servo_)
         send_wish(false);
     else
-        probe_ = point;
+        probe_ = wish_;
 }
 
 void Touch::send_wish(bool jump)
 {
     if (!mouse_) return;
     jumps_ += jump;
-    const Workspace space = mouse_workspace();
+    const Workspace space = workspace({});
     mouse_->wish().publish({.position_m = (wish_ - space.origin) / space.scale(), .buttons = 0, .jump = jumps_});
 }
 
-void Touch::start_mouse()
+uint32_t Touch::buttons() const
 {
-    auto device = std::make_unique<SimulatedDevice>();
-    mouse_ = device.get();
-    state_ = {};
-    wish_ = probe_;
-    send_wish(true);
-    start_servo(std::move(device));
+    return puck_ ? puck_state_.device.buttons : is_mouse() ? 0 : state_.device.buttons;
 }
 
+bool Touch::is_realtime() const
+{
+    return servo_ ? servo_->servo.is_realtime() : puck_ && puck_->servo.is_realtime();
+}
+
+// ---- Turns
+
+void Touch::hold_to_plane(const TouchSettings& settings)
+{
+    if (settings.guide.feel.plane == plane_) return;
+    plane_ = settings.guide.feel.plane;
+    on_plane_ = probe_;
+    ++planes_;
+}
+
+/// Those that the servo has already are not sent again, so that a recording holds changes alone.
 void Touch::send_settings(const TouchSettings& settings)
 {
-    servo_->settings().publish({.assistance = settings.assistance,
-                                .law = settings.law,
-                                .probe_radius = settings.probe_radius,
-                                .workspace = is_mouse_ ? mouse_workspace() : device_workspace(settings),
-                                .reset = resets_,
-                                .relevance_settings = chosen_.settings});
+    const GuideSettings& guide = settings.guide;
+    TapOrder order;
+    order.settings.threshold = guide.threshold;
+    order.settings.force = {.assistance = guide.assists && !awaits_relevance_,
+                            .law = guide.law,
+                            .probe_radius = guide.probe_radius,
+                            .stiffness = guide.feel.stiffness,
+                            .damping = guide.feel.damping,
+                            .workspace = workspace(settings),
+                            .reset = resets_,
+                            .mode = guide.mode,
+                            .to_camera = -axes_of(settings.camera).forward,
+                            .surface_share = guide.feel.surface_share,
+                            .movement_scale = is_mouse() ? 1.0 : settings.scale,
+                            .strength = guide.feel.strength,
+                            .let_go = settings.lets_go,
+                            .relevance_settings = chosen_.settings};
+    order.plane = plane_of(plane_, on_plane_, order.settings.force.workspace, planes_);
+    order.recording = recorder_ ? recorder_->number() : 0;
+    if (sent_ && is_same(*sent_, order)) return;
+    sent_ = order;
+    servo_->link->orders().publish(order);
 }
 
 void Touch::choose(const TouchSettings& settings)
 {
-    const bool is_same = chosen_.threshold == settings.threshold && chosen_.groups == settings.groups;
-    const bool has_new_voxels = chosen_.voxels != settings.voxels || chosen_.source != settings.source;
+    const GuideSettings& guide = settings.guide;
+    const std::optional<std::bitset<256>> groups = felt(guide.feel.groups);
+    const std::shared_ptr<const VolumeSource> source = guide.assists ? settings.source : nullptr;
+    const bool is_same = chosen_.threshold == guide.threshold && chosen_.groups == groups;
+    const bool has_new_voxels = chosen_.voxels != settings.voxels || chosen_.source != source;
     chosen_.settings += !is_same;
-    chosen_.threshold = settings.threshold;
-    chosen_.radius = settings.probe_radius;
+    chosen_.threshold = guide.threshold;
+    chosen_.radius = guide.probe_radius;
     if (has_new_voxels || !is_same) {  // copies share their bricks
         const bool has_offsets = settings.offsets && settings.offsets->voxels() > 0;
         chosen_.offsets = has_offsets ? std::make_shared<const DensityField>(*settings.offsets) : nullptr;
-        chosen_.mask = settings.groups && settings.mask ? std::make_shared<const Mask>(*settings.mask) : nullptr;
+        chosen_.mask = groups && settings.mask ? std::make_shared<const Mask>(*settings.mask) : nullptr;
     }
-    chosen_.groups = settings.groups;
-    chosen_.source = settings.source;
+    chosen_.groups = groups;
+    chosen_.source = source;
     chosen_.voxels = settings.voxels;
     mirror_->choose(chosen_);
 }
@@ -168,27 +256,54 @@ double Touch::relevance_age_ms() const
     return servo_ && state_.relevance_time_ns > 0 ? double(now_ns() - state_.relevance_time_ns) * 1e-6 : 0.0;
 }
 
-void Touch::advance(const TouchSettings& settings)
+void Touch::receive()
 {
-    if (settings.assistance && !servo_) start_mouse();
-    if (is_mouse_ && !settings.assistance && servo_) {
-        mirror_.reset();
-        servo_.reset();
-        mouse_ = nullptr;
-        wish_ = probe_;  // it stays where assistance left it
-    }
-    resets_ += settings.assistance && !was_assisting_;  // users clear a fault by switching assistance on again
-    was_assisting_ = settings.assistance;
-    if (!servo_) return;
-    TouchSettings now = settings;
-    if (!settings.assistance) now.source = nullptr;  // nothing is computed
-    choose(now);
-    send_settings(settings);
-    if (settings.assistance) ask();
-    if (servo_->state().take()) {
-        state_ = servo_->state().value();
+    if (servo_->servo.state().take()) {
+        state_ = servo_->servo.state().value();
+        awaits_relevance_ = awaits_relevance_ && state_.relevance_time_ns == 0;
         if (state_.ticks > 0) probe_ = state_.step.probe;
     }
+    if (servo_->link->state().take()) tap_ = servo_->link->state().value();
+    if (recorder_) recorder_->advance(*servo_->link);
+}
+
+void Touch::advance(const TouchSettings& settings)
+{
+    const bool assists = settings.guide.assists;
+    hold_to_plane(settings);
+    if (is_mouse()) {
+        if ((assists || recorder_) && !servo_) start_mouse();
+        if (!assists && !recorder_ && servo_) stop_mouse();
+    }
+    if (puck_ && puck_->servo.state().take()) puck_state_ = puck_->servo.state().value();
+    resets_ += assists && !was_assisting_;  // users clear a fault by switching assistance on again
+    was_assisting_ = assists;
+    if (!servo_) return;
+    choose(settings);
+    send_settings(settings);
+    if (assists) ask();
+    receive();
+}
+
+// ---- Recording
+
+void Touch::begin_recording(const std::filesystem::path& path)
+{
+    recorder_ = std::make_unique<StylusRecorder>(path, renderer_.volume().info().unit, ++recordings_);
+    awaits_relevance_ = true;
+    drop_queries();
+    if (is_mouse())
+        start_mouse();
+    else
+        start(device_);
+}
+
+Trace Touch::end_recording()
+{
+    const std::unique_ptr<StylusRecorder> recorder = std::exchange(recorder_, nullptr);
+    awaits_relevance_ = false;
+    if (servo_) recorder->advance(*servo_->link);
+    return recorder->take(state_.caps);
 }
 
 }  // namespace shvr::ui

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "ui/workbench/lists/recent_actions.h"
+#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 
@@ -62,6 +63,8 @@ std::string bug_report(const Model& model)
         sentence("- SHVR ", model.version.empty() ? "(unknown version)" : model.version,
                  "\n- device: ", model.gpu_name.empty() ? "(unknown)" : model.gpu_name,
                  "\n- session: ", model.is_open ? model.session_path.string() + ", " + size_in_words(model) : "(none)");
+    if (model.hand && !model.hand->recording.empty())
+        text += "\n- stylus recording, to be attached: " + model.hand->recording.string();
     text += "\n\nThe last actions, the newest at the bottom:\n```\n";
     if (model.recent)
         for (const std::string& line : model.recent->lines()) text += line + '\n';

@@ -1,0 +1,188 @@
+// What is felt and how it pulls: guidance, ways of touching, groups, and where tools act.
+
+#include <algorithm>
+#include <cmath>
+
+#include <imgui/imgui.h>
+
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/lists/group_list.h"
+#include "ui/workbench/touch/hand_view.h"
+
+namespace shvr::ui {
+
+namespace {
+
+template <class Value>
+struct Choice3 {
+    Value value;
+    const char* name;
+    const char* hint;
+};
+
+template <class Value, size_t COUNT>
+std::optional<Value> radio(const Choice3<Value> (&choices)[COUNT], Value value)
+{
+    std::optional<Value> chosen;
+    for (size_t i = 0; i < COUNT; ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (ImGui::RadioButton(choices[i].name, value == choices[i].value)) chosen = choices[i].value;
+        hint(choices[i].hint);
+    }
+    return chosen;
+}
+
+constexpr Choice3<TouchMode> MODES[] = {
+    {TouchMode::proximity, "near", "Pulled to the middle of all that the probe touches: along roots and vessels."},
+    {TouchMode::surface, "surface", "Held where the probe dips into something; pull towards yourself to get off."},
+    {TouchMode::object, "object",
+     "Follows what is touched first and everything connected with it, past neighbours that it does not touch."}};
+constexpr Choice3<Guidance> LAWS[] = {
+    {Guidance::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
+    {Guidance::mean, "mean", "To the mean of what lies in the probe."},
+    {Guidance::thesis, "thesis", "The mean of 3000 points, as in the thesis: rougher. For comparing."}};
+constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe goes wherever the hand does."},
+                                          {TouchPlane::x, "x", "It stays in its plane across x."},
+                                          {TouchPlane::y, "y", "It stays in its plane across y."},
+                                          {TouchPlane::z, "z", "It stays in its plane across z."}};
+
+void threshold(const Model& model, Actions& actions)
+{
+    label("Felt from");
+    const auto [lower, upper] = model.statistics.range();
+    double intensity = model.haptic_threshold();
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool is_other =
+        ImGui::SliderScalar("##felt", ImGuiDataType_Double, &intensity, &lower, &upper,
+                            is_float(model.volume.type) ? "%.4g" : "%.0f", ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("probe.haptic_threshold", actions) && is_other)
+        set(actions, model, [&](Session& s) { s.probe.haptic_threshold = intensity; });
+    hint("Voxels at or above this intensity are felt. The line \"feel\" in the transfer function.");
+}
+
+void strength(const Model& model, Actions& actions)
+{
+    const FeelSettings& touch = model.session.probe.touch;
+    double percent = 100.0 * touch.strength;
+    const bool is_other = slider("Strength", percent, 0.0, 100.0, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("probe.touch.strength", actions) && is_other)
+        set(actions, model, [&](Session& s) { s.probe.touch.strength = std::round(percent) / 100.0; });
+    hint(sentence("How much of the pull there is. ", name_with_key("stronger", model.keymap), ", ",
+                  name_with_key("weaker", model.keymap), ".")
+             .c_str());
+    if (touch.mode != TouchMode::surface) return;
+    double filled = 100.0 * touch.surface_share;
+    const bool is_moved = slider("Holds from", filled, 1.0, 100.0, "%.0f %% filled", ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("probe.touch.surface_share", actions) && is_moved)
+        set(actions, model, [&](Session& s) { s.probe.touch.surface_share = std::round(filled) / 100.0; });
+    hint("A surface holds once so much of the probe lies in it.");
+}
+
+void finer(const Model& model, Actions& actions)
+{
+    if (!ImGui::TreeNode("Stiffness and damping")) return;
+    const FeelSettings& touch = model.session.probe.touch;
+    double stiffness = touch.stiffness, damping = touch.damping;
+    const bool is_stiffer =
+        slider("Stiffness", stiffness, 0.0, MAX_STIFFNESS, "%.0f N/m", ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("probe.touch.stiffness", actions) && is_stiffer)
+        set(actions, model, [&](Session& s) { s.probe.touch.stiffness = std::round(stiffness); });
+    hint("Of a probe of 2.5 mm in the hand. A device's own limit holds besides.");
+    const bool is_damped =
+        slider("Damping", damping, 0.0, MAX_FELT_DAMPING, "%.2f N s/m", ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("probe.touch.damping", actions) && is_damped)
+        set(actions, model, [&](Session& s) { s.probe.touch.damping = std::round(100.0 * damping) / 100.0; });
+    hint("Slows the hand in contact, which keeps it calm.");
+    ImGui::TreePop();
+}
+
+/// Which groups are felt: everything, or those that are ticked.
+void groups(const Model& model, Actions& actions)
+{
+    const std::vector<uint8_t>& felt = model.session.probe.touch.groups;
+    std::string preview = felt.empty() ? "everything" : "";
+    for (const uint8_t group : felt)
+        preview += (preview.empty() ? "" : ", ") +
+                   (group == 0 ? std::string("unpainted") : group_of(model.session.groups, group).name);
+    label("Feels");
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool is_open = ImGui::BeginCombo("##groups", preview.c_str());
+    hint("Which colour groups are felt. What is painted, or made brighter, is felt at once.");
+    if (!is_open) return;
+    if (ImGui::Selectable("everything", felt.empty(), ImGuiSelectableFlags_DontClosePopups))
+        set(actions, model, [&](Session& s) { s.probe.touch.groups.clear(); });
+    const auto row = [&](uint8_t group, const std::string& name) {
+        bool is_felt = std::ranges::find(felt, group) != felt.end();
+        if (!ImGui::Checkbox(sentence(name, "##", int(group)).c_str(), &is_felt)) return;
+        set(actions, model, [&](Session& s) {
+            std::vector<uint8_t>& all = s.probe.touch.groups;
+            std::erase(all, group);
+            if (is_felt) all.push_back(group);
+            std::ranges::sort(all);
+        });
+    };
+    row(0, "unpainted");
+    for (const auto& [number, settings] : model.session.groups) row(number, settings.name);
+    ImGui::EndCombo();
+}
+
+void flag(const char* text, const char* meaning, const Model& model, Actions& actions, bool FeelSettings::*member)
+{
+    bool is_on = model.session.probe.touch.*member;
+    if (ImGui::Checkbox(text, &is_on)) set(actions, model, [&](Session& s) { s.probe.touch.*member = is_on; });
+    hint(meaning);
+}
+
+void tools(const Model& model, Actions& actions)
+{
+    ImGui::Separator();
+    flag("Act at the middle", "Paints and sets nodes at the middle of what the probe touches: on the centre line.",
+         model, actions, &FeelSettings::at_proxy);
+    flag("Width from touch", "New nodes are as wide as a tube that fills the probe as much as what is felt.", model,
+         actions, &FeelSettings::overlap_radius);
+    flag("To nodes", "Where a node lies in the probe, tools act at it, and a new node becomes a link with it.", model,
+         actions, &FeelSettings::to_nodes);
+    label("Plane");
+    if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
+        set(actions, model, [&](Session& s) { s.probe.touch.plane = *plane; });
+    double scale = model.session.interaction.workspace_scale;
+    if (slider("Reach", scale, 0.1, 10.0, "%.2f x", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp) &&
+        !resets("interaction.workspace_scale", actions))
+        set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
+    hint("How far the probe goes for a move of the device. At 1 its reach is the height of the view.");
+}
+
+}  // namespace
+
+void touch_panel(const Model& model, Actions& actions)
+{
+    bool assists = model.session.probe.guided;
+    if (ImGui::Checkbox(sentence("Guidance", key_in_brackets("guide", model.keymap), "##guide").c_str(), &assists))
+        set(actions, model, [&](Session& s) { s.probe.guided = assists; });
+    hint("Pulls the probe towards what it touches, so that it stays on a root while you move along.");
+    if (model.hand && model.hand->is_let_go) {
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Take up again")) actions.emplace_back(LetGo{false});
+    } else {
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Let go")) actions.emplace_back(LetGo{true});
+        hint(sentence("No force at once, whatever happens. ", name_with_key("let_go", model.keymap), ".").c_str());
+    }
+    label("Touches");
+    if (const auto mode = radio(MODES, model.session.probe.touch.mode))
+        set(actions, model, [&](Session& s) { s.probe.touch.mode = *mode; });
+    label("Pull");
+    if (const auto law = radio(LAWS, model.session.probe.guidance))
+        set(actions, model, [&](Session& s) { s.probe.guidance = *law; });
+    threshold(model, actions);
+    strength(model, actions);
+    groups(model, actions);
+    finer(model, actions);
+    tools(model, actions);
+    device_section(model, actions);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,108 @@
+#include "ui/workbench/touch/stylus_motion.h"
+
+#include <array>
+#include <cmath>
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr double HEIGHTS_PER_S = 1.0, DEGREES_PER_S = 90.0;  ///< of a puck at full deflection
+
+/// Columns: right, up, towards the viewer.
+glm::dmat3 frame_of(const Camera& camera)
+{
+    const CameraAxes axes = axes_of(camera);
+    return {axes.right, axes.up, -axes.forward};
+}
+
+int axis_of(TouchPlane plane)
+{
+    return int(plane) - int(TouchPlane::x);
+}
+
+}  // namespace
+
+Workspace workspace_in_view(const Camera& camera, double view_height, double scale)
+{
+    return {.to_volume = frame_of(camera) * (scale * view_height / WORKSPACE_M), .origin = camera.target};
+}
+
+Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m)
+{
+    // A point that was at v in the view is now at turn * (v - before) + after.
+    const glm::dmat3 turn = glm::mat3_cast(glm::normalize(rotation) * glm::inverse(glm::normalize(grab.rotation)));
+    const glm::dvec3 before = units_per_m * grab.position_m, after = units_per_m * position_m;
+    const glm::dmat3 was = frame_of(grab.camera), is = was * glm::transpose(turn);
+    Camera camera = grab.camera;
+    camera.target = grab.camera.target + was * before - is * after;
+    camera.eye = camera.target + is[2] * glm::distance(grab.camera.eye, grab.camera.target);
+    camera.up = is[1];
+    return camera;
+}
+
+Actions moves_of_puck(const DeviceState& state, double seconds)
+{
+    Actions actions;
+    const glm::dvec3 along = HEIGHTS_PER_S * seconds * state.rate, about = DEGREES_PER_S * seconds * state.turn_rate;
+    // What is seen goes with the puck, so the camera goes the other way; towards the viewer, it goes forwards.
+    if (along != glm::dvec3(0.0)) actions.push_back(Move{{-along.x, -along.y, along.z}});
+    if (about.x != 0.0 || about.y != 0.0) actions.push_back(Orbit{-about.y, about.x});
+    if (about.z != 0.0) actions.push_back(Roll{-about.z});
+    return actions;
+}
+
+PlaneHold plane_of(TouchPlane plane, const glm::dvec3& point, const Workspace& workspace, uint32_t count)
+{
+    PlaneHold hold;
+    hold.count = count;
+    hold.is_on = plane != TouchPlane::none;
+    if (!hold.is_on) return hold;
+    glm::dvec3 across(0.0);
+    across[axis_of(plane)] = 1.0;
+    // The workspace is a rotation times a scale.
+    hold.normal = glm::normalize(glm::transpose(workspace.to_volume) * across);
+    hold.point_m = glm::inverse(workspace.to_volume) * (point - workspace.origin);
+    return hold;
+}
+
+glm::dvec3 in_plane(TouchPlane plane, const glm::dvec3& on, const glm::dvec3& point)
+{
+    glm::dvec3 held = point;
+    if (plane != TouchPlane::none) held[axis_of(plane)] = on[axis_of(plane)];
+    return held;
+}
+
+std::optional<double> radius_from_overlap(double share, double ball_radius)
+{
+    if (!(share > 0.0) || !(ball_radius > 0.0)) return std::nullopt;
+    return ball_radius * std::sqrt(1.0 - std::pow(1.0 - std::min(share, 1.0), 2.0 / 3.0));
+}
+
+std::optional<uint32_t> node_within(const TraceGraph& trace, const glm::dvec3& point, double distance)
+{
+    const std::optional<uint32_t> node = trace.nearest_node(point);
+    if (!node || glm::distance(trace.node(*node).position, point) > distance) return std::nullopt;
+    return node;
+}
+
+void keep_felt_groups(std::span<uint32_t> words, const VoxelBox& box, int64_t words_per_row, const Mask& mask,
+                      std::span<const uint8_t> groups)
+{
+    if (groups.empty()) return;
+    std::array<bool, 256> is_felt{};
+    for (const uint8_t group : groups) is_felt[group] = true;
+    const Size3 size = box.size(), counts = mask.brick_counts();
+    for (int64_t z = 0; z < size.z; ++z)
+        for (int64_t y = 0; y < size.y; ++y)
+            for (int64_t x = 0; x < size.x; ++x) {
+                uint32_t& word = words[size_t(x / 32 + words_per_row * (y + size.y * z))];
+                const uint32_t bit = 1u << (x % 32);
+                if (!(word & bit)) continue;
+                const Size3 voxel = box.lower + Size3(x, y, z);
+                const auto& brick = mask.brick(index_of(voxel / BRICK_SIDE, counts));
+                if (!is_felt[brick ? (*brick)[index_in_brick(voxel)] : 0]) word &= ~bit;
+            }
+}
+
+}  // namespace shvr::ui

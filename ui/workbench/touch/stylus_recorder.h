@@ -1,0 +1,34 @@
+#pragma once
+// Gathers what the tap of a device noted into a stylus trace (haptics/replay). Main thread.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "ui/workbench/touch/device_tap.h"
+
+namespace shvr::ui {
+
+class StylusRecorder {
+public:
+    /// `unit`: of the volume's lengths. `number`: of the recording, above 0, as orders to the tap have it.
+    StylusRecorder(std::filesystem::path path, std::string unit, uint32_t number);
+    /// Fetches what is new.
+    void advance(TapLink& link);
+    const std::filesystem::path& path() const { return path_; }
+    uint32_t number() const { return number_; }
+    double seconds() const { return double(trace_.ticks.size()) / trace_.rate_hz; }
+    /// Why it cannot go on; empty: it can.
+    const std::string& end() const { return end_; }
+    /// The trace, with the limits of the device that was recorded. Fails where there is no tick.
+    Trace take(const DeviceCaps& caps);
+
+private:
+    std::filesystem::path path_;
+    uint32_t number_ = 0;
+    Trace trace_;
+    std::string end_;
+    RecordedTick tick_;
+};
+
+}  // namespace shvr::ui
