@@ -56,7 +56,8 @@ struct Model {
 
     // The probe
     glm::dvec3 probe_voxel{0.0};
-    bool is_painting = false;
+    bool is_painting = false;           ///< a stroke is open, or not yet painted to its end
+    bool stroke_is_open = false;        ///< the hand is down
     const ServoState* servo = nullptr;  ///< null while no servo runs
     std::string_view device_name{};     ///< device that moves the probe: "mouse", ...
 
