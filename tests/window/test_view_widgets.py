@@ -61,34 +61,6 @@ class Widgets(Seen):
         self.assertEqual([p["intensity"] for p in shifted[0]], [103, 163, 258])  # a hundredth of 255, in whole numbers
         self.assertEqual([p["intensity"] for p in shifted[-1]], [104, 164, 259])
 
-    def test_a_double_click_resets_a_slider_and_its_number_is_read_over_the_handle(self):
-        self.open_scan(self.write_ball(light={"ambient": 0.4}), preferences={
-            "hints_seen": 3, "layout": {"panels": {"light": {"folded": False}, "transfer_function": {"folded": True},
-                                                   "groups": {"folded": True}, "probe": {"folded": True},
-                                                   "trace": {"folded": True}}}})
-        self.see("Ambient")
-        number = next(seen for seen in self.seen("0.40") if abs(seen["box"][1] - self.see("Ambient")["box"][1]) < 8)
-        x, y = self.middle_of(number)
-        # The handle is dragged to the middle, under the number.
-        made = self.what_follows(lambda: self.do("mousemove", x - 20, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
-                                                 "mousemove", x, y, "sleep", 0.2, "mouseup", 1), "set light.ambient")
-        self.assertIn("set light.ambient", made)
-        self.do("mousemove", *self.middle(), pause_s=0.3)
-        number = next(seen for seen in self.seen("0.5") if abs(seen["box"][1] - self.see("Ambient")["box"][1]) < 8)
-        width, height, rows = self.pixels()
-        box = [round(side) for side in number["box"]]
-        blue = 0   # pixels with the handle's hue
-        for row in rows[box[1]:box[3]]:
-            for at in range(box[0], box[2]):
-                r, g, b = row[3 * at:3 * at + 3]
-                blue += b > r + 40
-        self.assertEqual(blue, 0)
-        self.what_follows(lambda: self.do("mousemove", x + 1, y, "sleep", 0.1, "click", "--repeat", 2, "--delay", 80, 1),
-                          "set light.ambient")
-        self.until(lambda: self.done()[-1] == {"op": "set", "values": {"light": {"ambient": None}}} or
-                   {"op": "set", "values": {"light": {"ambient": None}}} in self.done(), "reset of the slider")
-        self.finish()
-
 
 if __name__ == "__main__":
     unittest.main()
