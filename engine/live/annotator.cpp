@@ -80,7 +80,7 @@ std::vector<Notice> Annotator::open(const WorkFiles& files, const Work::Opening&
 
 std::vector<Notice> Annotator::choose(Belief belief)
 {
-    SHVR_CHECK(!stroke_);
+    SHVR_CHECK(!stroke_is_running());
     Work::Choice choice = work_->choose(belief);
     if (choice.command) show(*choice.command);
     return std::move(choice.notices);
@@ -170,7 +170,7 @@ PaintPreview Annotator::preview(const PaintOp& op, std::span<const RegionAnswer>
 
 int64_t Annotator::paint(const PaintOp& op)
 {
-    SHVR_CHECK(!stroke_);
+    SHVR_CHECK(!stroke_is_running());
     const Answered answered = ask(op);
     Records records = records_of(op, answered);
     StrokeTally tally(op);
@@ -183,47 +183,49 @@ int64_t Annotator::paint(const PaintOp& op)
 
 void Annotator::begin_stroke(const PaintOp& brush)
 {
-    SHVR_CHECK(!stroke_);
-    stroke_.emplace(Stroke{.brush = brush, .query = RegionQuery(renderer_)});
+    SHVR_CHECK(!stroke_is_open());
+    strokes_.push_back(Stroke{.brush = brush, .query = RegionQuery(renderer_)});
 }
 
 void Annotator::extend_stroke(const glm::dvec3& voxel)
 {
-    SHVR_CHECK(stroke_ && !stroke_->has_ended);
-    const glm::dvec3 from = stroke_->last.value_or(voxel);
+    SHVR_CHECK(stroke_is_open());
+    Stroke& stroke = strokes_.back();
+    const glm::dvec3 from = stroke.last.value_or(voxel);
     const std::vector<glm::dvec3> more = stroke_positions(std::array{from, voxel});
     // A segment starts where the previous one ended. A dab is a segment from a point to itself: two positions, one
     // kept.
-    stroke_->positions.insert(stroke_->positions.end(), more.begin() + 1, more.end());
-    stroke_->last = voxel;
+    stroke.positions.insert(stroke.positions.end(), more.begin() + 1, more.end());
+    stroke.last = voxel;
 }
 
 void Annotator::end_stroke()
 {
-    SHVR_CHECK(stroke_);
-    stroke_->has_ended = true;
+    SHVR_CHECK(stroke_is_open());
+    strokes_.back().has_ended = true;
 }
 
-void Annotator::drop_stroke()
+void Annotator::drop_strokes()
 {
-    if (stroke_) last_stroke_ = stroke_->result;
-    stroke_.reset();
+    if (!strokes_.empty()) last_stroke_ = strokes_.front().result;
+    strokes_.clear();
 }
 
 std::optional<VoxelBox> Annotator::advance()
 {
-    if (!stroke_) return std::nullopt;
+    if (strokes_.empty()) return std::nullopt;
     try {
         return advance_stroke();
     } catch (const Error&) {
-        drop_stroke();  // what cannot be recorded is not painted, nor is the rest of the stroke
+        last_stroke_ = strokes_.front().result;
+        strokes_.pop_front();  // what cannot be recorded is not painted, nor is the rest of the stroke
         throw;
     }
 }
 
 std::optional<VoxelBox> Annotator::advance_stroke()
 {
-    Stroke& stroke = *stroke_;
+    Stroke& stroke = strokes_.front();
     std::optional<VoxelBox> changed;
     if (stroke.query.is_asking()) {
         if (!stroke.query.is_answered()) return std::nullopt;
@@ -236,14 +238,15 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         stroke.next = frame.end;
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
-        stroke_.reset();
+        ++strokes_done_;
+        strokes_.pop_front();
     }
     return changed;
 }
 
 std::optional<VoxelBox> Annotator::paint_answer()
 {
-    Stroke& stroke = *stroke_;
+    Stroke& stroke = strokes_.front();
     const std::vector<RegionAnswer> answers = stroke.query.answer();
     Answered answered = nothing_yet(stroke.brush);
     add(answered, stroke.brush, answers);
@@ -282,7 +285,7 @@ const Command* Annotator::edit_trace(std::string label, std::vector<TraceChange>
 
 const Command* Annotator::perform(std::string label, std::vector<Change> changes)
 {
-    SHVR_CHECK(!stroke_);
+    SHVR_CHECK(!stroke_is_running());
     const Command* command = work_->perform({std::move(label), std::move(changes)});
     if (command) show(*command);
     return command;
@@ -290,27 +293,27 @@ const Command* Annotator::perform(std::string label, std::vector<Change> changes
 
 const Command* Annotator::change_settings(std::string label, const SettingValues& values)
 {
-    SHVR_CHECK(!stroke_);
+    SHVR_CHECK(!stroke_is_running());
     return work_->change_settings(std::move(label), values);
 }
 
 const Command* Annotator::undo()
 {
-    const Command* command = stroke_ ? nullptr : work_->undo();
+    const Command* command = stroke_is_running() ? nullptr : work_->undo();
     if (command) show(*command);
     return command;
 }
 
 const Command* Annotator::redo()
 {
-    const Command* command = stroke_ ? nullptr : work_->redo();
+    const Command* command = stroke_is_running() ? nullptr : work_->redo();
     if (command) show(*command);
     return command;
 }
 
 const Command* Annotator::revert()
 {
-    const Command* command = stroke_ ? nullptr : work_->revert();
+    const Command* command = stroke_is_running() ? nullptr : work_->revert();
     if (command) show(*command);
     return command;
 }

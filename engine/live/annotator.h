@@ -9,6 +9,7 @@
 // A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
 // answers, as one command however many answers that takes. One thread, the renderer's.
 
+#include <deque>
 #include <memory>
 #include <optional>
 
@@ -67,24 +68,28 @@ public:
     int64_t paint(const PaintOp& op);
 
     /// Begins a stroke by hand; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see offsets
-    /// that earlier ones have painted. The locks are those of `brush` to the stroke's end.
+    /// that earlier ones have painted. The locks are those of `brush` to the stroke's end. Strokes that have ended and
+    /// are not painted yet are painted first, in order: a hand need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
     /// The next position is not joined to the last one: nothing is painted in between.
     void lift_stroke()
     {
-        if (stroke_) stroke_->last.reset();
+        if (stroke_is_open()) strokes_.back().last.reset();
     }
     void end_stroke();
-    /// A stroke is open, or part of it has not been painted yet.
-    bool stroke_is_running() const { return stroke_.has_value(); }
-    /// The stroke has begun and not ended.
-    bool stroke_is_open() const { return stroke_ && !stroke_->has_ended; }
-    /// Ends it at once: what is painted stays, the rest is dropped.
-    void drop_stroke();
-    /// Paints a finished answer and submits the next query. Returns the voxels that may look different. Fails where the
-    /// stroke cannot go on (the brush is too large, or bricks or the journal fail); then the rest of it is dropped.
+    /// A stroke is open, or part of one has not been painted yet.
+    bool stroke_is_running() const { return !strokes_.empty(); }
+    /// The last stroke has begun and not ended.
+    bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
+    /// Ends all at once: what is painted stays, the rest is dropped.
+    void drop_strokes();
+    /// Paints a finished answer of the first stroke and submits the next query. Returns the voxels that may look
+    /// different. Fails where that stroke cannot go on (the brush is too large, or bricks or the journal fail); then
+    /// the rest of it is dropped.
     std::optional<VoxelBox> advance();
+    /// Counts the strokes by hand that are painted to their end.
+    uint64_t strokes_done() const { return strokes_done_; }
     /// What the last finished stroke did, by hand or by `paint`.
     const StrokeResult& last_stroke() const { return last_stroke_; }
 
@@ -138,7 +143,8 @@ private:
     void show(const Command& command);
 
     Renderer& renderer_;
-    std::optional<Stroke> stroke_;
+    std::deque<Stroke> strokes_;  ///< the first is being painted; the last alone may be open
+    uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;
     std::unique_ptr<Work> work_;

@@ -2,6 +2,8 @@
 the log of actions. Tests wait on these, never on times."""
 import json
 import re
+import struct
+import subprocess
 import time
 from pathlib import Path
 
@@ -38,6 +40,20 @@ def in_short(action):
             else:
                 yield prefix + key
     return action["op"] if action["op"] != "set" else "set " + ", ".join(names(action["values"], ""))
+
+
+def read_xwd(data):
+    """Width, height and rows of red, green and blue of what xwd writes for 24 bits on a little-endian server."""
+    header = struct.unpack(">25I", data[:100])
+    header_bytes, width, height, line, colors = header[0], header[4], header[5], header[12], header[19]
+    begin = header_bytes + 12 * colors
+    rows = []
+    for y in range(height):
+        row = data[begin + y * line: begin + y * line + 4 * width]
+        pixels = bytearray(3 * width)
+        pixels[0::3], pixels[1::3], pixels[2::3] = row[2::4], row[1::4], row[0::4]
+        rows.append(bytes(pixels))
+    return width, height, rows
 
 
 class Seen(Window):
@@ -110,6 +126,11 @@ class Seen(Window):
             before = self.frame()["frame"]
             self.do(*step, pause_s=0)
             self.until(lambda: self.program.poll() is not None or self.frame()["frame"] > before, "a frame")
+
+    def pixels(self):
+        """Width, height and rows of the screen."""
+        return read_xwd(subprocess.run(["xwd", "-root", "-silent", "-display", self.display.name], capture_output=True,
+                                       check=True).stdout)
 
     def press(self, chord):
         """Held for a moment."""

@@ -1,11 +1,13 @@
 """Opening by the file chooser, with real keys: a window that was started without anything."""
+import json
 import time
 import unittest
 
-from test_view import PATIENCE_S, Window
+from seen import Seen
+from test_view import PATIENCE_S
 
 
-class Open(Window):
+class Open(Seen):
     def keys(self, *keys):
         for key in keys:
             self.do("keydown", key, "sleep", 0.1, "keyup", key, pause_s=0.4)
@@ -57,6 +59,38 @@ class Open(Window):
         self.keys("ctrl+o", "Escape", "ctrl+q")
         self.program.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.program.returncode, 0)
+
+    def test_a_scan_that_was_worked_on_is_gone_on_with_and_a_typed_folder_is_listed(self):
+        scan = self.folder / "scan.nrrd"
+        scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" +
+                         bytes(range(256)) * 16)
+        self.open_scan(scan, preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        self.what_follows(lambda: self.press("F2"), "set view.volume")
+        self.press("Ctrl+S")
+        session = self.folder / "scan.session.json"
+        self.wait_for_file(session)
+        self.finish()
+        saved = json.loads(session.read_text())
+        saved["render"]["step_voxels"] = 0.7   # in no journal
+        session.write_text(json.dumps(saved))
+
+        self.view(preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle(), pause_s=1.5)
+        self.press("Ctrl+O")
+        self.see("Hidden")
+        self.do("type", "--delay", 40, f"{self.folder}/")
+        self.see("scan.nrrd")   # without Enter
+        self.do("type", "--delay", 40, "scan.nrrd")
+        self.press("Enter")
+        self.wait_for_window("scan.* - SHVR")
+        self.do("mousemove", *self.middle())
+        self.what_follows(lambda: self.press("F2"), "set view.volume")
+        self.press("Ctrl+S")
+        self.until(lambda: any(seen["text"].startswith("Saved") for seen in self.seen()), "Saved")
+        messages = self.finish()["messages"]
+        self.assertFalse(any("were changed since" in line for line in messages), messages)
+        self.assertEqual(json.loads(session.read_text())["render"]["step_voxels"], 0.7)
 
 
 if __name__ == "__main__":

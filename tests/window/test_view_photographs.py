@@ -4,7 +4,6 @@ none lie over others, is found out here."""
 import json
 import os
 import struct
-import subprocess
 import unittest
 import zlib
 from pathlib import Path
@@ -21,20 +20,6 @@ PANELS = ["transfer_function", "groups", "probe", "trace", "trace_list", "light"
 # A minute each: the others are taken when somebody wants to look at them.
 ALL = unittest.skipUnless(os.environ.get("SHVR_ALL_PHOTOGRAPHS"), "SHVR_ALL_PHOTOGRAPHS=1 takes all of them")
 SLACK = 1.5   # pixels by which boxes of ink may touch
-
-
-def read_xwd(data):
-    """Width, height and rows of red, green and blue of what xwd writes for 24 bits on a little-endian server."""
-    header = struct.unpack(">25I", data[:100])
-    header_bytes, width, height, line, colors = header[0], header[4], header[5], header[12], header[19]
-    begin = header_bytes + 12 * colors
-    rows = []
-    for y in range(height):
-        row = data[begin + y * line: begin + y * line + 4 * width]
-        pixels = bytearray(3 * width)
-        pixels[0::3], pixels[1::3], pixels[2::3] = row[2::4], row[1::4], row[0::4]
-        rows.append(bytes(pixels))
-    return width, height, rows
 
 
 def write_png(path, width, height, rows):
@@ -66,10 +51,8 @@ class Photographs(Seen):
             self.do(pause_s=0.15)
             self.until(is_still, "still screen")
         name = f"{name}-{self.theme}-{self.scale:g}"
-        data = subprocess.run(["xwd", "-root", "-silent", "-display", self.display.name], capture_output=True,
-                              check=True).stdout
         FOLDER.mkdir(exist_ok=True)
-        write_png(FOLDER / f"{name}.png", *read_xwd(data))
+        write_png(FOLDER / f"{name}.png", *self.pixels())
         for what in self.faults():
             self.wrong.append(f"{name}: {what}")
 

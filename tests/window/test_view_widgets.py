@@ -4,11 +4,12 @@ import unittest
 from pathlib import Path
 
 from harness import ENVIRONMENT
-from test_view import WINDOW, Window
+from seen import Seen
+from test_view import WINDOW
 
 
-class Widgets(Window):
-    def view(self, *arguments):
+class Widgets(Seen):
+    def view_ball(self, *arguments):
         self.log = self.folder / "log.jsonl"
         self.start(self.write_ball(), "--log", self.log, *arguments)
         self.wait_for_window("sphere.* - SHVR")
@@ -20,7 +21,7 @@ class Widgets(Window):
         return [line["values"] for line in lines if line["op"] == "set"]
 
     def test_keys_switch_what_is_shown_and_scale_the_workspace(self):
-        self.view()
+        self.view_ball()
         for key in ("F2", "F3", "F2", "F3", "shift+F1"):
             self.do("key", key, pause_s=0.5)
         self.do("keydown", "F7", "sleep", 0.4, "keyup", "F7", pause_s=0.5)
@@ -37,7 +38,7 @@ class Widgets(Window):
         preferences.parent.mkdir(parents=True, exist_ok=True)
         preferences.write_text(json.dumps({"shvr_preferences": 1, "key_set": "thesis"}))
         self.addCleanup(preferences.unlink, missing_ok=True)
-        self.view()
+        self.view_ball()
         self.do("key", "F1", pause_s=0.5)
         self.do("keydown", "ctrl", "keydown", "F7", "sleep", 0.4, "keyup", "F7", "keyup", "ctrl", pause_s=0.5)
         report = self.finish()
@@ -46,7 +47,7 @@ class Widgets(Window):
         self.assertIn("Arrow towards the probe off", report["messages"])
 
     def test_the_wheel_over_the_curve_shifts_all_points_and_slowly_with_shift(self):
-        self.view()
+        self.view_ball()
         points = []
         for y in range(110, 580, 20):  # wherever the curve is; elsewhere the panel is scrolled, which sets nothing
             self.do("mousemove", WINDOW[0] - 160, y, "sleep", 0.2, "click", 4, pause_s=0.4)

@@ -175,8 +175,9 @@ bool FileList::is_shown(const Entry& entry) const
 {
     if (!shows_hidden_ && entry.name.starts_with('.')) return false;
     if (entry.is_folder || shows_all_files_) return true;
-    // DICOM files often have no ending.
-    return is_volume_name(entry.name) || lower_case(entry.name).ends_with(".json") ||
+    const std::string name = lower_case(entry.name);
+    // What belongs to a mask is taken with it; DICOM files often have no ending.
+    return is_volume_name(entry.name) || (name.ends_with(".json") && !name.ends_with(".mask.json")) ||
            fs::path(entry.name).extension().empty();
 }
 
@@ -237,7 +238,8 @@ FileDetails details_of(const fs::path& path)
         details.kind = FileKind::session;
     else if (!format.empty())
         details.kind = FileKind::volume;
-    else if (std::ranges::any_of(ANNOTATION_ENDINGS, [&](const char* ending) { return name.ends_with(ending); }))
+    else if (name.ends_with(".mask.json") ||
+             std::ranges::any_of(ANNOTATION_ENDINGS, [&](const char* ending) { return name.ends_with(ending); }))
         details.kind = FileKind::annotation;
     details.kind_text = details.kind == FileKind::volume ? std::string(format) : text_of(details.kind);
     return details;

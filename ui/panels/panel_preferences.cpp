@@ -49,7 +49,7 @@ void number_row(const char* label, const char* key, double now, double least, do
     ImGui::PushID(key);
     ImGui::SetNextItemWidth(11.0f * ImGui::GetFontSize());
     double shown = edited_key == key ? edited : now;
-    ImGui::SliderScalar("##value", ImGuiDataType_Double, &shown, &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+    slider_scalar("##value", ImGuiDataType_Double, &shown, &least, &most, format);
     hint(text);
     if (ImGui::IsItemActive()) {
         edited_key = key;

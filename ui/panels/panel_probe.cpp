@@ -25,8 +25,7 @@ bool intensity_slider(const char* id, const Model& model, double& intensity)
 {
     const auto [lower, upper] = model.statistics.range();
     ImGui::SetNextItemWidth(-1.0f);
-    return ImGui::SliderScalar(id, ImGuiDataType_Double, &intensity, &lower, &upper, format_of(model.volume.type),
-                               ImGuiSliderFlags_AlwaysClamp);
+    return slider_scalar(id, ImGuiDataType_Double, &intensity, &lower, &upper, format_of(model.volume.type));
 }
 
 // ---- Painting

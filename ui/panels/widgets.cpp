@@ -1,11 +1,14 @@
 #include "ui/panels/widgets.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/session/session_patch.h"
 #include "ui/panels/panels.h"
 
@@ -32,8 +35,43 @@ void label(const char* text)
 bool slider(const char* label, double& value, double lower, double upper, const char* format, ImGuiSliderFlags flags)
 {
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &lower, &upper, format,
-                               ImGuiSliderFlags_AlwaysClamp | flags);
+    return slider_scalar(label, ImGuiDataType_Double, &value, &lower, &upper, format, flags);
+}
+
+/// The number stands on the frame's own colour, before the handle, which shows above and below it.
+bool slider_scalar(const char* label, ImGuiDataType type, void* value, const void* lower, const void* upper,
+                   const char* format, ImGuiSliderFlags flags)
+{
+    const std::string hidden = label[0] == '#' ? std::string(label) : sentence("##", label);
+    const float width = ImGui::CalcItemWidth();
+    const ImGuiID id = ImGui::GetID(hidden.c_str());
+    const bool is_typed = ImGui::TempInputIsActive(id);
+    if (!is_typed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
+    ImGui::SetNextItemWidth(width);
+    const bool is_changed =
+        ImGui::SliderScalar(hidden.c_str(), type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
+    if (!is_typed) ImGui::PopStyleColor();
+    const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (!is_typed) {
+        constexpr float SPARE = 2.0f;  // pixels beside the number
+        std::array<char, 64> text{};
+        ImGui::DataTypeFormatString(text.data(), int(text.size()), type, value, format);
+        const ImVec2 size = ImGui::CalcTextSize(text.data());
+        const ImVec2 at{std::floor(0.5f * (begin.x + end.x - size.x)), begin.y + style.FramePadding.y};
+        const ImGuiCol ground = ImGui::IsItemActive()    ? ImGuiCol_FrameBgActive
+                                : ImGui::IsItemHovered() ? ImGuiCol_FrameBgHovered
+                                                         : ImGuiCol_FrameBg;
+        list.AddRectFilled({at.x - SPARE, at.y}, {at.x + size.x + SPARE, at.y + size.y}, ImGui::GetColorU32(ground));
+        list.PushClipRect(begin, end, true);
+        list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.data());
+        list.PopClipRect();
+    }
+    if (label[0] != '#')
+        list.AddText({end.x + style.ItemInnerSpacing.x, begin.y + style.FramePadding.y},
+                     ImGui::GetColorU32(ImGuiCol_Text), label);
+    return is_changed;
 }
 
 bool resets(const char* key, Actions& actions)

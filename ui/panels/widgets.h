@@ -28,6 +28,10 @@ void label(const char* text);
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
 
+/// ImGui::SliderScalar with its number readable wherever the handle is. `label` may be hidden ("##value").
+bool slider_scalar(const char* label, ImGuiDataType type, void* value, const void* lower, const void* upper,
+                   const char* format, ImGuiSliderFlags flags = 0);
+
 /// A double click on the widget drawn last gives a setting what ships, or what is chosen for the volume: its key as in
 /// the table of engine/session, "light.ambient". Returns whether that happened, so that the widget's own change is not
 /// sent as well.

@@ -1,6 +1,7 @@
 // Why actions would do nothing just now, in words that fit after a colon or into a tooltip.
 
 #include <algorithm>
+#include <array>
 
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/preferences.h"
@@ -101,7 +102,7 @@ std::string why(const Model& model, const Paint& action)
 {
     if (!action.on) return {};
     if (model.tool() == Tool::trace) return why_without_group(model, model.brush().group);
-    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+    return model.stroke_is_open ? IS_PAINTING : why_not_edited(model);
 }
 
 std::string why(const Model& model, const PaintOp&)
@@ -221,6 +222,14 @@ std::string why(const Model& model, const SaveAs&)
     return model.is_saving ? IS_SAVING : why_not_edited(model);
 }
 
+std::string why(const Model&, const ExportTask& task)
+{
+    const bool has_file =
+        std::ranges::any_of(std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics},
+                            [](const auto* path) { return !path->empty(); });
+    return has_file || task.labels ? "" : "no file is named; expected at least one to be written";
+}
+
 std::string why(const Model& model, const CorrectSpacing&)
 {
     return model.session.procedural ? "the volume is computed, and its spacing is the session's"
@@ -295,6 +304,11 @@ constexpr bool NEEDS_DOCUMENT =
                ShowPreferences, FocusOn, ShowFullScreen, Quit>;
 
 }  // namespace
+
+bool waits_for_strokes(const Model& model, const Action& action)
+{
+    return model.is_painting && !model.stroke_is_open && why_not(model, action) == IS_PAINTING;
+}
 
 std::string why_not(const Model& model, const Action& action)
 {

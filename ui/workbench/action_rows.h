@@ -39,5 +39,7 @@ Action action_of_text(const std::string& text);
 /// Why it would do nothing or be refused: "nothing is open", "no node is selected"; empty where nothing speaks against
 /// it. Applying may still fail for reasons that only the device or a file knows.
 std::string why_not(const Model& model, const Action& action);
+/// Whether it only has to wait for strokes that have ended and are being painted.
+bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

@@ -49,6 +49,7 @@ void Workbench::perform(const Action& action)
     if (!document_ && !ui::why_not(model(), action).empty())
         fail(opening_ ? sentence(opening_name(), " is being opened") : std::string("Nothing is open"));
     if (log_ && document_ && document_->touch.servo()) log_(line_of(PlaceProbe{document_->probe_voxel()}));
+    if (document_ && document_->annotator.stroke_is_running() && waits_for_strokes(model(), action)) await_strokes();
     recent_.begin(action);
     logged_instead_.clear();
     std::visit([&](const auto& each) { act(each); }, action);
@@ -191,11 +192,12 @@ void Workbench::follow_stroke()
     journal_failure_ = failure;
     if (!annotator.stroke_is_running()) return;
     extend_stroke();
+    const uint64_t done = annotator.strokes_done();
     const bool has_painted = annotator.advance().has_value();
     const uint64_t before =
         std::exchange(stroke_uploads_, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
-    if (!annotator.stroke_is_running()) stroke_ended();
+    if (annotator.strokes_done() != done) stroke_ended();
 }
 
 void Workbench::follow_look()
@@ -272,6 +274,7 @@ Model Workbench::model() const
             .screen = &document.screen,
             .probe_voxel = document.probe_voxel(),
             .is_painting = document.annotator.stroke_is_running(),
+            .stroke_is_open = document.annotator.stroke_is_open(),
             .servo = document.touch.servo(),
             .tool_voxel = document.tool_voxel(),
             .tool_node = document.tool_node(),

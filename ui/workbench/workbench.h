@@ -313,7 +313,7 @@ private:
     void prefer(Preferences preferences);
 
     // Looking
-    const Pane& pane(size_t index) const;
+    Pane pane(size_t index) const;
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
     glm::dvec3 pivot() const;
@@ -346,6 +346,7 @@ private:
     void log_instead(std::initializer_list<Action> actions);
     void extend_stroke();
     void stroke_ended();
+    void await_strokes();
     void show_changes(const Command& command);
     template <class Way>
     void step(int count, const char* done, const char* nothing, Way way);

@@ -9,7 +9,7 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
     const bool was_painting = document_ && document_->annotator.stroke_is_running();
     screenshots_.drop_large();
     if (document_) {
-        document_->annotator.drop_stroke();
+        document_->annotator.drop_strokes();
         document_->previewer.drop();
         document_->meter.drop();
         document_->touch.drop_queries();

@@ -74,16 +74,18 @@ void Workbench::act(const Zoom& action)
     look_from(zoomed(document_->camera, pane(action.pane).pixels(), action.pixel, action.factor));
 }
 
-const Pane& Workbench::pane(size_t index) const
+/// As camera and probe are now: the screen follows them once a turn, and several actions may come in one.
+Pane Workbench::pane(size_t index) const
 {
-    const std::vector<Screen::Part>& parts = document_->screen.parts();
-    if (index >= parts.size()) fail("the window has no such part any more");
-    return parts[index].pane;
+    const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
+                                             renderer_.scene().info(), document_->probe_voxel());
+    if (pixels_.x == 0 || index >= panes.size()) fail("the window has no such part any more");
+    return panes[index];
 }
 
 void Workbench::act(const DragInMap& action)
 {
-    const Pane& map = pane(action.pane);
+    const Pane map = pane(action.pane);
     const CameraAxes axes = axes_of(map.shot.camera);
     const glm::dvec2 way = action.pixels * pixel_size(map.shot.camera, map.pixels(), 1.0);
     const glm::dvec3 moved = axes.right * way.x - axes.up * way.y;

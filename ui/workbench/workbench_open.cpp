@@ -17,6 +17,7 @@
 #include "engine/base/assets.h"
 #include "engine/base/text.h"
 #include "engine/session/picture_session.h"
+#include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
 #include "haptics/devices/device_list.h"
 #include "haptics/hid/hid_profile.h"
@@ -40,6 +41,20 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     if (!opened.pictured.empty() && std::filesystem::exists(opened.pictured, ignored)) return opened.pictured;
     const bool has_file = !opened.session.procedural && !opened.session.raw_layout;
     return has_file ? opened.session.volume_path : std::filesystem::path();
+}
+
+/// Who opens a scan once more wants what was saved beside it: its session, if that is of this very file. Empty: there
+/// is none.
+std::filesystem::path session_saved_for(const std::filesystem::path& volume)
+{
+    std::error_code ignored;
+    if (!session_file_of(volume).empty()) return {};
+    const std::filesystem::path beside = session_path_of(volume);
+    const std::optional<std::string> text = text_of_session(beside);
+    if (!text) return {};
+    const Session session = read_session(session_document(*text, beside.string()), beside.parent_path());
+    const bool is_of_it = !session.procedural && std::filesystem::equivalent(session.volume_path, volume, ignored);
+    return is_of_it ? beside : std::filesystem::path();
 }
 
 }  // namespace
@@ -151,15 +166,17 @@ void Workbench::read_next()
         opening.journal_bytes = work.journal().bytes;
     }
     const std::filesystem::path path = opening.path;
-    const auto read = [this, path, settings = opening.settings, how,
-                       flush](ProgressReporter& reporter) -> std::pair<Document::Read, std::optional<Session>> {
+    const auto read = [this, path, settings = opening.settings, how, flush, goes_on = !options_.is_script](
+                          ProgressReporter& reporter) -> std::pair<Document::Read, std::optional<Session>> {
         const std::string name = short_name(path);
         if (flush) flush();
         const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name)}};
-        std::filesystem::path input = path;
+        const std::filesystem::path saved =
+            goes_on && settings.empty() ? session_saved_for(path) : std::filesystem::path();
+        std::filesystem::path input = saved.empty() ? path : saved;
         std::optional<Session> pictured{};
-        OpenedSession opened = open_session(path, settings, options);
-        if (const std::filesystem::path of = opened_for_picture(path, opened); !of.empty()) {
+        OpenedSession opened = open_session(input, settings, options);
+        if (const std::filesystem::path of = opened_for_picture(input, opened); !of.empty()) {
             pictured = std::move(opened.session);
             input = of;
             opened = open_session(input, settings, options);

@@ -65,11 +65,13 @@ std::optional<glm::dvec3> Workbench::seen_near(const Pane& seen, const glm::dvec
 
 void Workbench::act(const ProbeOnto& action)
 {
-    const Pane& seen = pane(action.pane);
+    const Pane seen = pane(action.pane);
     const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
     if (!point) return say("Nothing is seen there: the probe stays where it is");
     move_probe(*point, true);
     const Document& document = *document_;
+    if (document.annotator.stroke_is_running() && !document.touch.servo())
+        log_instead({PlaceProbe{document.probe_voxel()}});  // what is seen may still be painted over
     std::string said = "Probe at " + place_in_words(document.probe_voxel(), document.volume());
     if (!seen.shot.is_slice)
         said += sentence(", ",
@@ -82,7 +84,7 @@ void Workbench::act(const ProbeOnto& action)
 
 void Workbench::act(const ProbeAlong& action)
 {
-    const Pane& seen = pane(action.pane);
+    const Pane seen = pane(action.pane);
     const glm::dvec3 probe = document_->touch.probe(), level = in_plane_of(probe, seen, action.pixel);
     const bool is_stroke = document_->annotator.stroke_is_open() && !action.jumps;
     const std::optional<glm::dvec3> point = is_stroke
@@ -135,7 +137,8 @@ void Workbench::act(const Paint& action)
         if (action.on) add_node_here();
         return;
     }
-    if (action.on && !annotator.stroke_is_running()) {
+    if (action.on && !annotator.stroke_is_open()) {
+        if (settings_to_record_ || document_->drags_node) await_strokes();  // in the history they come before
         if (document_->drags_node) act(DragNode{false});
         const Previewer& previewer = document_->previewer;
         if (previewer.shown() && previewer.is_current()) previewed_at_stroke_ = previewer.shown()->voxels;
@@ -144,7 +147,7 @@ void Workbench::act(const Paint& action)
         annotator.begin_stroke(document_->stroke());
         stroke_end_voxel_ = document_->tool_voxel();
         annotator.extend_stroke(stroke_end_voxel_);
-    } else if (!action.on && annotator.stroke_is_running()) {
+    } else if (!action.on && annotator.stroke_is_open()) {
         extend_stroke();
         annotator.end_stroke();
     }

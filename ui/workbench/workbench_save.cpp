@@ -80,8 +80,9 @@ void Workbench::follow_save()
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
         renderer_.scene().advance();  // takes its bricks, also where no picture is drawn
+        if (annotator.stroke_is_open()) stroke_progress_s_ = options_.now_s();  // a hand may rest
         if (options_.now_s() - stroke_progress_s_ <= PATIENCE_S) return;
-        annotator.drop_stroke();
+        annotator.drop_strokes();
         unpainted_ = sentence("its bricks did not arrive within ", PATIENCE_S, " s");
     }
     begin_save_to(*std::exchange(wanted_save_, std::nullopt));
@@ -231,6 +232,21 @@ void Workbench::flush()
     document_->annotator.work().flush();
 }
 
+/// What changes annotation comes after the strokes that the hand has ended. They take milliseconds, but for bricks
+/// that come from a slow disk; what then still cannot be done says so.
+void Workbench::await_strokes()
+{
+    constexpr double LONGEST_S = 2.0;
+    constexpr std::chrono::microseconds TURN(200);
+    const Annotator& annotator = document_->annotator;
+    const double until = options_.now_s() + LONGEST_S;
+    while (annotator.stroke_is_running() && !annotator.stroke_is_open() && options_.now_s() < until) {
+        follow_stroke();
+        renderer_.scene().advance();
+        std::this_thread::sleep_for(TURN);
+    }
+}
+
 std::string Workbench::finish_stroke()
 {
     constexpr std::chrono::milliseconds TURN(1);
@@ -247,7 +263,7 @@ std::string Workbench::finish_stroke()
                 std::exchange(uploads, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
             if (has_painted || uploads != uploads_before) last_progress_s = options_.now_s();
             if (options_.now_s() - last_progress_s > PATIENCE_S) {
-                annotator.drop_stroke();
+                annotator.drop_strokes();
                 return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
             }
             std::this_thread::sleep_for(TURN);

@@ -166,7 +166,7 @@ void Workbench::act(const SelectAt& action)
 {
     Document& document = *document_;
     if (document.annotator.stroke_is_running()) fail("Nothing can be selected while a stroke is being painted");
-    const Pane& seen = pane(action.pane);
+    const Pane seen = pane(action.pane);
     const TraceGraph& trace = document.annotator.document().trace;
     const TraceHit hit = trace_hit(trace, seen, action.pixel, document.volume());
     if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {

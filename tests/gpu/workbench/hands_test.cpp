@@ -88,6 +88,55 @@ TEST_CASE_FIXTURE(OnDevice, "a pointer that jumps paints nothing in between, in 
     }
 }
 
+TEST_CASE_FIXTURE(OnDevice,
+                  "strokes and edits that follow each other faster than the device paints are all done, in order")
+{
+    Plates on(renderer());
+    const auto stroke = [&](double x) {
+        on.bench.perform(PlaceProbe{{x, 36.0, 24.0}});
+        on.bench.perform(Paint{true});
+        on.bench.perform(Paint{false});
+    };
+    stroke(8.0);
+    stroke(20.0);
+    REQUIRE(on.bench.model().is_painting);  // nothing has been painted yet
+    on.bench.perform(UndoOp{});
+    CHECK(on.is_painted(8, 36));
+    CHECK(!on.is_painted(20, 36));
+    stroke(32.0);
+    on.bench.perform(Set{R"({"groups":{"1":{"name":"leaf trace"}}})"});
+    stroke(40.0);
+    on.bench.perform(NodeOp{.at = {40.0, 36.0, 24.0}, .radius_voxels = {}, .group = {}});
+    settle(on.bench);
+    CHECK(on.is_painted(32, 36));
+    CHECK(on.is_painted(40, 36));
+    CHECK(on.bench.model().undoable == 5);
+    std::vector<std::string> said;
+    for (int i = 0; i < 5; ++i) {
+        on.bench.perform(UndoOp{});
+        said.push_back(on.bench.messages().last());
+    }
+    CHECK(said[0].find("node") != std::string::npos);
+    CHECK(said[1].find("fill") != std::string::npos);
+    CHECK_MESSAGE(said[2].find("fill") == std::string::npos, said[2]);  // the name
+    CHECK(said[3].find("fill") != std::string::npos);
+    CHECK(said[4].find("fill") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a pixel means the same place whether the screen has followed the camera or not")
+{
+    glm::dvec3 places[2];
+    for (const bool settles : {false, true}) {
+        Plates on(renderer());
+        on.perform(PlaceProbe{{8.0, 36.0, 24.0}});
+        for (const Action& action :
+             {Action(Orbit{20.0, 10.0}), Action(Zoom{0, {20.0, 30.0}, 2.0}), Action(ProbeTo{0, {70.0, 20.0}})})
+            settles ? on.perform(action) : on.bench.perform(action);
+        places[settles] = on.bench.model().probe_voxel;
+    }
+    CHECK(places[0] == places[1]);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "the tool that erases takes paint away, whatever the active group is")
 {
     Plates on(renderer(), R"(, "group": 1)");

@@ -43,6 +43,8 @@ TEST_CASE_FIXTURE(OnDevice, "an export holds what was there when it was asked fo
 {
     Desk desk(renderer());
     desk.stroke(3);
+    CHECK(desk.bench.why_not(ExportTask{}) == "no file is named; expected at least one to be written");
+    CHECK(desk.bench.why_not(ExportTask{.mask = desk.path("before.mask")}).empty());
     desk.bench.perform(ExportTask{.mask = desk.path("before.mask")});
     desk.stroke(5);
     desk.bench.perform(ExportTask{.mask = desk.path("after.mask")});

@@ -52,7 +52,7 @@ TEST_CASE("a folder is listed with folders first, and numbers in names count as 
 {
     const TemporaryFolder folder;
     for (const char* name : {"slice10.tif", "slice2.tif", "Slice1.tif", "slice02.tif", "b/in", "a10/in", "a9/in",
-                             ".hidden.tif", ".git/in", "notes.txt", "scan.json", "IM0001"})
+                             ".hidden.tif", ".git/in", "notes.txt", "scan.json", "IM0001", "scan.mask.json"})
         touch(folder.path / name);
     const Names seen = {"a9",         "a10",         "b",          "IM0001",     "scan.json",
                         "Slice1.tif", "slice02.tif", "slice2.tif", "slice10.tif"};
@@ -60,12 +60,12 @@ TEST_CASE("a folder is listed with folders first, and numbers in names count as 
     // In whatever parts it is read.
     CHECK(listed(folder.path, false, false, 1) == seen);
     CHECK(listed(folder.path, true, true) == Names{".git", "a9", "a10", "b", ".hidden.tif", "IM0001", "notes.txt",
-                                                   "scan.json", "Slice1.tif", "slice02.tif", "slice2.tif",
-                                                   "slice10.tif"});
+                                                   "scan.json", "scan.mask.json", "Slice1.tif", "slice02.tif",
+                                                   "slice2.tif", "slice10.tif"});
     FileList list;
     list.enter(folder.path);
     list.read_on();
-    CHECK(list.left_out() == 3);
+    CHECK(list.left_out() == 4);
     CHECK(list.row_of("slice2.tif") == 7);
     CHECK_FALSE(list.row_of("notes.txt"));
     CHECK(list.row_beginning("S", 0) == 4);  // scan.json
@@ -96,6 +96,7 @@ TEST_CASE("what a file is, is told by its name, and for folders and .json by a l
     touch(folder.path / "scan.nii.gz", "twelve bytes");
     touch(folder.path / "session.json", R"({"shvr_session": 1})");
     touch(folder.path / "raw.json", R"({"size": 1})");
+    touch(folder.path / "paint.mask.json", R"({"size": 1})");
     for (const char* name : {"paint.mask", "tree.SWC", "notes.txt", "series/1.dcm", "series/2.dcm", "series/README",
                              "slices/a1.tif", "slices/a2.TIFF", "one/a.tif", "scan.zarr/.zattrs", "v3/zarr.json",
                              "project/.zattrs", "project/shvr/session.json"})
@@ -107,6 +108,7 @@ TEST_CASE("what a file is, is told by its name, and for folders and .json by a l
     CHECK(kind("session.json") == FileKind::session);
     CHECK(kind("raw.json") == FileKind::other);
     CHECK(kind("paint.mask") == FileKind::annotation);
+    CHECK(kind("paint.mask.json") == FileKind::annotation);
     CHECK(kind("tree.SWC") == FileKind::annotation);
     CHECK(kind("notes.txt") == FileKind::other);
     CHECK(kind("series") == FileKind::dicom_series);

@@ -241,9 +241,24 @@ void FileChooser::path_field()
                              (question_.wanted == Wanted::new_file ? 0 : ImGuiInputTextFlags_AutoSelectAll),
                          complete, &folder);
     field_has_keys_ = ImGui::IsItemActive() || entered;
-    if (ImGui::IsItemEdited()) failure_.clear();
+    if (ImGui::IsItemEdited()) {
+        failure_.clear();
+        follow_typed();
+    }
     ImGui::PopID();
     if (entered) accept(text_, true);
+}
+
+/// The list shows the folder of a whole path that is being typed, once its slash is there.
+void FileChooser::follow_typed()
+{
+    if (!text_.ends_with('/') || !(text_.starts_with('/') || text_.starts_with('~'))) return;
+    const fs::path folder = typed_path(text_, list_.folder());
+    std::error_code ignored;
+    if (folder == list_.folder() || !fs::is_directory(folder, ignored)) return;
+    list_.enter(folder);
+    selected_.reset();
+    scrolls_ = true;
 }
 
 /// Up and Down go from the field into the list; there letters jump, Backspace goes up, and / or ~ begins a path.

@@ -42,6 +42,7 @@ private:
     void enter(const std::filesystem::path& folder);
     void select(size_t row);
     void path_field();
+    void follow_typed();
     void place_list();
     void file_table(float height);
     void keys();

@@ -10,6 +10,7 @@
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/action_rows.h"
 
 namespace shvr::ui {
 
@@ -21,13 +22,13 @@ struct TaskDialog {
     Task task;
     bool is_asked_for = false;
 
-    void draw(const char* verb, Actions& actions)
+    void draw(const Model& model, const char* verb, Actions& actions)
     {
         if (std::exchange(is_asked_for, false)) ImGui::OpenPopup(Task::TITLE);
         ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
         if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
         const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); });
-        const std::string why = why_not();
+        const std::string why = refusal(model);
         ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         ImGui::BeginDisabled(!why.empty());
@@ -44,11 +45,11 @@ struct TaskDialog {
     }
 
 private:
-    std::string why_not() const
+    std::string refusal(const Model& model) const
     {
         try {
             check(task);
-            return {};
+            return why_not(model, Action(task));
         } catch (const Error& error) {
             return error.what();
         }
@@ -90,10 +91,10 @@ void task_menu(const Model& model)
 void task_dialogs(const Model& model, Actions& actions)
 {
     load_dialogs(model, actions);
-    dialogs.exporting.draw("Export", actions);
-    dialogs.importing.draw("Import", actions);
-    dialogs.labelling.draw("Label", actions);
-    dialogs.evaluating.draw("Compare", actions);
+    dialogs.exporting.draw(model, "Export", actions);
+    dialogs.importing.draw(model, "Import", actions);
+    dialogs.labelling.draw(model, "Label", actions);
+    dialogs.evaluating.draw(model, "Compare", actions);
 }
 
 void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions)

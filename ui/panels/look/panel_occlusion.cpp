@@ -25,8 +25,8 @@ void occlusion_panel(const Model& model, Actions& actions)
     is_reset |= resets("light.occlusion.curve", actions);
     const uint32_t fewest = 4, most = 256;
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    is_other |= ImGui::SliderScalar("Rays", ImGuiDataType_U32, &settings.rays, &fewest, &most, "%u",
-                                    ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    is_other |=
+        slider_scalar("Rays", ImGuiDataType_U32, &settings.rays, &fewest, &most, "%u", ImGuiSliderFlags_Logarithmic);
     hint("Directions tested for each voxel: more are smoother and take longer.");
     is_reset |= resets("light.occlusion.rays", actions);
     is_other |= ImGui::Checkbox("Full sphere", &settings.full_sphere);

@@ -94,8 +94,9 @@ void interaction_controls(const Model& model, Actions& actions)
     hint("More is smoother and leaves less time for other work.");
     is_reset |= resets("interaction.frames_per_second", actions);
     int scale = int(interaction.screenshot_scale);
+    const int smallest = 1, largest = 16;
     ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    is_other |= ImGui::SliderInt("Screenshot", &scale, 1, 16, "%d times", ImGuiSliderFlags_AlwaysClamp);
+    is_other |= slider_scalar("Screenshot", ImGuiDataType_S32, &scale, &smallest, &largest, "%d times");
     hint(("Size of large screenshots" + key_in_brackets("large_screenshot", model.keymap) + ", relative to the window.")
              .c_str());
     is_reset |= resets("interaction.screenshot_scale", actions);

@@ -18,15 +18,14 @@ namespace {
 
 const char* const WINDOW_CAMERA = "window";
 
-/// A session file is saved in place; for a volume, file or folder, the session file is put beside it.
+}  // namespace
+
 std::filesystem::path session_path_of(const std::filesystem::path& input)
 {
     if (std::filesystem::path file = session_file_of(input); !file.empty()) return file;
     std::filesystem::path beside = input.has_filename() ? input : input.parent_path();
     return beside.replace_extension(".session.json");
 }
-
-}  // namespace
 
 std::optional<std::string> text_of_session(const std::filesystem::path& path)
 {

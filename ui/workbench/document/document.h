@@ -152,6 +152,8 @@ private:
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
 };
 
+/// A session file is saved in place; for a volume, file or folder, the session file is put beside it.
+std::filesystem::path session_path_of(const std::filesystem::path& input);
 /// Nothing where there is no file.
 std::optional<std::string> text_of_session(const std::filesystem::path& path);
 
