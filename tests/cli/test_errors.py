@@ -6,7 +6,8 @@ import unittest
 
 from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
-COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"]]
+COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"],
+            *(["golden", part] for part in ("run", "bless", "calibrate", "report"))]
 
 
 class Usage(CliTest):

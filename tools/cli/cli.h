@@ -96,6 +96,7 @@ void add_label(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);
+void add_golden(CLI::App& program);
 void add_view(CLI::App& program);
 void add_haptics(CLI::App& program);
 
