@@ -7,6 +7,7 @@ import unittest
 from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
 COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"],
+            ["bench"],
             *(["golden", part] for part in ("run", "bless", "calibrate", "report"))]
 
 
