@@ -147,7 +147,8 @@ def read_pfm(path):
 def reference_of(session_path, volume):
     """Reference pixels of the session: [[x, y, r, g, b, a], ...]; kept for the next time."""
     digest = hashlib.sha256()
-    sources = [ROOT / "tests/tools/reference_picture.cpp", *sorted((ROOT / "tests/reference").glob("*.cpp"))]
+    sources = [ROOT / "tests/tools/reference_picture.cpp", ROOT / "tools/bench/reference_scene.cpp",
+               *sorted((ROOT / "tests/reference").glob("*.cpp"))]
     for path in (session_path, volume.with_suffix(".raw"), *sources):
         digest.update(path.read_bytes())
     digest.update(str(REFERENCE_PIXELS).encode())

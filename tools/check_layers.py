@@ -63,8 +63,14 @@ MAY_INCLUDE = {
     "ui/files": "engine/base engine/formats",
     "ui": "engine/base engine/gpu engine/session engine/live haptics ui/files ui/workbench",
     "tests": "*",
+    "tests/reference": "engine/annotation",
+    "tools/report": "engine/base",
+    "tools/bench": "engine/base engine/annotation engine/bricks engine/session tests/reference "
+    "tools/golden tools/report",
+    "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders haptics haptics/devices haptics/hid ui ui/workbench",
+    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders haptics haptics/devices haptics/hid ui ui/workbench "
+    "tools/golden tools/bench tools/report",
 }
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics",

@@ -6,7 +6,9 @@ import unittest
 
 from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
-COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"]]
+COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"],
+            ["bench"],
+            *(["golden", part] for part in ("run", "bless", "calibrate", "report"))]
 
 
 class Usage(CliTest):

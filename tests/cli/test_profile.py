@@ -50,6 +50,21 @@ class Profile(CliTest):
         self.assertLessEqual(profile["sum_median_ms"], 1.05 * profile["frame_median_ms"] + 0.3)
         self.assertIs(profile["serialize"], True)
 
+    def test_the_page_shows_every_pass_of_every_frame(self):
+        path = self.folder / "profile.html"
+        profile = self.profile("--html", path)
+        self.assertEqual(profile["written"], [str(path)])
+        page = path.read_text()
+        self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        for one in profile["passes"]:
+            self.assertEqual(page.count(f"<title>{one['name']}, frame "), one["count"], one["name"])
+            self.assertAlmostEqual(one["gb_per_s"], one["bytes"] / one["median_ms"] / 1e6)
+        self.assertEqual(page.count("<title>frame "), FRAMES)
+        for name in profile["bytes"]["by_resource"]:
+            self.assertIn(f"<td>{name}</td>", page)
+        self.assertIn("<polyline", page)
+        self.check_refused("profile", self.write_session(), "--html", self.folder / "a.txt", status=2, says=["--html"])
+
     def test_counters_are_those_of_render(self):
         session = self.write_session()
         picture = self.check_json("render", session, "-o", self.folder / "a.png")

@@ -47,6 +47,8 @@ struct Shading {
     double shininess = 32.0;
     double fade = 0.03;                  ///< density per reference voxel; 0: w = 1 wherever m > 1e-6
     glm::dvec3 to_light{0.0, 0.0, 1.0};  ///< physical space, need not be unit
+    /// What `ambient` is multiplied by, trilinear between voxel centres; empty: 1. One per voxel.
+    std::vector<double> ambient_shares{};
 };
 
 /// color' = mix(color', this color, clamp(size d^rate, 0, 1)) after shading, 0^0 = 1; d = clamp(depth along `forward`,

@@ -16,7 +16,7 @@ constexpr int DEEPEST_PROFILE = 16;  // ours have 4 levels; each costs far more 
 
 struct ProfileCommandOptions {
     Common common;
-    std::string input, size, camera, trace, csv, graph;
+    std::string input, size, camera, trace, csv, graph, html;
     int frames = 20;
     int warmup = 3;  ///< the first frames compile kernels and wake up the device
     bool serialize = false;
@@ -82,6 +82,7 @@ void run_profile(ProfileCommandOptions options)
         throw UsageError("INPUT is missing; expected a session (.json), project folder or volume");
     check_output("--trace", options.trace, {".json"});
     check_output("--csv", options.csv, {".csv"});
+    check_output("--html", options.html, {".html"});
     check_output("--graph", options.graph, {".dot", ".svg", ".json"});
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
@@ -100,6 +101,7 @@ void run_profile(ProfileCommandOptions options)
     };
     write(options.trace, [&] { write_text(options.trace, trace_of(profile)); });
     write(options.csv, [&] { write_text(options.csv, csv_of(profile)); });
+    write(options.html, [&] { write_text(options.html, page_of(profile)); });
     write(options.graph, [&] { write_graph(options.graph, profile.graph); });
 
     Json summary = summary_of(profile);
@@ -160,6 +162,8 @@ void add_profile(CLI::App& program)
     command->add_option("--trace", options->trace, "Trace to write (.json), for ui.perfetto.dev or chrome://tracing");
     command->add_option("--csv", options->csv, "Table to write (.csv): one row per frame and pass");
     command->add_option("--graph", options->graph, "Frame graph to write (.dot, .svg, .json)");
+    command->add_option("--html", options->html,
+                        "Page to write (.html): passes and memory over time, in one file that needs nothing else");
     command->add_flag("--serialize", options->serialize, "A full barrier between passes: times that do not overlap");
     add_belief_option(*command, options->common);
     add_device_options(*command, options->common);

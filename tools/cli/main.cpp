@@ -65,6 +65,8 @@ int run(int argc, char** argv)
     shvr::cli::add_label(program);
     shvr::cli::add_compare(program);
     shvr::cli::add_profile(program);
+    shvr::cli::add_golden(program);
+    shvr::cli::add_bench(program);
     shvr::cli::add_phantom(program);
     shvr::cli::add_haptics(program);
     shvr::cli::add_view(program);

@@ -46,6 +46,9 @@ std::string trace_of(const Profile& profile);
 /// One row per frame and pass.
 std::string csv_of(const Profile& profile);
 
+/// A self-contained page: frames and passes over time, memory over time, passes, work, resources.
+std::string page_of(const Profile& profile);
+
 /// .dot, .svg (by the program `dot`) or .json, by the extension of `path`.
 void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
 

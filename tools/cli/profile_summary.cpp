@@ -47,6 +47,8 @@ Json pass_summary(const PassHistory& history)
             {"p95_ms", or_null(spread, &Spread::p95)},
             {"max_ms", or_null(spread, &Spread::maximum)},
             {"bytes", history.last.bytes},
+            {"gb_per_s", spread && spread->median > 0.0 ? Json(double(history.last.bytes) / (spread->median * 1e6))
+                                                        : Json(nullptr)},
             {"dispatches", history.last.dispatches},
             {"barrier", history.last.barrier}};
 }

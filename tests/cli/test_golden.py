@@ -1,0 +1,170 @@
+"""shvr golden: regression pictures, as someone uses them who has never seen this repository."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import unittest
+import xml.etree.ElementTree
+from pathlib import Path
+
+from harness import ENVIRONMENT, SHVR, CliTest
+
+PAGE = Path("tools/golden/USING.md").read_text()
+# Blessing refuses in continuous integration, where these tests may run.
+AT_HOME = {key: value for key, value in ENVIRONMENT.items() if key != "CI"}
+
+
+def blocks(language):
+    """Of the page: what stands after the language, and the text."""
+    return dict(re.findall(rf"^```{language} (\S+)\n(.*?)^```", PAGE, re.M | re.S))
+
+
+class Golden(CliTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "golden").mkdir()
+        for name, text in blocks("json").items():
+            (self.folder / name).write_text(text)
+        self.write_session("scan.json", annotation={})
+
+    def golden(self, *arguments, status=0, **environment):
+        """Runs in the test's folder; the JSON object that was printed, or None."""
+        result = subprocess.run([str(Path(SHVR).resolve()), "golden", *map(str, arguments), "--json"], text=True,
+                                capture_output=True, timeout=300, cwd=self.folder, env={**AT_HOME, **environment})
+        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+        self.errors = result.stderr
+        return json.loads(result.stdout) if result.stdout else None
+
+    def bless(self, *arguments, **keys):
+        return self.golden("bless", *arguments, "--reason", "first pictures", **keys)
+
+    def test_the_page_works_in_a_fresh_folder(self):
+        self.assertEqual(sorted(blocks("json")), ["golden/overview.json", "golden/spheres.json"])
+        path = self.folder / "bin"
+        path.mkdir()
+        (path / "shvr").symlink_to(Path(SHVR).resolve())
+        told = blocks("sh")
+        for name, status in [("bless", 0), ("run", 0)]:
+            done = subprocess.run(["bash", "-ec", told[name]], cwd=self.folder, capture_output=True, text=True,
+                                  env={**AT_HOME, "PATH": f"{path}:{os.environ['PATH']}"}, check=False)
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        for name in ("overview", "spheres"):
+            for end in (".json", ".png", ".blessed.json"):
+                self.assertTrue((self.folder / "golden" / (name + end)).exists(), name + end)
+        # The light changes: the picture fails, and is accepted.
+        self.write_session("scan.json", annotation={}, light={"ambient": 0.9})
+        self.assertEqual(self.golden("run", status=3)["failed"], ["overview"])
+        done = subprocess.run(["bash", "-ec", told["accept"]], cwd=self.folder, capture_output=True, text=True,
+                              env={**AT_HOME, "PATH": f"{path}:{os.environ['PATH']}"}, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.golden("run")["failed"], [])
+
+    def test_a_side_car_says_who_drew_it_and_why(self):
+        rows = self.bless()["blessed"]
+        self.assertEqual([(row["name"], row["old"]) for row in rows], [("overview", "none"), ("spheres", "none")])
+        side_car = json.loads((self.folder / "golden/spheres.blessed.json").read_text())
+        self.assert_keys(side_car, ["reason", "device", "driver", "processor", "instructions", "class", "fnv1a64",
+                                    "work", "previous"])
+        self.assertEqual(side_car["reason"], "first pictures")
+        self.assertIn("llvmpipe", side_car["device"])
+        self.assertGreater(side_car["work"]["samples"], 0)
+        self.assertEqual([row["new"] for row in self.bless()["blessed"]], ["unchanged", "unchanged"])
+
+    def test_blessing_needs_a_reason_and_never_happens_in_ci(self):
+        self.golden("bless", status=2)
+        self.assertIn("--reason", self.errors)
+        self.bless(status=1, CI="true")
+        self.assertIn("continuous integration never blesses", self.errors)
+        self.assertEqual(list((self.folder / "golden").glob("*.png")), [])
+
+    def test_a_missing_golden_fails_and_none_is_written(self):
+        result = self.golden("run", status=3)
+        self.assertEqual(result["failed"], ["overview", "spheres"])
+        self.assertEqual({one["status"] for one in result["goldens"]}, {"missing"})
+        self.assertEqual(list((self.folder / "golden").glob("*.png")), [])
+
+    def test_a_picture_without_its_side_car_fails(self):
+        self.bless("spheres")
+        self.bless("overview")
+        shutil.copy(self.folder / "golden/overview.png", self.folder / "golden/spheres.png")
+        result = self.golden("run", "spheres", status=3)
+        self.assertIn("its side-car says", result["goldens"][0]["reason"])
+
+    def test_other_work_fails_although_the_picture_is_the_same(self):
+        self.bless("spheres")
+        golden = json.loads((self.folder / "golden/spheres.json").read_text())
+        golden["session"]["render"]["skip_empty_space"] = False
+        self.write_json("golden/spheres.json", golden)
+        one = self.golden("run", "spheres", status=3)["goldens"][0]
+        self.assertEqual(one["metrics"]["max_abs"], 0)
+        self.assertRegex(one["reason"], r"other work: .*samples \d+ \(recorded: \d+\)")
+
+    def test_the_report_holds_everything_itself(self):
+        self.bless()
+        self.write_session("scan.json", annotation={}, light={"ambient": 0.9})
+        golden = json.loads((self.folder / "golden/overview.json").read_text())
+        golden["why"] = "<script>alert(1)</script> & more"
+        self.write_json("golden/overview.json", golden)
+        result = self.golden("run", status=3)
+        page = (self.folder / result["report"]).read_text()
+        self.assertLess(page.index('id="overview"'), page.index('id="spheres"'))  # failures first
+        self.assertGreaterEqual(page.count("data:image/png;base64,"), 6)
+        self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
+        self.assertNotIn("<script>alert", page)
+        self.assertIn("&lt;script&gt;alert(1)", page)
+        self.assertIn("shvr golden bless &#39;overview&#39; --folder &#39;golden&#39; --reason", page)
+        for word in ("FLIP", "RMSE", "PSNR", "SSIM", "difference, 16 times"):
+            self.assertIn(word, page)
+        junit = xml.etree.ElementTree.parse(self.folder / "golden-results/junit.xml").getroot()
+        self.assertEqual((junit.get("tests"), junit.get("failures")), ("2", "1"))
+        self.assertEqual([case.get("name") for case in junit.iter("testcase") if case.find("failure") is not None],
+                         ["overview"])
+
+        (self.folder / "golden-results/report.html").unlink()
+        again = self.golden("report")
+        self.assertEqual(again["failed"], ["overview"])
+        self.assertEqual((self.folder / "golden-results/report.html").read_text(), page)
+
+    def test_failed_alone_are_blessed_with_failed(self):
+        self.bless()
+        self.write_session("scan.json", annotation={}, light={"ambient": 0.9})
+        self.golden("run", status=3)
+        self.assertEqual([row["name"] for row in self.bless("--failed")["blessed"]], ["overview"])
+        self.assertEqual(self.golden("run")["failed"], [])
+
+    def test_an_edge_is_loosened_for_a_reason(self):
+        golden = json.loads((self.folder / "golden/spheres.json").read_text())
+        self.write_json("golden/spheres.json", {**golden, "class": "edge"})
+        self.golden("run", "spheres", status=1)
+        self.assertIn("loosened", self.errors)
+        self.write_json("golden/spheres.json", {**golden, "class": "edge", "loosened": "rods' silhouettes"})
+        self.bless("spheres")
+        self.assertEqual(self.golden("run", "spheres")["failed"], [])
+
+    def test_what_is_wrong_is_said_in_a_sentence(self):
+        self.golden("run", "nothing", status=1)
+        self.assertIn("'nothing'", self.errors)
+        self.golden("run", "--folder", "elsewhere", status=1)
+        self.assertIn("elsewhere is no folder", self.errors)
+        self.write_json("golden/bad.json", {"why": "x", "session": 3})
+        self.golden("run", "bad", status=1)
+        self.assertRegex(self.errors, r"golden/bad.json: key session is 3; expected a session")
+        self.write_json("golden/bad.json", {"why": "x", "session": "gone.json"})
+        broken = self.golden("run", "bad", status=3)["goldens"][0]
+        self.assertEqual(broken["status"], "broken")
+        self.assertIn("gone.json", broken["reason"])
+
+    def test_calibration_tells_how_far_the_driver_moves_a_picture(self):
+        result = self.golden("calibrate", "spheres", status=0)
+        self.assertEqual(result["failed"], [])
+        one = result["goldens"][0]
+        self.assertTrue(one["holds"])
+        self.assertEqual(sorted(one["variants"]), ["poisoned", "threads-0", "threads-1", "threads-7", "vectors-128",
+                                                   "without-fma"])
+        for name in ("threads-0", "threads-1", "threads-7", "poisoned"):
+            self.assertEqual(one["variants"][name]["max_abs"], 0, name)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,190 @@
+#include "tools/bench/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/image_file.h"
+#include "engine/base/image_metrics.h"
+#include "tools/report/html.h"
+
+namespace shvr::bench {
+
+namespace {
+
+using report::escaped;
+
+constexpr const char* STYLE = R"(body{font:14px/1.45 sans-serif;margin:1em auto;max-width:1500px;color:#222}
+table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em .8em;text-align:right;border-bottom:1px solid #ddd}
+td:first-child,th:first-child{text-align:left}.front{font-weight:bold}.off{color:#777}
+figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}figcaption{font-size:12px;color:#555}
+figure img{image-rendering:pixelated;width:220px;border:1px solid #bbb})";
+
+std::string number(double value)
+{
+    return sentence(std::setprecision(3), value);
+}
+
+std::string table_of(const SceneResult& scene)
+{
+    std::string rows =
+        "<table><tr><th>run (bold: on the front)</th><th>median ms</th><th>min</th><th>p95</th><th>RMSE</th>"
+        "<th>largest error</th><th>PSNR dB</th><th>SSIM</th><th>FLIP</th><th>samples</th></tr>\n";
+    for (const Measured& run : scene.runs) {
+        const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
+        rows += sentence(
+            "<tr class=\"", run.on_front ? "front" : "off", "\"><td>", escaped(run.name), "</td><td>",
+            number(run.time.median_ms), "</td><td>", number(run.time.min_ms), "</td><td>", number(run.time.p95_ms),
+            "</td><td>", number(run.error.rmse), "</td><td>", number(run.error.max_abs), "</td><td>",
+            run.error.psnr_db ? number(*run.error.psnr_db) : std::string("equal"), "</td><td>",
+            sentence(std::setprecision(5), run.error.ssim), "</td><td>", number(run.error.flip_mean), "</td><td>",
+            samples == run.work.end() ? std::string("-") : sentence(samples->second), "</td></tr>\n");
+    }
+    return rows + "</table>\n";
+}
+
+std::string table_of_csv(const std::string& csv, const std::string& scene)
+{
+    std::string rows, text = csv;
+    bool is_head = true;
+    for (size_t end = 0; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
+        std::string line = text.substr(0, end);
+        if (!is_head && !line.starts_with("\"" + scene + "\"")) continue;
+        std::string row;
+        for (size_t comma = 0; comma != std::string::npos; line.erase(0, comma == std::string::npos ? 0 : comma + 1)) {
+            comma = line.find(',');
+            std::string cell = line.substr(0, comma);
+            std::erase(cell, '"');
+            if (!cell.empty() && cell.find_first_not_of("0123456789.e-+") == std::string::npos)
+                cell = number(std::stod(cell));
+            row += (is_head ? "<th>" : "<td>") + escaped(cell) + (is_head ? "</th>" : "</td>");
+        }
+        rows += "<tr>" + row + "</tr>\n";
+        is_head = false;
+    }
+    return "<table>" + rows + "</table>\n";
+}
+
+std::string figure_of(const Image8& image, const std::string& caption)
+{
+    return sentence("<figure><img alt=\"", escaped(caption), "\" src=\"", report::source_of(image), "\"><figcaption>",
+                    escaped(caption), "</figcaption></figure>\n");
+}
+
+std::string insets_of(const Pictures& pictures)
+{
+    const Image8 truth = to_image8(pictures.reference);
+    std::string markup = figure_of(truth, "reference renderer, in double precision");
+    for (const auto& [name, picture] : pictures.of_qualities) {
+        const Image8 seen = to_image8(picture);
+        markup += figure_of(seen, name) + figure_of(difference_picture(seen, truth), name + ": difference, 16 times");
+    }
+    return markup;
+}
+
+double error_by(const Measured& run, Metric metric)
+{
+    return metric == Metric::rmse ? run.error.rmse : run.error.flip_mean;
+}
+
+}  // namespace
+
+report::Plot plot_of(const SceneResult& scene, Metric metric)
+{
+    report::Plot plot{.title = scene.name + " (" + scene.volume + ")",
+                      .x_label = "median time of a picture, ms",
+                      .y_label = metric == Metric::rmse ? "RMSE in linear light" : "visible difference (mean FLIP)",
+                      .series = {}};
+    for (const char* family : families()) {
+        report::PlotSeries series{family, {}};
+        for (const Measured& run : scene.runs)
+            if (run.family == family)
+                series.points.push_back({run.time.median_ms, error_by(run, metric),
+                                         run.family == "quality" ? run.name : std::string(), run.on_front});
+        if (!series.points.empty()) plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+report::Plot plot_of_qualities(const Results& results)
+{
+    // Samples, which are the same on every machine: the plot can be kept, and compared.
+    report::Plot plot{.title = "draft, interactive, good, reference: from left to right",
+                      .x_label = "samples of a picture",
+                      .y_label = "RMSE in linear light",
+                      .series = {}};
+    for (const SceneResult& scene : results.scenes) {
+        report::PlotSeries series{scene.name, {}};
+        for (const Measured& run : scene.runs) {
+            const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
+            if (run.family == "quality" && samples != run.work.end())
+                series.points.push_back({double(samples->second), run.error.rmse, {}, false});
+        }
+        plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+std::string page_of(const Results& results, const std::vector<Pictures>& pictures)
+{
+    std::string body =
+        sentence("<h1>Speed against error</h1>\n<p>", escaped(results.driver), ", ", escaped(results.processor), ", ",
+                 results.cores, " cores, load ", number(results.load), " at the start. Pictures of ", results.width,
+                 " x ", results.height, " pixels; medians of ", results.rounds,
+                 " rounds in turns. Errors are against the double-precision reference renderer, which "
+                 "shares no code with what it measures.</p>\n");
+    body += report::svg_of(plot_of_qualities(results));
+    const std::string equal_errors = equal_error_csv(results), equal_times = equal_time_csv(results);
+    for (size_t i = 0; i < results.scenes.size(); ++i) {
+        const SceneResult& scene = results.scenes[i];
+        body += sentence("<h2>", escaped(scene.name), "</h2>\n<p>", escaped(scene.what), "; ", escaped(scene.volume),
+                         "</p>\n", report::svg_of(plot_of(scene, Metric::rmse)),
+                         report::svg_of(plot_of(scene, Metric::flip)));
+        if (i < pictures.size()) body += "<div>" + insets_of(pictures[i]) + "</div>\n";
+        body += table_of(scene);
+        body += "<details><summary>Equal error: the fastest of each knob</summary>" +
+                table_of_csv(equal_errors, scene.name) + "</details>\n";
+        body += "<details><summary>Equal time: the most exact of each knob</summary>" +
+                table_of_csv(equal_times, scene.name) + "</details>\n";
+    }
+    return report::page("SHVR: speed against error", STYLE, body);
+}
+
+std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
+                                     const std::filesystem::path& output)
+{
+    std::vector<std::string> written;
+    const auto write = [&](const std::string& name, const std::string& text) {
+        report::write_text(output / name, text);
+        written.push_back((output / name).string());
+    };
+    const auto write_plot = [&](const std::string& name, const report::Plot& plot) {
+        write(name + ".svg", report::svg_of(plot));
+        write_png(output / (name + ".png"), report::picture_of(plot));
+        written.push_back((output / (name + ".png")).string());
+    };
+    write("bench.json", json_of(results).dump(1) + "\n");
+    write("bench.csv", csv_of(results));
+    write("equal_error.csv", equal_error_csv(results));
+    write("equal_time.csv", equal_time_csv(results));
+    write_plot("pareto", plot_of_qualities(results));
+    for (const SceneResult& scene : results.scenes) write_plot("pareto-" + scene.name, plot_of(scene, Metric::rmse));
+    write("report.html", page_of(results, pictures));
+    return written;
+}
+
+std::string text_of(const std::vector<Change>& changes)
+{
+    std::string text;
+    for (const Change& change : changes) {
+        text += sentence(change.is_regression ? "worse   " : "changed ", change.scene, ", ", change.run, ": ",
+                         change.what, " ", std::setprecision(6), change.a, " -> ", change.b);
+        if (change.noise > 0.0) text += sentence(" (noise ", std::setprecision(3), change.noise, ")");
+        text += "\n";
+    }
+    return text.empty() ? "nothing changed\n" : text;
+}
+
+}  // namespace shvr::bench

@@ -1,0 +1,39 @@
+#pragma once
+// A session as the reference renderer (tests/reference) takes it: what the device holds of its volume (16-bit codes),
+// transfer function, groups, light, cut, and balls among its surfaces. Any thread.
+
+#include <span>
+
+#include "engine/annotation/mask.h"
+#include "engine/session/session.h"
+#include "tests/reference/render.h"
+
+namespace shvr::bench {
+
+/// A ball that rays stop at.
+struct Ball {
+    glm::dvec3 center{0.0};  ///< physical
+    double radius = 1.0;
+    glm::dvec3 color{1.0};  ///< linear light
+};
+
+struct ReferenceScene {
+    reference::Scene scene;
+    std::vector<Ball> balls;
+};
+
+/// 8 bytes a voxel. `mask`: null where nothing is painted. Fails where the session shows what the reference does not
+/// know (rods, a trace, slices, distance blending) or has more voxels than MAX_REFERENCE_VOXELS. Ambient occlusion as
+/// it is defined takes seconds: for each voxel near which something shows.
+ReferenceScene reference_scene_of(const Session& session, const VolumeSource& source,
+                                  const VolumeStatistics& statistics, const Camera& camera, const Mask* mask);
+inline constexpr int64_t MAX_REFERENCE_VOXELS = int64_t{1} << 29;
+
+/// Through the middles of pixels.
+std::vector<reference::Ray> rays_through(std::span<const glm::uvec2> pixels, const RayPlanes& planes);
+
+/// Linear light, premultiplied, over the session's background, in the order of `rays`.
+std::vector<glm::dvec4> draw(const ReferenceScene& scene, std::span<const reference::Ray> rays,
+                             const reference::Mode& mode, const glm::dvec4& background, int threads);
+
+}  // namespace shvr::bench

@@ -1,0 +1,84 @@
+#pragma once
+// What the bench found, and its forms: bench.json, bench.csv, tables of equal error and equal time, and what changed
+// between two files. Plain data; any thread.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace shvr::bench {
+
+/// Of a picture against the reference: in linear light, over red, green and blue of all pixels; PSNR, SSIM and FLIP in
+/// 8 bits, as people see it (engine/base/image_metrics.h).
+struct Error {
+    double rmse = 0.0, max_abs = 0.0;
+    std::optional<double> psnr_db;  ///< nothing where the 8-bit pictures are equal
+    double ssim = 1.0, flip_mean = 0.0, flip_p99 = 0.0;
+};
+
+/// Milliseconds from submission to completion.
+struct Time {
+    double min_ms = 0.0, median_ms = 0.0, p95_ms = 0.0;
+    /// What a difference of medians must exceed: half of the way from the minimum to the 95th percentile.
+    double noise_ms() const { return 0.5 * (p95_ms - min_ms); }
+};
+
+struct Measured {
+    std::string name, family;
+    std::vector<std::string> settings;
+    double scale = 1.0;
+    Error error;
+    Time time;
+    double first_ms = 0.0;                               ///< of the first picture, which also prepares
+    std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters
+    uint64_t device_bytes = 0;
+    bool on_front = false;  ///< no other run of the scene is better in both error and median time
+};
+
+struct SceneResult {
+    std::string name, what;
+    std::string volume;              ///< "64 x 64 x 64 uint8"
+    double reference_seconds = 0.0;  ///< 0: it was kept from before
+    std::vector<Measured> runs;
+};
+
+struct Results {
+    std::string device, driver, processor;
+    std::string instructions;  ///< of the processor, those that change rounding
+    int cores = 0;
+    double load = 0.0;  ///< of the machine when it began
+    int rounds = 0;
+    uint32_t width = 0, height = 0;
+    std::vector<SceneResult> scenes;
+};
+
+/// Sets `on_front`.
+void find_front(std::vector<Measured>& runs);
+
+nlohmann::ordered_json json_of(const Results& results);
+/// Fails in a sentence where the file is not what json_of makes.
+Results read_results(const std::filesystem::path& file);
+/// One line a run.
+std::string csv_of(const Results& results);
+/// The fastest run of each scene and family that has at most this RMSE.
+std::string equal_error_csv(const Results& results);
+/// The most exact run of each scene and family that takes no longer than each quality.
+std::string equal_time_csv(const Results& results);
+
+/// What is worse in `b` than in `a`: an error by more than 1 % (a picture's error is the same in every run of one
+/// machine), a counter at all (where driver and instructions agree: elsewhere a ray may end a sample later), a median
+/// by more than both runs' noise, put together as the sides of a right angle.
+struct Change {
+    std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
+    double a = 0.0, b = 0.0, noise = 0.0;
+    bool is_regression = false;
+};
+/// All that differ; regressions first. Fails where the two have no run in common. `with_times`: times, too.
+std::vector<Change> compare(const Results& a, const Results& b, bool with_times);
+
+}  // namespace shvr::bench

@@ -1,0 +1,196 @@
+#include "tools/bench/scenes.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/json.h"
+#include "engine/base/text.h"
+#include "engine/session/quality.h"
+
+namespace shvr::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* FAMILIES[] = {"quality",    "step",     "pre-integrated", "opacity limit", "sampling",
+                                    "resolution", "skipping", "occlusion rays", "budget"};
+
+struct Point {
+    double intensity, opacity;
+};
+
+Json points_of(std::initializer_list<Point> points, const char* color = "#f0d8b8")
+{
+    Json list = Json::array();
+    for (const Point& point : points)
+        list.push_back({{"intensity", point.intensity}, {"color", color}, {"opacity", point.opacity}});
+    return {{"points", list}};
+}
+
+/// What scenes share: tubes with noise in the air around them (a mean of 40 and a standard deviation of 5.4).
+Json session_of(int64_t side, const glm::uvec2& pixels, const Json& function)
+{
+    return {{"shvr_session", 1},
+            {"volume", {{"procedural", "tubes"}, {"size", {side, side, side}}, {"seed", 3}}},
+            {"camera", {{"side", "front"}, {"zoom", 1.4}, {"turn_degrees", 30}, {"tilt_degrees", 20}}},
+            {"transfer_function", function},
+            {"render", {{"size", {pixels.x, pixels.y}}, {"background", "#000000"}}}};
+}
+
+Scene scene_of(const std::string& name, const std::string& what, const Json& session)
+{
+    return {.name = name,
+            .what = what,
+            .drawn = {.name = name,
+                      .folder = ".",
+                      .why = what,
+                      .loosened = {},
+                      .session_path = {},
+                      .session_text = session.dump(),
+                      .settings = {},
+                      .script = {}}};
+}
+
+ScriptOp line_of_script(const std::string& text)
+{
+    const JsonDocument document(text, "bench");
+    return read_script_op(document.root());
+}
+
+Scene painted_scene(const Json& session, int64_t side)
+{
+    Scene scene = scene_of("painted", "painted groups in translucent tissue", session);
+    const double middle = 0.5 * double(side), radius = 0.3 * double(side);
+    const auto stroke = [&](int group, double x) {
+        return line_of_script(Json{{"op", "paint"},
+                                   {"brush", "fill"},
+                                   {"region", "ball"},
+                                   {"group", group},
+                                   {"threshold", 60},
+                                   {"radius", radius},
+                                   {"path", Json::array({{x, middle, middle}})}}
+                                  .dump());
+    };
+    scene.drawn.script = {{1, stroke(1, 0.35 * double(side))}, {2, stroke(2, 0.7 * double(side))}};
+    return scene;
+}
+
+}  // namespace
+
+std::span<const char* const> families()
+{
+    return FAMILIES;
+}
+
+std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels)
+{
+    const auto made = [&](const Json& function, const Json& more = Json::object()) {
+        Json session = session_of(side, pixels, function);
+        session.merge_patch(more);
+        return session;
+    };
+    const Json opaque = points_of({{120, 0.0}, {160, 1.0}, {255, 1.0}});
+    const int64_t several = std::max<int64_t>(side, 64);  // bricks have 32 voxels a side
+    const Json tissue = points_of({{38, 0.0}, {120, 0.06}, {255, 0.2}});
+    std::vector<Scene> scenes;
+    scenes.push_back(scene_of("tubes", "clean opaque tubes: most of the volume is empty and leapt over", made(opaque)));
+    scenes.push_back(scene_of("noisy-surface",
+                              "an opaque surface whose threshold lies in the noise: hardly a cell is empty, and most "
+                              "samples show nothing",
+                              made(points_of({{50, 0.0}, {58, 1.0}, {255, 1.0}}))));
+    scenes.push_back(scene_of("tissue", "dense half-transparent tissue, shaded: nothing to leap over", made(tissue)));
+    scenes.push_back(scene_of("fog", "smooth fog without shading: every sample counts a little",
+                              made(points_of({{60, 0.0}, {160, 0.08}}),
+                                   {{"volume", {{"procedural", "fog"}}}, {"light", {{"shaded", false}}}})));
+    scenes.push_back(scene_of("peaks", "narrow peaks in a function of high frequency: steps miss them",
+                              made(points_of({{90, 0.0}, {94, 0.6}, {98, 0.0}, {150, 0.0}, {153, 0.8}, {156, 0.0}}),
+                                   {{"volume", {{"procedural", "marschner_lobb"}}}})));
+    scenes.push_back(scene_of("uint16", "voxels of 16 bits, a soft surface",
+                              made(points_of({{90, 0.0}, {200, 0.8}}), {{"volume", {{"type", "uint16"}}}})));
+    scenes.push_back(scene_of("anisotropic", "voxels 2.5 times as long along z",
+                              made(tissue, {{"volume",
+                                             {{"size", {side, side, std::max<int64_t>(side * 2 / 5, 8)}},
+                                              {"spacing", {1, 1, 2.5}},
+                                              {"unit", "um"}}}})));
+    scenes.push_back(scene_of("paged", "bricks that are paged at a small budget",
+                              made(tissue, {{"volume", {{"size", {several, several, several}}}},
+                                            {"render", {{"paging", "always"}, {"detail", 0}}}})));
+    scenes.back().budget_device = uint64_t{24} << 20;
+    scenes.push_back(painted_scene(
+        made(tissue, {{"groups", {{"1", {{"color", "#e03030"}}}, {"2", {{"color", "#3080ff"}, {"opacity", 0.15}}}}}}),
+        side));
+    scenes.push_back(scene_of("occluded", "local ambient occlusion of opaque tubes",
+                              made(opaque, {{"light", {{"occlusion", {{"strength", 0.8}, {"radius", 6}}}}}})));
+    const double unit = double(side) / 64.0;
+    Json balls = Json::array();
+    for (int i = 0; i < 5; ++i)
+        balls.push_back({{"from", {(14 + 9 * i) * unit, (30 + 3 * i) * unit, (20 + 6 * i) * unit}},
+                         {"radius", (4 + i) * unit},
+                         {"color", i % 2 ? "#ff6020" : "#40c0ff"}});
+    scenes.push_back(scene_of("surfaces", "opaque balls in translucent tissue", made(tissue, {{"surfaces", balls}})));
+    return scenes;
+}
+
+std::vector<Scene> chosen_scenes(const std::vector<std::string>& names, int64_t side, const glm::uvec2& pixels)
+{
+    std::vector<Scene> own = own_scenes(side, pixels), scenes;
+    if (names.empty()) return own;
+    for (const std::string& name : names) {
+        const auto found = std::ranges::find(own, name, &Scene::name);
+        if (found != own.end()) {
+            scenes.push_back(*found);
+            continue;
+        }
+        std::string known;
+        for (const Scene& scene : own) known += (known.empty() ? "" : ", ") + scene.name;
+        if (!std::filesystem::exists(name))
+            fail("--scenes: ", in_quotes(name), " is neither a scene (", known, ") nor the path of a session");
+        const std::string stem = std::filesystem::path(name).stem().string();
+        scenes.push_back({.name = stem,
+                          .what = "session " + name,
+                          .drawn = {.name = stem,
+                                    .folder = ".",
+                                    .why = name,
+                                    .loosened = {},
+                                    .session_path = name,
+                                    .session_text = {},
+                                    .settings = {},
+                                    .script = {}}});
+        scenes.back().drawn.settings = {sentence("render.size=[", pixels.x, ",", pixels.y, "]")};
+    }
+    return scenes;
+}
+
+std::vector<Run> runs_of(const Scene& scene, bool quick)
+{
+    std::vector<Run> runs;
+    for (const Quality& quality : qualities())
+        runs.push_back({quality.name, "quality", {sentence("render.quality=", quality.name)}});
+    const auto sweep = [&](const char* family, const char* key, std::initializer_list<double> all,
+                           std::initializer_list<double> few, const std::vector<std::string>& more = {}) {
+        for (const double value : quick ? few : all) {
+            runs.push_back({sentence(family, " ", digits_of(value)), family, more});
+            runs.back().settings.push_back(sentence(key, "=", digits_of(value)));
+        }
+    };
+    sweep("step", "render.step_voxels", {4, 2, 1, 0.5, 0.25, 0.125}, {2, 1, 0.5, 0.25});
+    sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125}, {1, 0.25}, {"render.preintegration=true"});
+    sweep("opacity limit", "render.opacity_limit", {0.9, 0.95, 0.99, 0.999755859375, 1}, {0.9});
+    for (const char* sampling : {"exact", "hardware"})
+        runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
+    for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
+        runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
+    runs.push_back({"skipping off", "skipping", {"render.skip_empty_space=false"}});
+    const std::string& text = scene.drawn.session_text;
+    if (text.find("\"occlusion\"") != std::string::npos)
+        sweep("occlusion rays", "light.occlusion.rays", {8, 16, 32, 64, 128, 256}, {8, 64});
+    if (scene.budget_device > 0)
+        for (const uint64_t mib : {16, 48})
+            runs.push_back({sentence("budget ", mib, " MiB"), "budget", {}, 1.0, mib << 20});
+    return runs;
+}
+
+}  // namespace shvr::bench

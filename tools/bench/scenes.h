@@ -1,0 +1,42 @@
+#pragma once
+// What the bench draws: what people look at, made by code from seeds, so that no file is needed; or a person's own
+// sessions. And the settings it is drawn with: one knob turned at a time, and the qualities that window and command
+// line offer. Plain data.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/golden/golden.h"
+
+namespace shvr::bench {
+
+struct Scene {
+    std::string name;
+    std::string what;            ///< why it is among them
+    golden::Golden drawn;        ///< its session and paint
+    uint64_t budget_device = 0;  ///< bytes; 0: as much as there is
+};
+
+/// Of `side` voxels and this many pixels.
+std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels);
+/// Those of the names; a name that is none of ours is the path of a session, project or volume. Fails where it is
+/// neither.
+std::vector<Scene> chosen_scenes(const std::vector<std::string>& names, int64_t side, const glm::uvec2& pixels);
+
+/// A way to draw a scene.
+struct Run {
+    std::string name;                   ///< "step 0.5"
+    std::string family;                 ///< "step"
+    std::vector<std::string> settings;  ///< "render.step_voxels=0.5"
+    double scale = 1.0;                 ///< of the picture's sides; what is smaller is drawn large again, bilinearly
+    uint64_t budget_device = 0;         ///< bytes; 0: the scene's
+};
+
+/// The runs of a scene: those whose knob has something to turn.
+std::vector<Run> runs_of(const Scene& scene, bool quick);
+/// The names of all families, the qualities first.
+std::span<const char* const> families();
+
+}  // namespace shvr::bench

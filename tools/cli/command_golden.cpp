@@ -1,0 +1,265 @@
+// shvr golden: regression pictures, of this repository and of anyone's sessions (tools/golden/USING.md).
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <iostream>
+
+#include "tools/cli/cli.h"
+#include "tools/golden/calibrate.h"
+#include "tools/golden/run.h"
+
+namespace shvr::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct GoldenCommandOptions {
+    Common common;
+    std::string pattern = "*";
+    std::string folder = "golden";
+    std::string output = "golden-results";
+    std::string reason;
+    bool only_failed = false;
+};
+
+golden::StudioOptions studio_options(const Common& common)
+{
+    golden::set_environment(common.device);
+    const char* validation = std::getenv("SHVR_VALIDATION");
+    return {.device = common.device, .validation = validation && *validation == '1'};
+}
+
+Json outcome_json(const golden::Outcome& outcome)
+{
+    Json json{{"run", outcome.results.size()},
+              {"failed", outcome.failed},
+              {"report", outcome.report.string()},
+              {"goldens", Json::array()}};
+    for (const golden::Result& result : outcome.results) json["goldens"].push_back(golden::json_of(result));
+    return json;
+}
+
+void print_lines(const std::string& text)
+{
+    clear_progress();
+    std::cout << text << std::flush;
+    if (!std::cout) fail("standard output: cannot be written");
+}
+
+std::string lines_of(const golden::Outcome& outcome)
+{
+    std::string text;
+    for (const golden::Result& result : outcome.results) {
+        text += sentence(spelled(result.status), "  ", result.golden.name);
+        if (!result.reason.empty()) text += ": " + result.reason;
+        text += "\n";
+        if (golden::is_failure(result.status))
+            text += "  if it is meant: " + golden::bless_command(result.golden) + "\n";
+    }
+    return text + outcome.report.string() + "\n";
+}
+
+void run_goldens(const GoldenCommandOptions& options)
+{
+    const std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
+    LongWork work(options.common.quiet);
+    const Progress progress = work.begin("drawing goldens");
+    const golden::Outcome outcome = golden::run_all(goldens, options.output, studio_options(options.common),
+                                                    [&](const golden::Golden&, double fraction) {
+                                                        work.stop_if_asked();
+                                                        tell(progress, fraction);
+                                                    });
+    clear_progress();
+    if (options.common.json)
+        print(outcome_json(outcome));
+    else
+        print_lines(lines_of(outcome));
+    if (!outcome.failed.empty())
+        throw GateError(sentence(outcome.failed.size(), " of ", outcome.results.size(), " goldens failed, the first: ",
+                                 outcome.failed.front(), "; see ", outcome.report.string()));
+}
+
+/// Those that failed in the last run, where only they are meant.
+std::vector<golden::Golden> chosen(const GoldenCommandOptions& options)
+{
+    std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
+    if (!options.only_failed) return goldens;
+    const std::vector<std::string> failed = golden::read_run(options.output, options.pattern).failed;
+    std::erase_if(goldens,
+                  [&](const golden::Golden& one) { return std::ranges::find(failed, one.name) == failed.end(); });
+    if (goldens.empty()) fail(options.output, ": nothing failed in the last run; there is nothing to bless");
+    return goldens;
+}
+
+void bless(const GoldenCommandOptions& options)
+{
+    if (options.reason.empty()) throw UsageError("--reason is missing; expected why the pictures change");
+    LongWork work(options.common.quiet);
+    const Progress progress = work.begin("blessing goldens");
+    Json rows = Json::array();
+    std::string text;
+    const std::vector<golden::Golden> goldens = chosen(options);
+    for (const golden::Golden& one : goldens) {
+        work.stop_if_asked();
+        tell(progress, double(rows.size()) / double(goldens.size()));
+        const golden::Blessed blessed = golden::bless(one, options.reason, studio_options(options.common));
+        rows.push_back({{"name", blessed.name},
+                        {"old", blessed.old_hash},
+                        {"new", blessed.new_hash},
+                        {"max_abs", blessed.change ? Json(blessed.change->max_abs) : Json(nullptr)}});
+        text += sentence(blessed.name, ": ", blessed.old_hash, " -> ", blessed.new_hash);
+        if (blessed.change) text += sentence(", largest change ", blessed.change->max_abs, " of 255 levels");
+        text += "\n";
+    }
+    clear_progress();
+    if (options.common.json)
+        print({{"blessed", rows}});
+    else
+        print_lines(text + "Look at each new picture before it is committed, with its side-car.\n");
+}
+
+/// `shvr golden run` in a process of its own: drivers read their environment once.
+void run_variant(const GoldenCommandOptions& options, const golden::Variant& variant, const fs::path& output)
+{
+    std::vector<std::string> arguments{"shvr",         "golden", "run",           options.pattern, "--folder",
+                                       options.folder, "-o",     output.string(), "--quiet",       "--json"};
+    if (!options.common.device.empty()) arguments.insert(arguments.end(), {"--device", options.common.device});
+    std::vector<std::string> environment;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string text = *entry, name = text.substr(0, text.find('='));
+        const auto is_it = [&](const auto& pair) { return pair.first == name; };
+        if (std::ranges::none_of(variant.environment, is_it)) environment.push_back(text);
+    }
+    for (const auto& [name, value] : variant.environment) environment.push_back(name + "=" + value);
+    const auto pointers = [](std::vector<std::string>& texts) {
+        std::vector<char*> all;
+        for (std::string& text : texts) all.push_back(text.data());
+        all.push_back(nullptr);
+        return all;
+    };
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, pointers(arguments).data(),
+                                  pointers(environment).data());
+    posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    if (error == 0) ::waitpid(child, &status, 0);
+    // 3: pictures differ, which is what is to be measured.
+    if (error != 0 || !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 3))
+        fail("goldens could not be drawn as ", variant.name, "; expected exit status 0 or 3 of shvr golden run");
+}
+
+Json spread_json(const PixelDifference& difference)
+{
+    return {{"max_abs", difference.max_abs},
+            {"rmse", difference.rmse},
+            {"mean_error", difference.mean_error},
+            {"fraction_over_1", difference.fraction_over_1}};
+}
+
+void calibrate(const GoldenCommandOptions& options)
+{
+    const std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
+    LongWork work(options.common.quiet);
+    const Progress progress = work.begin("drawing goldens in every way");
+    size_t done = 0;
+    const std::vector<golden::Spread> spreads =
+        golden::calibrate(goldens, options.output, [&](const golden::Variant& variant, const fs::path& output) {
+            work.stop_if_asked();
+            tell(progress, double(done++) / double(golden::variants().size()));
+            run_variant(options, variant, output);
+        });
+    Json rows = Json::array(), failed = Json::array();
+    std::string text;
+    for (const golden::Spread& spread : spreads) {
+        Json by_variant = Json::object();
+        for (const auto& [name, difference] : spread.by_variant) by_variant[name] = spread_json(difference);
+        const std::string verdict = !spread.holds           ? "too strict: the driver alone moves it by more than half"
+                                    : spread.could_be_exact ? "holds; nothing moves it"
+                                                            : "holds";
+        rows.push_back({{"name", spread.golden.name},
+                        {"class", spelled(spread.golden.strictness)},
+                        {"holds", spread.holds},
+                        {"could_be_exact", spread.could_be_exact},
+                        {"most", spread_json(spread.most)},
+                        {"variants", by_variant}});
+        if (!spread.holds) failed.push_back(spread.golden.name);
+        text += sentence(spread.golden.name, " (", spelled(spread.golden.strictness), "): ", verdict, "; at most ",
+                         spread.most.max_abs, " levels, ", 100.0 * spread.most.fraction_over_1,
+                         " % of pixels by more than 1\n");
+    }
+    clear_progress();
+    if (options.common.json)
+        print({{"goldens", rows}, {"failed", failed}});
+    else
+        print_lines(text);
+    if (!failed.empty())
+        throw GateError(sentence(
+            failed.size(), " goldens have a class that is too strict, the first: ", failed.front().get<std::string>()));
+}
+
+void report_again(const GoldenCommandOptions& options)
+{
+    LongWork work(options.common.quiet);
+    static_cast<void>(work.begin("writing the report"));
+    const golden::Outcome outcome = golden::read_run(options.output, options.pattern);
+    golden::write_reports(outcome, options.output);
+    clear_progress();
+    if (options.common.json)
+        print(outcome_json(outcome));
+    else
+        print_lines(lines_of(outcome));
+}
+
+CLI::App* add_part(CLI::App& command, const std::shared_ptr<GoldenCommandOptions>& options, const char* name,
+                   const char* does, const char* example, void (*run)(const GoldenCommandOptions&))
+{
+    CLI::App* part = command.add_subcommand(name, does);
+    part->add_option("PATTERN", options->pattern, "Names of goldens, as in 'tubes_*'")->capture_default_str();
+    part->add_option("--folder", options->folder, "Folder of goldens: NAME.json, NAME.png, NAME.blessed.json")
+        ->capture_default_str();
+    part->add_option("-o,--output", options->output, "Folder for pictures, results.json, junit.xml and report.html")
+        ->capture_default_str();
+    part->add_option("--device", options->common.device,
+                     "Vulkan device: part of its name, or its index; without it $SHVR_DEVICE, else lavapipe");
+    add_output_options(*part, options->common);
+    part->footer(sentence("Example:\n  ", example));
+    part->callback([options, run] { run(*options); });
+    return part;
+}
+
+}  // namespace
+
+void add_golden(CLI::App& program)
+{
+    auto options = std::make_shared<GoldenCommandOptions>();
+    CLI::App* command =
+        program.add_subcommand("golden", "Regression pictures: draws sessions and compares them with what was blessed");
+    command->require_subcommand(1);
+    add_part(*command, options, "run", "Draws them and compares; exit 3 where one fails",
+             "shvr golden run 'tubes_*' --folder golden -o golden-results", run_goldens);
+    CLI::App* accept =
+        add_part(*command, options, "bless", "Accepts what is drawn now as correct; on lavapipe alone, never in CI",
+                 "shvr golden bless overview --reason \"The light comes from the left\"", bless);
+    accept->add_option("--reason", options->reason, "Why the pictures change; kept in the side-cars");
+    accept->add_flag("--failed", options->only_failed, "Those alone that failed in the last run, as --output has it");
+    add_part(
+        *command, options, "calibrate",
+        "How far vector width, threads, instruction set and poisoned memory move them; exit 3 where a class is too "
+        "strict",
+        "shvr golden calibrate --folder golden", calibrate);
+    add_part(*command, options, "report", "Writes report.html and junit.xml of the last run again",
+             "shvr golden report -o golden-results", report_again);
+    command->footer(
+        "A golden is a file NAME.json with \"why\", \"session\" (an object, or the path of a session) and perhaps\n"
+        "\"class\" (exact, tight, edge) and \"script\" (lines as shvr annotate reads them).\n\n"
+        "Example:\n  shvr golden bless overview --reason \"first picture\"\n  shvr golden run");
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,69 @@
+#pragma once
+// Draws goldens, compares them with what was blessed, and writes what a person or a machine needs to judge: pictures,
+// results.json, junit.xml and report.html. No retries: a picture that differs now and then is a defect.
+
+#include <functional>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/golden/blessing.h"
+
+namespace shvr::golden {
+
+enum class Status {
+    passed,
+    failed,      ///< another picture or other work
+    missing,     ///< never blessed, or picture and side-car do not belong together
+    broken,      ///< it could not be drawn
+    informative  ///< another picture, but the device is not lavapipe: its rounding is its own
+};
+inline constexpr Spelling<Status> STATUSES[] = {{Status::passed, "passed"},
+                                                {Status::failed, "failed"},
+                                                {Status::missing, "missing"},
+                                                {Status::broken, "broken"},
+                                                {Status::informative, "informative"}};
+constexpr std::span<const Spelling<Status>> spellings_of(Status)
+{
+    return STATUSES;
+}
+constexpr bool is_failure(Status status)
+{
+    return status != Status::passed && status != Status::informative;
+}
+
+/// Of one golden. Pictures are null where there are none.
+struct Result {
+    Golden golden;
+    Status status = Status::broken;
+    std::string reason;  ///< why it did not pass, in a sentence
+    double seconds = 0.0;
+    std::optional<Image8> expected, actual;
+    std::optional<ImageDifference> difference;
+    std::optional<Maker> maker;
+    std::string side_car;  ///< its JSON
+};
+
+/// Draws one and judges it; never throws for what is wrong with the golden.
+Result run(const Golden& golden, const StudioOptions& options);
+
+/// All of them. Before the first is drawn, the report says that the run did not end, so that a crash shows. `output` is
+/// made. `tell` is called before each.
+struct Outcome {
+    std::vector<Result> results;
+    std::vector<std::string> failed;
+    std::filesystem::path report;
+};
+Outcome run_all(const std::vector<Golden>& goldens, const std::filesystem::path& output, const StudioOptions& options,
+                const std::function<void(const Golden&, double)>& tell = {});
+
+/// The reports again, of a run whose results.json and pictures lie in `output`.
+Outcome read_run(const std::filesystem::path& output, const std::string& pattern);
+void write_reports(const Outcome& outcome, const std::filesystem::path& output);
+
+nlohmann::ordered_json json_of(const Result& result);
+/// A self-contained page: failures first; expected, actual, difference times 16 and FLIP; a slider, blinking (key b),
+/// both colours under the pointer, metrics, and the command that blesses.
+std::string page_of(const std::vector<Result>& results);
+std::string junit_of(const std::vector<Result>& results);
+
+}  // namespace shvr::golden

@@ -1,0 +1,25 @@
+#pragma once
+// What pages that stand alone are made of: texts that cannot become markup, and pictures inside the page. Any thread.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/base/image.h"
+
+namespace shvr::report {
+
+/// Safe between tags and in attributes with either kind of quotes. Control characters become question marks.
+std::string escaped(std::string_view text);
+/// RFC 4648, with padding.
+std::string base64(std::span<const std::byte> bytes);
+/// A picture as the value of `src`.
+std::string source_of(const Image8& image);
+/// A whole page: head with `title` and `style`, then `body`, which is markup.
+std::string page(std::string_view title, std::string_view style, std::string_view body);
+/// Fails as write_file_atomically does.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace shvr::report
