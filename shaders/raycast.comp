@@ -134,16 +134,6 @@ Place place_at(const RaycastParams params, vec3 position)
 // Larger numbers are no longer whole steps apart in a float.
 const float MAX_STEPS = 4294967040.0;
 const float MAX_LEAP = 2147483648.0;
-// A lane that has met this many samples in a row that could not be seen looks at more before it waits for the others:
-// one more for each further one, and at most so many (shaders/MEASURED.md). Not in paged bricks: lavapipe reads
-// buffers, the directory among them, as 0 for lanes that wait, so a lane would lose the place that it has found.
-#ifdef PAGED
-const bool SEARCHES = false;
-#else
-const bool SEARCHES = SHADED != 0u && PREINTEGRATED == 0u;
-#endif
-const uint UNSEEN_TO_SEARCH = 8u;
-const uint MORE_TURNS = 19u;
 const float NO_SHELL = 1e30;   // a length along a ray
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
@@ -199,15 +189,9 @@ float value_near(vec3 in_brick, ivec3 slot)
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// What is known of a sample before it is looked at.
-struct Found {
-    vec3 lattice;     // the position in voxels of the brick's level, from a voxel's centre
-    ivec3 to_atlas;   // from such voxels to texels
-    Density density;
-    float value;      // of the density
-};
-
-Found find_sample(const RaycastParams params, vec3 position, const Place place)
+// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
+                 inout Work work)
 {
     // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
     // volume gives the same bits as one in a single texture.
@@ -221,41 +205,31 @@ Found find_sample(const RaycastParams params, vec3 position, const Place place)
     const vec3 corner = floor(lattice);
     const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
     const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
-    return Found(lattice, to_atlas, density, value_of(density));
-}
-
-// Whether a sample may have any opacity. A painted one is not asked for its density.
-bool may_be_seen(const RaycastParams params, const Found found, const Place place)
-{
-    return place.is_painted || (found.value >= params.table_lower && found.value <= params.table_upper);
-}
-
-// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
-                 const Found found)
-{
-    const Density density = found.density;
     vec4 look;
     if (PREINTEGRATED != 0u) {
 #ifdef PAGED
         const float per_voxel = uintBitsToFloat(127u - place.level << 23);
-        const uvec3 brick = uvec3(position) >> place.level + 5u;
 #else
         const float per_voxel = 1.0;
-        const uvec3 brick = uvec3(position) / BRICK_SIZE;
 #endif
-        const vec3 in_brick = found.lattice - vec3(brick * BRICK_SIZE);
+        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
         look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
                              part);
     } else {
-        look = SLICE != 0u ? slice_look(params, found.value) : classify(params, found.value, part);
+        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
     }
 #ifdef MASKED
     if (place.is_painted) look = painted(params, position, part, look);
 #endif
+    if (COUNT_WORK != 0u) {
+        ++work.samples;
+        work.bricks += uint(place.slot != work.last_slot);
+        work.last_slot = place.slot;
+    }
     if (SHADED != 0u) {
+        if (COUNT_WORK != 0u) ++work.shaded;
         float ambient = params.ambient;
 #ifdef OCCLUDED
 #ifdef PAGED
@@ -263,20 +237,12 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const uvec3 last = uvec3(params.position_limit);
 #endif
-        ambient *= ambient_share(found.lattice, found.to_atlas, vec3(last));
+        ambient *= ambient_share(lattice, to_atlas, vec3(last));
 #endif
         look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
     if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
     return look;
-}
-
-void note_sample(const Place place, inout Work work)
-{
-    if (COUNT_WORK == 0u) return;
-    ++work.samples;
-    work.bricks += uint(place.slot != work.last_slot);
-    work.last_slot = place.slot;
 }
 
 // Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
@@ -328,8 +294,7 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
 #ifdef PAGED
     if (place.distance > 0u || waits) return vec4(0.0);
 #endif
-    note_sample(place, work);
-    return sample_look(params, ray, position, 1.0, place, find_sample(params, position, place));
+    return sample_look(params, ray, position, 1.0, place, work);
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -461,48 +426,31 @@ void main()
     Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
-    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next sample that can be
-    // seen is a separate loop, and lanes meet again at the costly rest. Where few samples are seen, in noise at a
-    // threshold, each lane of a group that met only when all have one would wait for the unluckiest.
+    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
+    // separate loop, and lanes meet again at the costly sample.
     uint i = first_step;
-    uint unseen = 0u;   // samples in a row
     while (i < end_step && sum.a < params.opacity_limit && !waits) {
         vec3 position;
         Place place;
-        Found found;
-        bool is_found = false;
-        const uint last_turn = SEARCHES && unseen > UNSEEN_TO_SEARCH ? min(unseen - UNSEEN_TO_SEARCH, MORE_TURNS) : 0u;
-        uint turn = 0u;
         do {
-            do {
-                position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
-                place = place_at(params, position);
-                note(place, work);
-                if (place.distance > 0u) {
-                    i += steps_to_leave(params, ray, position, place);
-                    rises.trough = 0.0;
-                    if (COUNT_WORK != 0u) ++work.leaps;
-                }
-            } while (place.distance > 0u && i < end_step && turn == 0u);
-            found = find_sample(params, position, place);
-            const bool is_sample = place.distance == 0u && i < end_step;
-            is_found = is_sample && (!SEARCHES || may_be_seen(params, found, place) || place.is_missing);
-            const bool is_unseen = is_sample && !is_found;
-            if (is_unseen) note_sample(place, work);
-            if (is_unseen) rises.trough = 0.0;
-            i += uint(is_unseen);
-            unseen = is_found ? 0u : unseen + uint(is_unseen);
-        } while (!is_found && i < end_step && turn++ < last_turn);
+            position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
+            place = place_at(params, position);
+            note(place, work);
+            if (place.distance > 0u) {
+                i += steps_to_leave(params, ray, position, place);
+                rises.trough = 0.0;
+                if (COUNT_WORK != 0u) ++work.leaps;
+            }
+        } while (place.distance > 0u && i < end_step);
 #ifdef SHELLED
         const float here = begin + (float(i) + 0.5) * params.step;
         if (i < end_step) add_shells(params, ray, here, shell, sum);
         waits = waits || (i < end_step && shell_waits(params, shell, here, sum));
 #endif
         waits = waits || (i < end_step && place.is_missing && sum.a < params.opacity_limit);
-        if (is_found && !waits) {
-            note_sample(place, work);
-            if (COUNT_WORK != 0u && SHADED != 0u) ++work.shaded;
-            const vec4 look = sample_look(params, ray, position, 1.0, place, found);
+        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
+        if (place.distance == 0u && i < end_step && !waits) {
+            const vec4 look = sample_look(params, ray, position, 1.0, place, work);
             if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
             accumulate(sum, look);
             ++i;
@@ -527,10 +475,7 @@ void main()
             note(place, work);
             waits = place.is_missing;
             if (place.distance == 0u && !waits) {
-                note_sample(place, work);
-                if (COUNT_WORK != 0u && SHADED != 0u) ++work.shaded;
-                const vec4 look = sample_look(params, ray, position, rest / params.step, place,
-                                              find_sample(params, position, place));
+                const vec4 look = sample_look(params, ray, position, rest / params.step, place, work);
                 if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
                 accumulate(sum, look);
             }

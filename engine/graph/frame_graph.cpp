@@ -164,8 +164,7 @@ Resource FrameGraph::import(const std::string& name, const Import& import)
 Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
 {
     if (desc.bytes == 0) fail("resource '", name, "' has 0 bytes; expected at least one");
-    // Nothing is in flight: its memory is new, or what a frame that has ended gave back.
-    resources_.push_back({.name = name, .desc = desc, .state = {}});
+    resources_.push_back({.name = name, .desc = desc});
     return {uint32_t(resources_.size() - 1), 0};
 }
 
@@ -173,7 +172,8 @@ Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
-    // The whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
+    // Nothing is in flight: the whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
+    resources_[resource.index].state = {};
     return resource;
 }
 

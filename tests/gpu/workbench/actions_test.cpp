@@ -173,7 +173,7 @@ const Row ROWS[] = {
     {R"({"op":"let_go","on":true})", "hand"},
     {R"({"op":"use_device"})", ""},
     {R"({"op":"find_devices"})", ""},
-    {R"({"op":"follow_stylus","path":"FOLDER/hand.trace"})", "place, saved, undo, voxels"},
+    {R"({"op":"follow_stylus","path":"FOLDER/hand.trace"})", "saved, undo, voxels"},
     {R"({"op":"follow_stylus","path":"FOLDER/hand.trace","by_hand":false})",
      "place, saved, selection, trace, undo",
      {TRACING}},

@@ -44,10 +44,11 @@ const std::map<std::string, std::vector<const char*>> BESIDES{
     {"single_view", {R"({"op":"set","values":{"view":{"arrangement":"slices"}}})"}},
     {"select_nearest", {R"({"op":"deselect"})"}},
     {"regroup_2", {R"({"op":"group","group":4})"}},
+    {"stronger", {R"({"op":"set","values":{"probe":{"touch":{"strength":0.5}}}})"}},
 };
 
-/// What is under the pointer is the concern of hands_test.cpp.
-const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto"};
+/// What is under the pointer is the concern of hands_test.cpp, and what a stylus holds that of hand_test.cpp.
+const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto", "grab_volume"};
 
 /// Those that change nothing a state tells of: what they say is what they do.
 const std::vector<std::string> ONLY_SAY{"update_occlusion", "regroup_0", "quit"};

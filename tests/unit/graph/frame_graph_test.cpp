@@ -548,8 +548,10 @@ std::vector<Event> run_frames(Generator& generator, uint32_t frames)
     for (uint32_t frame = 0; frame < frames; ++frame) {
         const FrameGraph graph = generator.frame();
         const CompiledGraph compiled = graph.compile();
-        // A transient's memory is new, or a frame that has ended gave it back: nothing is in flight.
+        // A transient's memory was just used by something else.
         const uint64_t first_transient = (frame + 1) * 1000;
+        for (uint32_t i = 0; i < Generator::TRANSIENTS; ++i)
+            events.push_back(anything_in_flight(first_transient + Generator::IMPORTS + i));
 
         const std::vector<bool> needed = needed_passes(graph);
         std::vector<bool> alive(needed.size());

@@ -1,5 +1,5 @@
-// What a tick does, counted: words that growing hands on, exactly. tests/cli/test_haptics_cost.py counts the
-// instructions of step() while these cases run.
+// What a tick does, counted: words that growing hands on, exactly. tests/cli/instruments/test_haptics_cost.py counts
+// the instructions of step() while these cases run.
 
 #include <cmath>
 #include <memory>

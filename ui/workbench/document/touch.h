@@ -8,8 +8,8 @@
 // view (right, up, towards the user). Otherwise the mouse acts as a device whose hand has no mass and yields to the
 // force: the servo runs only while assistance is on or the stylus is recorded; otherwise the probe is where the mouse
 // puts it and nothing is computed. A device that moves the view has a servo of its own that gives no force, and the
-// mouse moves the probe. Main thread; servo and mirror have threads of their own, so that a main thread that hangs fades
-// nothing.
+// mouse moves the probe. Main thread; servo and mirror have threads of their own, so that a main thread that hangs
+// fades nothing.
 
 #include <memory>
 #include <string>
