@@ -9,7 +9,7 @@ from seen import Seen, shortcut_rows
 # What must be done first, so that there is something to do: other shortcuts, by their id.
 FIRST = {
     "redo": ["undo"], "pivot_at_pointer": ["single_view"], "step_back": ["tool_paint"], "single_view": ["slices"], "tool_turn": ["tool_paint"],
-    "group_1": ["group_2"], "less_blending": ["more_blending"], "select_nearest": ["deselect"],
+    "group_1": ["group_2"], "less_blending": ["more_blending"], "stronger": ["weaker"], "select_nearest": ["deselect"],
     "select_segment": ["select_nearest"], "drag_node": ["select_nearest"], "look_at_selection": ["add_node"],
     "undo": ["add_node"], "deselect": ["add_node"], "delete_selected": ["add_node"], "link_nearest": ["deselect", "add_node"],
     "larger_selected": ["add_node"], "smaller_selected": ["add_node"], "larger_nodes": ["add_node"],
@@ -18,7 +18,8 @@ FIRST = {
 }
 # What it makes, where the table cannot know: there it is pressed in a state in which nothing is left to be set.
 MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
-         "group_1": "set probe.group", "new_group": "set probe.group", "less_blending": "set blend.size"}
+         "group_1": "set probe.group", "new_group": "set probe.group", "less_blending": "set blend.size",
+         "stronger": "set probe.touch.strength"}
 # Whose answer is a sentence, always.
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
 # They switch a window on that takes keys, or that hides what follows: pressed again, or closed by Escape.
