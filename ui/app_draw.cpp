@@ -49,10 +49,10 @@ bool App::draw_ui()
     // below; and the view's measured cost then excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
+    follow_appearance();  // new fonts wait for the device, which must not have an image of the screen then
     if (!window_.is_ready()) return false;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
-    follow_appearance();
     window_.begin_ui();
     follow_focus();
     layout = draw_panels(model(), window_.pixels(), actions_);
