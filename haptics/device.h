@@ -44,6 +44,7 @@ struct DeviceCaps {
     bool outputs_force = false;
     bool tells_force_sequence = false;  ///< its states tell which force is in effect; otherwise `latency_s` must do
     bool rate_control = false;          ///< it states speeds, not places; it rests where it is silent
+    bool operator==(const DeviceCaps&) const = default;
 };
 
 enum class ReadResult : uint8_t {

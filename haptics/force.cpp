@@ -207,6 +207,13 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
+/// What the force may change by in a tick. A law that is steep where a ball meets a thin sheet, 1200 N/m on one of two
+/// voxels, is no jolt for a hand that is slow.
+double slew_at(const glm::dvec3& velocity)
+{
+    return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
+}
+
 /// The limits: a ball around 0, and a ball around the last force, whose centre lies in the first.
 void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory)
 {
@@ -215,7 +222,7 @@ void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory
     const glm::dvec3 target = shortened(wanted, most);
     if (glm::length(wanted) > caps.peak_force_n) memory.flags |= FORCE_CLAMPED;
     if (most < caps.peak_force_n && glm::length(wanted) > most) memory.flags |= FORCE_WARM;
-    memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, SLEW_N), most);
+    memory.force_n = shortened(memory.force_n + shortened(target - memory.force_n, slew_at(memory.velocity)), most);
 }
 
 }  // namespace

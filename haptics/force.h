@@ -94,7 +94,9 @@ inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device sile
 inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
 inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device was moved
 inline constexpr double MAX_DAMPING = 1.2;                    ///< N s/m; more is unstable with jitter and no friction
-inline constexpr double SLEW_N = 0.1;                         ///< per tick
+inline constexpr double SLEW_N = 0.1;                         ///< per tick, at most
+inline constexpr double GENTLE_SLEW_N = 0.05;  ///< per tick of a hand of at most GENTLE_SPEED; more in proportion
+inline constexpr double GENTLE_SPEED = 0.05;   ///< m/s
 
 /// The stiffness at the hand, after scaling and clamping.
 double stiffness_at_hand(const ForceSettings& settings, const DeviceCaps& caps, const SentForces& sent);

@@ -15,6 +15,7 @@ SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
 /// Always counted: rays that stopped before their end, once for each dispatch that they stopped in. The picture lacks
 /// what is behind.
 SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
+SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, that samples asked for
 
 SHARED_END
 #endif

@@ -20,6 +20,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #include "raycast.h"
 #ifdef PAGED
 #include "pages.h"
@@ -103,6 +104,7 @@ ivec2 beside(const RaycastParams params, uvec2 in_part)
 #endif
 #include "library/mask.glsl"
 #endif
+uint density_reads = 0u;
 #ifdef FILTERED
 #include "library/density_filtered.glsl"
 #else
@@ -135,6 +137,12 @@ Place place_at(const RaycastParams params, vec3 position)
 const float MAX_STEPS = 4294967040.0;
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
+// Lanes that have seen nothing in so many samples in a row search for the next one that shows something: soon where the
+// search before was long, late where nearly every sample is seen, since all lanes wait while one searches.
+const uint AWAY_FROM_SEEN = 64u;
+const uint SAMPLES_OF_LEAP = 8u;   // which count as unseen
+const uint LITTLE_PATIENCE = 2u;
+const uint MUCH_PATIENCE = 64u;
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
 // this is 0, whose sign devices may lose.
 const float LEAST_ALPHA = 1e-30;
@@ -189,22 +197,55 @@ float value_near(vec3 in_brick, ivec3 slot)
     return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
 }
 
-// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place,
-                 inout Work work)
+void note_sample(const Place place, inout Work work)
 {
-    // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked
-    // volume gives the same bits as one in a single texture.
+    ++work.samples;
+    work.bricks += uint(place.slot != work.last_slot);
+    work.last_slot = place.slot;
+}
+
+// A sample that is also shaded, if any is.
+void note_taken(const Place place, inout Work work)
+{
+    note_sample(place, work);
+    work.shaded += uint(SHADED != 0u);
+}
+
+// Where the texels around a position are.
+struct Texels {
+    vec3 lattice;    // of voxel centres of the brick's level
+    uvec3 brick;
+    ivec3 corner;
+    vec3 fraction;   // between the corner and the next texels
+    ivec3 to_atlas;
+};
+
+// Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked volume
+// gives the same bits as one in a single texture. What is read where there is no brick is not used.
+Texels texels_at(vec3 position, const Place place)
+{
+    Texels texels;
 #ifdef PAGED
-    const vec3 lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
-    const uvec3 brick = uvec3(position) >> place.level + 5u;
+    texels.lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
+    texels.brick = uvec3(position) >> place.level + 5u;
+    const uint slot = place.distance > 0u || place.is_missing ? NO_SLOT : place.slot;
 #else
-    const vec3 lattice = position - 0.5;
-    const uvec3 brick = uvec3(position) / BRICK_SIZE;
+    texels.lattice = position - 0.5;
+    texels.brick = uvec3(position) / BRICK_SIZE;
+    const uint slot = place.slot;
 #endif
-    const vec3 corner = floor(lattice);
-    const ivec3 to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
-    const Density density = density_at(ivec3(corner) + to_atlas, lattice - corner);
+    const vec3 corner = floor(texels.lattice);
+    texels.corner = ivec3(corner);
+    texels.fraction = texels.lattice - corner;
+    texels.to_atlas = ivec3(slot_origin(slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);
+    return texels;
+}
+
+// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place)
+{
+    const Texels texels = texels_at(position, place);
+    const Density density = density_at(texels.corner + texels.to_atlas, texels.fraction);
     vec4 look;
     if (PREINTEGRATED != 0u) {
 #ifdef PAGED
@@ -212,7 +253,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const float per_voxel = 1.0;
 #endif
-        const vec3 in_brick = lattice - vec3(brick * BRICK_SIZE);
+        const vec3 in_brick = texels.lattice - vec3(texels.brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
         const ivec3 slot = ivec3(slot_origin(place.slot));
         look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
@@ -223,13 +264,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #ifdef MASKED
     if (place.is_painted) look = painted(params, position, part, look);
 #endif
-    if (COUNT_WORK != 0u) {
-        ++work.samples;
-        work.bricks += uint(place.slot != work.last_slot);
-        work.last_slot = place.slot;
-    }
     if (SHADED != 0u) {
-        if (COUNT_WORK != 0u) ++work.shaded;
         float ambient = params.ambient;
 #ifdef OCCLUDED
 #ifdef PAGED
@@ -237,7 +272,7 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const uvec3 last = uvec3(params.position_limit);
 #endif
-        ambient *= ambient_share(lattice, to_atlas, vec3(last));
+        ambient *= ambient_share(texels.lattice, texels.to_atlas, vec3(last));
 #endif
         look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
@@ -250,6 +285,12 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);
+}
+
+// The middle of a step of the lattice.
+vec3 sample_position(const RaycastParams params, const Ray ray, float begin, uint step)
+{
+    return position_at(params, ray, begin + (float(step) + 0.5) * params.step);
 }
 
 // The number of whole steps from `position` that stay inside the empty cube around its cell.
@@ -294,7 +335,8 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
 #ifdef PAGED
     if (place.distance > 0u || waits) return vec4(0.0);
 #endif
-    return sample_look(params, ray, position, 1.0, place, work);
+    if (COUNT_WORK != 0u) note_taken(place, work);
+    return sample_look(params, ray, position, 1.0, place);
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -304,32 +346,18 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
-// What PICK looks for: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
-struct Rises {
-    float most, most_at;               // of the runs so far; lengths along the ray
-    float run, steepest, steepest_at;  // of this one
-    float peak, trough;                // largest opacity of a sample of this run, and smallest since then
-};
+#include "library/pick.glsl"
+#include "library/search.glsl"
 
-// A run ends where the opacity of samples has fallen well below its peak and rises again: behind a structure comes
-// another. A little noise ends none.
-void note_rise(inout Rises rises, float added, float opacity, float at)
+// Adds the sample of step `i`, and goes on to the next.
+void take(const RaycastParams params, vec4 look, const Place place, float begin, inout uint i, inout vec4 sum,
+          inout Rises rises, inout uint unseen, inout Work work)
 {
-    if (rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough) {
-        rises.run = rises.steepest = 0.0;
-        rises.peak = opacity;
-    }
-    rises.trough = opacity >= rises.peak ? opacity : min(rises.trough, opacity);
-    rises.peak = max(rises.peak, opacity);
-    rises.run += added;
-    if (added > rises.steepest) {
-        rises.steepest = added;
-        rises.steepest_at = at;
-    }
-    if (rises.run > rises.most) {
-        rises.most = rises.run;
-        rises.most_at = rises.steepest_at;
-    }
+    if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
+    if (COUNT_WORK != 0u) note_taken(place, work);
+    accumulate(sum, look);
+    unseen = look.a > 0.0 ? 0u : unseen + 1u;
+    ++i;
 }
 
 #ifdef SHELLED
@@ -426,35 +454,34 @@ void main()
     Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
-    // SIMD devices run both sides of a branch for all their lanes, so the cheap search for the next occupied cell is a
-    // separate loop, and lanes meet again at the costly sample.
+    // SIMD devices run both sides of a branch for all their lanes, so what is cheap, the search for a sample that can
+    // be seen, and what is costly are loops of their own, in which lanes stay together as long as it pays.
     uint i = first_step;
+    uint unseen = AWAY_FROM_SEEN;
     while (i < end_step && sum.a < params.opacity_limit && !waits) {
-        vec3 position;
-        Place place;
+        const uint step_before = i;
+        search_sample(params, ray, begin, end_step, i, unseen, work);
+        const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
+        if (i > step_before) rises.trough = 0.0;
+        unseen = 0u;
+        bool goes_on;
         do {
-            position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);
-            place = place_at(params, position);
+            const vec3 position = sample_position(params, ray, begin, i);
+            const Place place = place_at(params, position);
             note(place, work);
-            if (place.distance > 0u) {
-                i += steps_to_leave(params, ray, position, place);
-                rises.trough = 0.0;
-                if (COUNT_WORK != 0u) ++work.leaps;
-            }
-        } while (place.distance > 0u && i < end_step);
+            goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit;
 #ifdef SHELLED
-        const float here = begin + (float(i) + 0.5) * params.step;
-        if (i < end_step) add_shells(params, ray, here, shell, sum);
-        waits = waits || (i < end_step && shell_waits(params, shell, here, sum));
+            const float here = begin + (float(i) + 0.5) * params.step;
+            if (goes_on) add_shells(params, ray, here, shell, sum);
+            waits = waits || (goes_on && shell_waits(params, shell, here, sum));
 #endif
-        waits = waits || (i < end_step && place.is_missing && sum.a < params.opacity_limit);
-        // A lane that leapt past its end waits here for the others, and lavapipe does not keep its last distance.
-        if (place.distance == 0u && i < end_step && !waits) {
-            const vec4 look = sample_look(params, ray, position, 1.0, place, work);
-            if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
-            accumulate(sum, look);
-            ++i;
-        }
+            waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
+            if (goes_on && !waits) {
+                const vec4 look = sample_look(params, ray, position, 1.0, place);
+                take(params, look, place, begin, i, sum, rises, unseen, work);
+            }
+            goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
+        } while (goes_on);
     }
     if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
@@ -475,7 +502,8 @@ void main()
             note(place, work);
             waits = place.is_missing;
             if (place.distance == 0u && !waits) {
-                const vec4 look = sample_look(params, ray, position, rest / params.step, place, work);
+                const vec4 look = sample_look(params, ray, position, rest / params.step, place);
+                if (COUNT_WORK != 0u) note_taken(place, work);
                 if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
                 accumulate(sum, look);
             }
@@ -497,6 +525,7 @@ void main()
         count(COUNTER_RAYS, uint(params.first_step == 0u));
         count(COUNTER_SAMPLES, work.samples);
         count(COUNTER_SHADED, work.shaded);
+        count(COUNTER_DENSITY_READS, density_reads);
         count(COUNTER_LEAPS, work.leaps);
         count(COUNTER_BRICKS_VISITED, work.bricks);
         count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));

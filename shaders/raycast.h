@@ -44,6 +44,9 @@ SHARED_CONST uint RAY_IS_INSIDE = 1u;  // the iso-surface
 SHARED_CONST uint RAY_HAS_ENDED = 2u;  // its last, shorter step is taken
 SHARED_CONST uint RAY_IS_DONE = 4u;
 
+/// Samples that one turn of the search for a visible one asks for their density (library/search.glsl).
+SHARED_CONST uint SEARCH_AHEAD = 4u;
+
 struct RaycastParams {
     // The ray of a pixel joins two points on planes close to the volume, computed in double on the CPU; voxel space.
     vec3 near_corner;

@@ -69,7 +69,7 @@ MAY_INCLUDE = {
     "tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live shaders haptics haptics/devices haptics/hid ui ui/workbench "
+    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/devices haptics/hid ui ui/workbench "
     "tools/golden tools/bench tools/report",
 }
 # Rooms without a device: none of them may include a room that knows one, directly or indirectly.

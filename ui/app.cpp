@@ -254,6 +254,7 @@ void App::handle_events(double timeout_s)
         bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on it: the probe's position, the selection
     }
+    if (window_.has_clicks()) ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
     viewport_.wait(window_.now_s(), actions_);
     apply_all();
     const double now = window_.now_s();

@@ -1,12 +1,14 @@
 #include "ui/window.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <imgui/imgui.h>
 
+#include "ui/mouse_feed.h"
 #include "ui/swapchain.h"
 
 namespace shvr::ui {
@@ -35,6 +37,18 @@ GLFWmonitor* monitor_of(const glm::ivec2& point)
     return glfwGetPrimaryMonitor();
 }
 
+/// One change of the buttons, at its place; whether it is a double click is decided by the times of the events.
+void tell_clicks(MouseFeed& mouse)
+{
+    ImGuiIO& io = ImGui::GetIO();
+    const MouseFeed::Frame frame = mouse.next();
+    std::copy(frame.down.begin(), frame.down.end(), io.MouseDown);
+    if (!frame.at) return;
+    io.MousePos = {float(frame.at->x) / io.DisplayFramebufferScale.x,
+                   float(frame.at->y) / io.DisplayFramebufferScale.y};
+    io.MouseDoubleClickTime = frame.is_double ? std::numeric_limits<float>::max() : 0.0f;
+}
+
 }  // namespace
 
 /// GLFW's window and the input received in it.
@@ -43,7 +57,17 @@ struct Window::Input {
     std::vector<InputEvent> events;
     glm::ivec2 place{0}, size{0};  ///< of the window before it took the whole screen
     std::vector<int> pressed;      ///< keys, since the last frame
-    bool frame_is_open = false;    ///< an interface frame was begun and not yet rendered
+    MouseFeed mouse;
+    double asked_s = 0.0, answered_s = 0.0;  ///< when events were last waited for, and when that ended
+
+    /// When the event at hand can have happened: GLFW does not tell. What is there at once came since the last time.
+    double earliest_s() const
+    {
+        constexpr double AT_ONCE_S = 0.005;
+        const double now = glfwGetTime();
+        return now - asked_s < AT_ONCE_S ? answered_s : now;
+    }
+    bool frame_is_open = false;  ///< an interface frame was begun and not yet rendered
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
     template <class Event>
@@ -90,6 +114,7 @@ struct Window::Input {
             add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT, character ? character : ""});
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
+            of(w).mouse.add(button, action == GLFW_PRESS, cursor(w), of(w).earliest_s(), glfwGetTime());
             add(w, ButtonEvent{button, mods, action == GLFW_PRESS, cursor(w)});
         });
         glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
@@ -212,10 +237,12 @@ double Window::now_s() const
 
 std::vector<InputEvent> Window::wait_events(double timeout_s)
 {
+    input_->asked_s = glfwGetTime();
     if (timeout_s > 0.0)
         glfwWaitEventsTimeout(timeout_s);
     else
         glfwPollEvents();
+    input_->answered_s = glfwGetTime();
     return std::exchange(input_->events, {});
 }
 
@@ -230,6 +257,11 @@ void Window::renew_fonts()
     if (swapchain_) swapchain_->renew_fonts();
 }
 
+bool Window::has_clicks() const
+{
+    return input_->mouse.is_waiting();
+}
+
 bool Window::is_ready()
 {
     return swapchain_->is_ready();
@@ -240,6 +272,7 @@ void Window::begin_ui()
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
+    tell_clicks(input_->mouse);
     // A key that went down and up since the last frame, which may have taken long, was pressed all the same.
     bool(&down)[512] = ImGui::GetIO().KeysDown;
     const std::vector<int> pressed = std::exchange(input_->pressed, {});

@@ -83,6 +83,8 @@ public:
     std::vector<InputEvent> wait_events(double timeout_s);
     /// Whether a key is held down.
     bool is_down(int key) const;
+    /// Whether the interface has not been told of all presses of buttons yet: each frame tells one.
+    bool has_clicks() const;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;

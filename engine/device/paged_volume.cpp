@@ -20,12 +20,19 @@ int64_t brick_total(const Size3& size, int level)
     return counts.x * counts.y * counts.z;
 }
 
-/// As many as fit, rounded as atlas_layout rounds.
-uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
+/// For all bricks of all levels, and the empty one.
+uint64_t useful_slots(const VolumeInfo& info, int levels)
 {
     uint64_t useful = 1;
     for (int level = 0; level < levels; ++level)
         useful += uint64_t(std::min<int64_t>(brick_total(info.size, level), int64_t{1} << 40));
+    return useful;
+}
+
+/// As many as fit, rounded as atlas_layout rounds.
+uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
+{
+    const uint64_t useful = useful_slots(info, levels);
     // Paging is for what does not fit: the atlas is as large as one image of the device can be.
     const uint64_t most = std::min({bytes / BrickAtlas::slot_bytes(), traits.max_volume_bytes / BrickTexels::CODE_BYTES,
                                     max_atlas_slots(gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D)});
@@ -47,11 +54,11 @@ int kept_levels(int levels)
     return std::min(levels, int(gpu::PAGE_MISSING));
 }
 
-/// Half of the room is for finer bricks.
+/// Half of the room is for finer bricks, unless there is room for all that there are.
 void check_coarsest(const VolumeInfo& info, int levels, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);
-    if (bricks >= int64_t(slots / 2))
+    if (slots < useful_slots(info, levels) && bricks >= int64_t(slots / 2))
         fail(info.name, ": its coarsest level has ", bricks, " bricks and the device has room for ", slots,
              "; expected a coarser level, as `shvr import` makes, or --budget-device ",
              (4 * uint64_t(bricks) * BrickAtlas::slot_bytes() >> 20) + 1);

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/gpu/device_needs.h"
+
 namespace shvr::gpu {
 
 namespace {
@@ -296,6 +298,7 @@ void Device::create_device(bool presents)
     if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
         fail("device ", traits_.name,
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
+    if (const auto why = why_too_limited(traits_.limits)) fail("device ", traits_.name, ": ", *why);
 
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .synchronization2 = VK_TRUE,

@@ -25,14 +25,16 @@ constexpr uint64_t MAX_BLOCKS = 4096;
 /// Steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // A step is a turn, and finds its place in a loop for which the lanes wait for one another; in paged bricks that
-    // takes a turn for each level of the directory.
-    const uint64_t turns_to_place = 1 + (volume.pages ? volume.pages->depth : 0);
-    const uint64_t voxels_of_group = input.smooth_borders ? 8 : 1;
-    const uint64_t turns_to_find_paint = volume.pages && input.mask ? voxels_of_group * gpu::MASK_PROBES : 0;
-    double turns = double((LANES + 1) * turns_to_place + 1 + turns_to_find_paint);
+    // A place is found in a loop of its own; in paged bricks that takes a turn for each level of the directory. Loops
+    // of a fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and take none.
+    const uint64_t levels = volume.pages ? volume.pages->depth : 0;
+    const uint64_t to_leap = 1 + levels;
+    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last goes on by as many steps
+    const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
+    // Any turn is a step of one lane at least, but for those in which all find that they have to go on elsewhere.
+    double turns = double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
     // An iso-surface is searched cell by cell: at most three a reference length, and one where the ray enters.
-    if (is_shelled) turns += double(LANES * (turns_to_place + 1)) * (3.0 * double(input.params.step) + 1.0);
+    if (is_shelled) turns += double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
     return std::max(uint64_t(double(MAX_TURNS) / turns), uint64_t{1});
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/base/error.h"
 #include "engine/base/finite.h"
 
 namespace shvr {
@@ -46,7 +47,12 @@ public:
         model.jitter_s = std::min(model.jitter_s, 0.5 * model.tick_s);
         touch_ = std::make_unique<ModelledTouch>(model);
     }
-    DeviceCaps caps() const { return touch_ ? touch_->caps() : trace_.caps; }
+    DeviceCaps caps(size_t tick)
+    {
+        for (; caps_ != trace_.later_caps.size() && trace_.later_caps[caps_].from_tick <= tick; ++caps_) {
+        }
+        return touch_ ? touch_->caps() : caps_ > 0 ? trace_.later_caps[caps_ - 1].caps : trace_.caps;
+    }
     ReadResult read(const TraceTick& tick, DeviceState& state)
     {
         if (!touch_) {
@@ -66,6 +72,7 @@ public:
 
 private:
     const Trace& trace_;
+    size_t caps_ = 0;  ///< changes of limits so far
     std::unique_ptr<ModelledTouch> touch_;
     glm::dvec3 wish_m_{0.0};
 };
@@ -100,7 +107,36 @@ private:
     double threshold_ = 0.0;
 };
 
+/// The relevance that the servo had, tick by tick.
+class RecordedRelevance {
+public:
+    explicit RecordedRelevance(const Trace& trace)
+        : trace_(trace), now_(std::make_unique<RelevancePatch>()), next_(std::make_unique<RelevancePatch>())
+    {}
+    const RelevancePatch& at(size_t tick)
+    {
+        for (; read_ < trace_.relevance.size() && trace_.relevance[read_].from_tick <= tick; ++read_) {
+            if (!read_relevance(trace_.relevance[read_], *now_, *next_))
+                fail("the trace: relevance ", read_, " before tick ", tick, " does not fit its words");
+            now_.swap(next_);
+        }
+        now_->time_ns = trace_.ticks[tick].relevance_time_ns;
+        return *now_;
+    }
+    uint64_t read() const { return read_; }
+
+private:
+    const Trace& trace_;
+    size_t read_ = 0;
+    std::unique_ptr<RelevancePatch> now_, next_;
+};
+
 }  // namespace
+
+bool replays_relevance(const Trace& trace, const ReplayOptions& options)
+{
+    return trace.holds_relevance && !options.touch && !options.relevance_anew;
+}
 
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
                           bool keep_steps)
@@ -108,6 +144,9 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
     using Clock = std::chrono::steady_clock;
     Player player(trace, options);
     Mirror mirror(make_relevance, options.relevance_every);
+    RecordedRelevance recorded(trace);
+    const bool is_recorded = replays_relevance(trace, options);
+    if (!is_recorded && !make_relevance) fail("the trace holds no relevance that fits; expected a volume");
     ForceMemory memory;
     const auto growth = std::make_unique<GrowthMemory>();
     const uint64_t period_ns = 1'000'000'000 / trace.rate_hz;
@@ -127,10 +166,11 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
 
         const ReadResult read = player.read(tick, state);
         const glm::dvec3 probe = force_settings.workspace.to_point(state.position_m);
-        const RelevancePatch& patch = mirror.around(probe, force_settings, settings->threshold, tick.now_ns);
+        const RelevancePatch& patch =
+            is_recorded ? recorded.at(i) : mirror.around(probe, force_settings, settings->threshold, tick.now_ns);
         const Clock::time_point begin = Clock::now();
         const ForceStep step_now =
-            step(force_settings, player.caps(), read, state, patch, tick.now_ns, memory, *growth);
+            step(force_settings, player.caps(i), read, state, patch, tick.now_ns, memory, *growth);
         result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
         player.write(step_now);
 
@@ -156,7 +196,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         if (keep_steps) result.steps.push_back(step_now);
     }
     result.ticks = trace.ticks.size();
-    result.patches = mirror.made();
+    result.patches = is_recorded ? recorded.read() : mirror.made();
     result.energy_j = player.work_j().value_or(result.energy_j);
     if (result.contact_ticks > 0) result.proxy_rms = std::sqrt(squares / double(result.contact_ticks));
     return result;

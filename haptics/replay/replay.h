@@ -1,6 +1,6 @@
 #pragma once
 // Runs a trace through the servo's own `step()`, without a clock: the same trace and relevance give the same forces,
-// bit for bit. One thread.
+// bit for bit. A trace that holds the relevance gives those of its session. One thread.
 
 #include <functional>
 
@@ -15,6 +15,7 @@ struct ReplayOptions {
     std::optional<double> stiffness, damping;
     /// A hand draws this device along the trace; without it, the device's answers are those of the trace.
     std::optional<TouchModel> touch;
+    bool relevance_anew = false;   ///< also where the trace holds what the servo had
     uint32_t relevance_every = 0;  ///< ticks; 0: when the ball leaves the last one
 };
 
@@ -37,7 +38,10 @@ struct ReplayResult {
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if asked for
 };
-/// New relevance is also made when the threshold changes; it takes effect at once.
+/// Whether the relevance of the trace is used: a modelled hand goes elsewhere, where none is known.
+bool replays_relevance(const Trace& trace, const ReplayOptions& options);
+/// `make_relevance` is asked where that of the trace is not used, also when the threshold changes, which takes effect
+/// at once; empty: fails there.
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
                           bool keep_steps = false);
 

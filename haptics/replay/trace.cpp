@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -13,7 +14,8 @@
 namespace shvr {
 namespace {
 
-constexpr int64_t VERSION = 1;
+constexpr int64_t VERSION_WITHOUT_RELEVANCE = 1, VERSION = 2;
+constexpr int32_t MAX_PLACE = 1 << 30;  ///< voxels
 constexpr int64_t MAX_TIME_NS = int64_t{1} << 62;
 constexpr double MAX_LENGTH = 1e12;
 constexpr std::string_view READS[] = {"fresh", "stale", "lost", "malformed"};  // by ReadResult
@@ -72,7 +74,7 @@ void read_workspace(const JsonNode& node, Workspace& workspace)
 void read_settings(const JsonNode& node, TraceSettings& settings)
 {
     node.allow({"assistance", "law", "mode", "threshold", "probe_radius", "stiffness", "damping", "to_volume", "origin",
-                "reset", "to_camera", "surface_share", "movement_scale", "strength", "let_go"});
+                "reset", "to_camera", "surface_share", "movement_scale", "strength", "let_go", "relevance_settings"});
     ForceSettings& force = settings.force;
     force.assistance = node["assistance"].flag(force.assistance);
     force.law = node["law"].choice_or(force.law);
@@ -88,14 +90,38 @@ void read_settings(const JsonNode& node, TraceSettings& settings)
     force.movement_scale = node["movement_scale"].number(force.movement_scale, above_zero(1e-6, 1e6));
     force.strength = node["strength"].number(force.strength, {0.0, 1.0});
     force.let_go = node["let_go"].flag(force.let_go);
+    force.relevance_settings = number_32(node["relevance_settings"], force.relevance_settings);
+}
+
+glm::ivec3 voxels_of(const JsonNode& node, int32_t least)
+{
+    const std::vector<JsonNode> parts = node.elements(3, 3);
+    const auto part = [&](size_t i) { return int32_t(parts[i].whole(least, MAX_PLACE)); };
+    return {part(0), part(1), part(2)};
+}
+
+TraceRelevance relevance_of(const JsonNode& node)
+{
+    node.allow({"sequence", "origin", "size", "words_per_row", "spacing", "volume_size", "level", "settings", "runs"});
+    TraceRelevance noted;
+    noted.sequence = uint64_t(node["sequence"].whole(1, MAX_TIME_NS));
+    noted.origin = voxels_of(node["origin"], 0);
+    noted.size = voxels_of(node["size"], 1);
+    noted.words_per_row = int32_t(node["words_per_row"].whole(1, RelevancePatch::MAX_VOXELS));
+    noted.spacing = node["spacing"].vector(above_zero(1e-12, MAX_LENGTH));
+    noted.volume_size = voxels_of(node["volume_size"], 1);
+    noted.level = int32_t(node["level"].whole(0, 0, 30));
+    noted.settings = number_32(node["settings"], 0);
+    noted.runs = node["runs"].text();
+    return noted;
 }
 
 TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t period_ns)
 {
-    node.allow(
-        {"now", "read", "time", "sequence", "force_sequence", "buttons", "jump", "at", "turn", "calibrated", "force"});
+    node.allow({"now", "read", "time", "sequence", "force_sequence", "buttons", "jump", "at", "turn", "calibrated",
+                "force", "relevance_time"});
     TraceTick tick;
-    if (before) tick.state = before->state;
+    if (before) tick.state = before->state, tick.relevance_time_ns = before->relevance_time_ns;
     const uint64_t due_ns = before ? before->now_ns + period_ns : period_ns;
     tick.now_ns = uint64_t(node["now"].whole(int64_t(due_ns), before ? int64_t(before->now_ns) : 0, MAX_TIME_NS));
     if (node["read"].exists()) tick.read = ReadResult(node["read"].choice(READS));
@@ -114,14 +140,17 @@ TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t peri
     }
     state.calibrated = node["calibrated"].flag(state.calibrated);
     if (node["force"].exists()) tick.force_n = node["force"].vector(any_number());
+    tick.relevance_time_ns = uint64_t(node["relevance_time"].whole(int64_t(tick.relevance_time_ns), 0, MAX_TIME_NS));
     return tick;
 }
 
 void read_head(const JsonNode& node, Trace& trace)
 {
     node.allow({"shvr_stylus_trace", "unit", "rate_hz", "caps"});
-    const JsonNode version = node.required("shvr_stylus_trace", "1, the version of the format");
-    if (!version.is_number() || version.dump() != "1") version.refuse("1, the version that this program reads");
+    const JsonNode version = node.required("shvr_stylus_trace", "1 or 2, the version of the format");
+    trace.holds_relevance = version.is_number() && version.dump() == "2";
+    if (!trace.holds_relevance && (!version.is_number() || version.dump() != "1"))
+        version.refuse("1 or 2, the versions that this program reads");
     if (node["unit"].exists()) trace.unit = node["unit"].any_text();
     trace.rate_hz = uint32_t(node["rate_hz"].whole(trace.rate_hz, 1, 100'000));
     if (node["caps"].exists()) read_caps(node["caps"], trace.caps);
@@ -174,23 +203,29 @@ std::string in_json(const std::string& text)
     return safe;
 }
 
+std::string line_of(const DeviceCaps& stated)
+{
+    Line caps;
+    caps.add("usable_lower_m", stated.usable_lower_m);
+    caps.add("usable_upper_m", stated.usable_upper_m);
+    caps.add("peak_force_n", stated.peak_force_n);
+    caps.add("continuous_force_n", stated.continuous_force_n);
+    caps.add("stiffness_limit", stated.stiffness_limit);
+    caps.add("latency_s", stated.latency_s);
+    caps.add("senses_rotation", stated.senses_rotation);
+    caps.add("outputs_force", stated.outputs_force);
+    caps.add("tells_force_sequence", stated.tells_force_sequence);
+    return caps.end();
+}
+
 std::string head_of(const Trace& trace)
 {
-    Line caps, head;
-    caps.add("usable_lower_m", trace.caps.usable_lower_m);
-    caps.add("usable_upper_m", trace.caps.usable_upper_m);
-    caps.add("peak_force_n", trace.caps.peak_force_n);
-    caps.add("continuous_force_n", trace.caps.continuous_force_n);
-    caps.add("stiffness_limit", trace.caps.stiffness_limit);
-    caps.add("latency_s", trace.caps.latency_s);
-    caps.add("senses_rotation", trace.caps.senses_rotation);
-    caps.add("outputs_force", trace.caps.outputs_force);
-    caps.add("tells_force_sequence", trace.caps.tells_force_sequence);
-    head.add("shvr_stylus_trace", uint64_t(VERSION));
+    Line head;
+    head.add("shvr_stylus_trace", uint64_t(trace.holds_relevance ? VERSION : VERSION_WITHOUT_RELEVANCE));
     head.add("unit", std::string_view(in_json(trace.unit)));
     head.add("rate_hz", trace.rate_hz);
     head.key("caps");
-    head.text += caps.end();
+    head.text += line_of(trace.caps);
     return head.end();
 }
 
@@ -214,10 +249,27 @@ std::string line_of(const TraceSettings& settings)
     line.add("movement_scale", force.movement_scale);
     line.add("strength", force.strength);
     line.add("let_go", force.let_go);
+    line.add("relevance_settings", force.relevance_settings);
     return "{\"settings\":" + line.end() + "}";
 }
 
-std::string line_of(const TraceTick& tick)
+std::string line_of(const TraceRelevance& noted)
+{
+    const auto whole = [](const glm::ivec3& v) { return glm::dvec3(v); };
+    Line line;
+    line.add("sequence", noted.sequence);
+    line.add("origin", whole(noted.origin));
+    line.add("size", whole(noted.size));
+    line.add("words_per_row", uint32_t(noted.words_per_row));
+    line.add("spacing", noted.spacing);
+    line.add("volume_size", whole(noted.volume_size));
+    line.add("level", uint32_t(noted.level));
+    line.add("settings", noted.settings);
+    line.add("runs", std::string_view(noted.runs));
+    return "{\"relevance\":" + line.end() + "}";
+}
+
+std::string line_of(const TraceTick& tick, uint64_t relevance_time_before_ns)
 {
     const DeviceState& state = tick.state;
     const glm::dquat& q = state.rotation;
@@ -233,31 +285,73 @@ std::string line_of(const TraceTick& tick)
     line.add("jump", state.jump);
     line.add("calibrated", state.calibrated);
     if (tick.force_n) line.add("force", *tick.force_n);
+    if (tick.relevance_time_ns != relevance_time_before_ns) line.add("relevance_time", tick.relevance_time_ns);
     return line.end();
 }
 
-void read_line(const JsonNode& node, Trace& trace, uint64_t period_ns)
-{
-    const JsonNode chosen = node["settings"];
-    if (!chosen.exists()) {
-        if (trace.ticks.size() >= MAX_TRACE_TICKS)
-            node.refuse_because(sentence("is a tick too many; expected at most ", MAX_TRACE_TICKS));
-        trace.ticks.push_back(read_tick(node, trace.ticks.empty() ? nullptr : &trace.ticks.back(), period_ns));
-        return;
+/// Reads lines after the head. Runs are read once, to be refused by their line.
+class LineReader {
+public:
+    explicit LineReader(Trace& trace) : trace_(trace) {}
+    void read(const JsonNode& node)
+    {
+        if (const JsonNode chosen = node["settings"]; chosen.exists()) {
+            node.allow({"settings"});
+            add_settings(chosen);
+        } else if (const JsonNode noted = node["relevance"]; noted.exists()) {
+            node.allow({"relevance"});
+            add_relevance(noted);
+        } else if (const JsonNode caps = node["caps"]; caps.exists()) {
+            node.allow({"caps"});
+            TraceCaps later{trace_.later_caps.empty() ? trace_.caps : trace_.later_caps.back().caps,
+                            trace_.ticks.size()};
+            read_caps(caps, later.caps);
+            trace_.later_caps.push_back(later);
+        } else {
+            add_tick(node);
+        }
     }
-    node.allow({"settings"});
-    TraceSettings settings;
-    if (!trace.settings.empty()) settings = trace.settings.back();
-    settings.from_tick = trace.ticks.size();
-    read_settings(chosen, settings);
-    trace.settings.push_back(settings);
-}
+
+private:
+    void add_tick(const JsonNode& node)
+    {
+        if (trace_.ticks.size() >= MAX_TRACE_TICKS)
+            node.refuse_because(sentence("is a tick too many; expected at most ", MAX_TRACE_TICKS));
+        if (const JsonNode time = node["relevance_time"]; time.exists() && trace_.relevance.empty())
+            time.refuse("a relevance before it");
+        trace_.ticks.push_back(
+            read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
+    }
+    void add_settings(const JsonNode& chosen)
+    {
+        TraceSettings settings;
+        if (!trace_.settings.empty()) settings = trace_.settings.back();
+        settings.from_tick = trace_.ticks.size();
+        read_settings(chosen, settings);
+        trace_.settings.push_back(settings);
+    }
+    void add_relevance(const JsonNode& node)
+    {
+        if (!trace_.holds_relevance) node.refuse_because("is of version 2; expected that version in the head");
+        TraceRelevance noted = relevance_of(node);
+        if (!last_) last_ = std::make_unique<RelevancePatch>(), next_ = std::make_unique<RelevancePatch>();
+        if (noted.sequence <= last_->sequence) node["sequence"].refuse("a number above that of the relevance before");
+        if (!read_relevance(noted, *last_, *next_)) node["runs"].refuse("runs that fill its words");
+        last_.swap(next_);
+        noted.from_tick = trace_.ticks.size();
+        trace_.relevance.push_back(std::move(noted));
+    }
+
+    Trace& trace_;
+    std::unique_ptr<RelevancePatch> last_, next_;
+};
 
 }  // namespace
 
 Trace parse_trace(const std::string& text, const std::string& origin)
 {
     Trace trace;
+    LineReader reader(trace);
     size_t number = 0;
     bool has_head = false;
     for (size_t begin = 0; begin < text.size();) {
@@ -268,7 +362,7 @@ Trace parse_trace(const std::string& text, const std::string& origin)
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
         const JsonDocument document(line, sentence(origin, ":", number));
         if (has_head)
-            read_line(document.root(), trace, 1'000'000'000 / trace.rate_hz);
+            reader.read(document.root());
         else
             read_head(document.root(), trace);
         has_head = true;
@@ -289,10 +383,18 @@ std::string text_of(const Trace& trace)
 {
     std::string text = head_of(trace) + "\n";
     auto settings = trace.settings.begin();
+    auto caps = trace.later_caps.begin();
+    auto relevance = trace.relevance.begin();
+    uint64_t relevance_time_ns = 0;
     for (size_t tick = 0; tick < trace.ticks.size(); ++tick) {
+        for (; caps != trace.later_caps.end() && caps->from_tick <= tick; ++caps)
+            text += "{\"caps\":" + line_of(caps->caps) + "}\n";
+        for (; relevance != trace.relevance.end() && relevance->from_tick <= tick; ++relevance)
+            text += line_of(*relevance) + "\n";
         for (; settings != trace.settings.end() && settings->from_tick <= tick; ++settings)
             text += line_of(*settings) + "\n";
-        text += line_of(trace.ticks[tick]) + "\n";
+        text +=
+            line_of(trace.ticks[tick], std::exchange(relevance_time_ns, trace.ticks[tick].relevance_time_ns)) + "\n";
     }
     return text;
 }

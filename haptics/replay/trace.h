@@ -1,6 +1,7 @@
 #pragma once
 // A stylus trace: what a device answered and what a person chose, tick by tick, as a file (README.md has the format).
-// What is read is what was written, bit for bit. Version 1. Any thread.
+// What is read is what was written, bit for bit. Version 2; version 1, which holds no relevance, is read as well. Any
+// thread.
 
 #include <filesystem>
 #include <iosfwd>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "haptics/force.h"
+#include "haptics/replay/trace_relevance.h"
 
 namespace shvr {
 
@@ -24,13 +26,25 @@ struct TraceTick {
     ReadResult read = ReadResult::fresh;
     DeviceState state;
     std::optional<glm::dvec3> force_n;  ///< what the servo wrote
+    uint64_t relevance_time_ns = 0;     ///< up to which the relevance in use was known to be true; 0: there was none
+};
+
+/// Limits of the device from a tick on, where they changed.
+struct TraceCaps {
+    DeviceCaps caps;
+    size_t from_tick = 0;
 };
 
 struct Trace {
     std::string unit;  ///< of physical lengths; empty: not known
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
+    std::vector<TraceCaps> later_caps;    ///< by tick
     std::vector<TraceSettings> settings;  ///< by tick; the first one holds from the start
+    /// The ticks tell what the servo felt: `relevance`, by tick, and nothing before the first. Otherwise whoever
+    /// replays them makes it.
+    bool holds_relevance = false;
+    std::vector<TraceRelevance> relevance;
     std::vector<TraceTick> ticks;
 };
 

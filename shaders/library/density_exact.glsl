@@ -1,6 +1,7 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
-// codes. Needs `atlas`, r32ui: two neighbouring codes along x per texel, the lower one in the low half. One load in
-// place of two makes this the fastest way on devices whose images are ordinary memory (DECISIONS.md).
+// codes. Needs `atlas`, r32ui: two neighbouring codes along x per texel, the lower one in the low half; and
+// `density_reads`, which counts. One load in place of two makes this the fastest way on devices whose images are
+// ordinary memory (DECISIONS.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
 // lie within the brick's apron, so no second lookup is ever needed.
@@ -14,6 +15,7 @@ struct Density {
 
 uint pair_at(int x, int y, int z)
 {
+    if (COUNT_WORK != 0u) ++density_reads;
     return imageLoad(atlas, ivec3(x, y, z)).x;
 }
 

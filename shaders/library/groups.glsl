@@ -16,7 +16,7 @@ uint group_around(vec3 position, ivec3 last)
     const vec3 corner = floor(lattice), upper = lattice - corner;
     uint groups[8];
     float weights[8];
-    for (uint i = 0u; i < 8u; ++i) {
+    [[unroll]] for (uint i = 0u; i < 8u; ++i) {
         const uvec3 offset = uvec3(i, i >> 1u, i >> 2u) & 1u;
         const vec3 along = mix(1.0 - upper, upper, vec3(offset));
         groups[i] = group_of(uvec3(clamp(ivec3(corner) + ivec3(offset), ivec3(0), last)));
@@ -24,9 +24,9 @@ uint group_around(vec3 position, ivec3 last)
     }
     uint heaviest = 0u;
     float most = 0.0;
-    for (uint i = 0u; i < 8u; ++i) {
+    [[unroll]] for (uint i = 0u; i < 8u; ++i) {
         float sum = 0.0;
-        for (uint k = 0u; k < 8u; ++k) sum += groups[k] == groups[i] ? weights[k] : 0.0;
+        [[unroll]] for (uint k = 0u; k < 8u; ++k) sum += groups[k] == groups[i] ? weights[k] : 0.0;
         heaviest = sum > most ? groups[i] : heaviest;
         most = max(most, sum);
     }

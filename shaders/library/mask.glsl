@@ -9,7 +9,8 @@ uint mask_slot_of(uvec3 brick)
 {
     const uint last = mask_table.slots[0], first = mask_hash(brick);
     uint found = 0u;
-    for (uint probe = 0u; probe < MASK_PROBES; ++probe) {   // always all of them, so that lanes stay together
+    // always all of them, so that lanes stay together
+    [[unroll]] for (uint probe = 0u; probe < MASK_PROBES; ++probe) {
         const uint entry = 1u + MASK_ENTRY * (first + probe & last);
         const bool is_it = mask_table.slots[entry] == (brick.x | brick.y << 16u) &&
                            mask_table.slots[entry + 1u] == brick.z;

@@ -8,7 +8,7 @@
 //   surface   strength = g^2 / (g^2 + fade^2) for a gradient g
 //   edge      the voxel is moved along the normal to where the medium ends: by the integral over 0 < s < 1.5 of the
 //             minimum so far of e(s), less that over -1.5 < s < 0 of 1 - the maximum so far, where
-//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.08 units in front of that; all this times the strength.
+//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 units in front of that; all this times the strength.
 //   side      directions whose cosine with the normal is below strength - 1 come from the front instead, mirrored in
 //             the surface. Unless the full sphere is asked for.
 //   itself    as far as a ray is in its own voxel it meets no more than half a unit after leaving it.

@@ -8,11 +8,11 @@ SHARED_BEGIN
 /// Samples of a ray: in half voxels, and in cells of each size.
 SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
 SHARED_CONST uint OCCLUSION_FAR_TAPS = 2u;
-/// Along the normal, on each side of a voxel, half a unit apart: where the medium ends.
-SHARED_CONST uint OCCLUSION_EDGE_TAPS = 3u;
+/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends.
+SHARED_CONST uint OCCLUSION_EDGE_TAPS = 4u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
 /// Rays begin this far in front of the edge.
-SHARED_CONST float OCCLUSION_LIFT = 0.08f;
+SHARED_CONST float OCCLUSION_LIFT = 0.07f;
 /// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
 struct OcclusionTap {
     float distance;

@@ -9,6 +9,14 @@ KEYS = ["ticks", "late", "max_force_n", "energy_mj", "proxy_rms_um", "tick_us", 
 SIDE = 64
 
 
+def varint(length):
+    digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
+    text = ""
+    while length >= 32:
+        text, length = text + digits[32 + length % 32], length // 32
+    return text + digits[length]
+
+
 class Haptics(CliTest):
     def setUp(self):
         super().setUp()
@@ -72,6 +80,26 @@ class Haptics(CliTest):
         trace = self.trace(more=[{"force": [9, 9, 9]}])
         result = self.replay(trace)
         self.assertEqual((result["forces_told"], result["forces_equal"]), (1, 0))
+
+    def test_what_was_felt_is_replayed_without_the_scan(self):
+        trace = self.trace(ticks=100)
+        said = self.check("haptics", "replay", trace, status=1).stderr
+        self.assertIn("--volume is not given", said)
+        lines = [json.loads(line) for line in trace.read_text().splitlines()]
+        lines[0]["shvr_stylus_trace"] = 2
+        # All 64^3 voxels but the first, one of which is 2 um: a length of 1 and one of 64^3 - 1.
+        lines.insert(2, {"relevance": {"sequence": 1, "origin": [0, 0, 0], "size": [64, 64, 64], "words_per_row": 2,
+                                       "spacing": [2, 2, 2], "volume_size": [64, 64, 64], "runs": "B_____H"}})
+        lines[3]["relevance_time"] = 10**15
+        felt = self.folder / "felt.trace"
+        felt.write_text("".join(json.dumps(line) + "\n" for line in lines))
+        said = self.check("haptics", "replay", felt, status=1).stderr
+        self.assertIn("runs that fill its words", said)
+        felt.write_text(felt.read_text().replace("B_____H", "B" + varint(64**3 - 1)))
+        result = self.check_json("haptics", "replay", felt)
+        self.assertEqual((result["ticks"], result["relevance_made"], result["contact_ticks"]), (100, 1, 100))
+        said = self.check("haptics", "replay", felt, "--threshold", "20", status=1).stderr
+        self.assertIn("another threshold or device", said)
 
     def test_what_cannot_be_replayed(self):
         bad = self.folder / "bad.trace"

@@ -104,14 +104,15 @@ const Mutation MUTATIONS[] = {
 /// Made of the kernels' own source, one line of which is wrong.
 const Mistake MISTAKES[] = {
     {"samples at the front of a step", "step_coarse", "raycast.comp",
-     "position = position_at(params, ray, begin + (float(i) + 0.5) * params.step);",
-     "position = position_at(params, ray, begin + float(i) * params.step);"},
+     "return position_at(params, ray, begin + (float(step) + 0.5) * params.step);",
+     "return position_at(params, ray, begin + float(step) * params.step);"},
     {"the half vector not normalised", "tubes_opaque", "library/shade.glsl", "sum / sum_length", "0.5 * sum"},
     {"normals that point inwards", "tubes_opaque", "library/shade.glsl", "-slope * inversesqrt", "slope * inversesqrt"},
     {"no fading of faint gradients", "tubes_translucent", "library/shade.glsl", "square / (square + fade)", "1.0"},
     {"the last, shorter step as opaque as a whole one", "step_coarse", "raycast.comp",
-     "sample_look(params, ray, position, rest / params.step, place, work)",
-     "sample_look(params, ray, position, 1.0, place, work)"},
+     "sample_look(params, ray, position, rest / params.step, place)", "sample_look(params, ray, position, 1.0, place)"},
+    {"a search that passes what it has found", "tubes_opaque", "library/search.glsl", "passed += is_found ? 0u : 1u;",
+     "passed += 1u;"},
     {"the last, shorter step left out", "step_coarse", "raycast.comp", "if (rest > 0.0 &&", "if (rest > 1e30 &&"},
     {"what is in front hides nothing", "fog_unshaded", "raycast.comp", "(1.0 - sum.a) * look.a;\n    sum.rgb",
      "look.a;\n    sum.rgb"},
@@ -124,8 +125,8 @@ const Mistake MISTAKES[] = {
      "f < 0.5 ? low - beyond : beyond - high", "f < 0.5 ? beyond - high : low - beyond"},
     {"gradients in voxels, not in space", "tubes_anisotropic", "raycast.comp",
      "gradient_of(density) * params.inverse_spacing", "gradient_of(density)"},
-    {"a brick's apron forgotten", "tubes_opaque", "raycast.comp", "ivec3(brick * BRICK_SIZE) + int(BRICK_APRON)",
-     "ivec3(brick * BRICK_SIZE)"},
+    {"a brick's apron forgotten", "tubes_opaque", "raycast.comp", "ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON)",
+     "ivec3(texels.brick * BRICK_SIZE)"},
     {"leaps that go a step too far", "tubes_translucent", "raycast.comp", "exit / params.step - 0.01",
      "exit / params.step + 3.0"},
     {"cells that are skipped although something shows in them", "tubes_translucent", "library/occupancy.glsl",
@@ -250,7 +251,7 @@ TEST_CASE("every kernel with a mistake fails a golden")
     CHECK(caught >= 16);
 }
 
-TEST_CASE("a lost skip and a redundant pass fail by their work, not by their picture")
+TEST_CASE("a lost skip, an extra fetch and a redundant pass fail by their work, not by their picture")
 {
     golden::set_environment();
     const Golden one = golden::read_golden(FOLDER / "tubes_opaque.json");
@@ -265,6 +266,19 @@ TEST_CASE("a lost skip and a redundant pass fail by their work, not by their pic
     const golden::Drawn lost_skip = golden::drawn_by(slow);
     CHECK(lost_skip.image == right.image);
     CHECK(golden::why_other_work(one, lost_skip).value_or("").find("samples") != std::string::npos);
+
+    const Mistake twice = {"a row of texels read twice", "tubes_opaque", "library/density_exact.glsl",
+                           "    return d;\n}\n\n// The codes at x",
+                           "    load_row(d, 3, first_pair, corner.y + 1, corner.z + 1, odd, below);\n"
+                           "    return d;\n}\n\n// The codes at x"};
+    {
+        const std::set<std::string> kernels = kernels_of(one);
+        const WrongKernels wrong(twice, std::vector<std::string>(kernels.begin(), kernels.end()));
+        Studio wasteful(one);
+        const golden::Drawn extra_fetch = golden::drawn_by(wasteful);
+        CHECK(extra_fetch.image == right.image);
+        CHECK(golden::why_other_work(one, extra_fetch).value_or("").find("density_reads") != std::string::npos);
+    }
 
     for (auto& [name, value] : right.work) value += name == "passes" ? 1 : 0;
     CHECK(golden::why_other_work(one, right).value_or("").find("passes") != std::string::npos);

@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(Preintegrating, "nothing of it is there without it")
     CHECK(different_bits(draw(session, camera), before) > 0);
     CHECK(bytes() == 2 * sizeof(glm::vec4) * side * side);
     session.render.preintegration = false;
-    CHECK(different_bits(draw(session, camera), before) == 0);
+    check_below("differing bits", double(different_bits(draw(session, camera), before)), 0.0);
 }
 
 TEST_CASE_FIXTURE(Preintegrating, "a peak whose apex is opaque ends the ray, whatever the step and the table's entries")

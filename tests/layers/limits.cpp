@@ -74,6 +74,8 @@ struct Limits {
         limits.maxImageDimension2D = record().max_side_2d;
         limits.maxStorageBufferRange = record().max_storage_range;
         limits.maxMemoryAllocationCount = record().max_allocations;
+        limits.maxPerStageDescriptorStorageImages =
+            std::min(limits.maxPerStageDescriptorStorageImages, record().max_storage_images);
         limits.timestampPeriod = record().timestamp_period;
         limits.timestampComputeAndGraphics = record().timestamp_bits > 0;
     }

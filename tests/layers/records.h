@@ -25,6 +25,7 @@ struct Record {
     bool tells_budget;  ///< VK_EXT_memory_budget: nine tenths of each heap, less what is allocated
     std::vector<VkMemoryHeap> heaps;
     std::vector<VkMemoryType> types;
+    uint32_t max_storage_images = 1u << 20;  ///< in a kernel
 };
 
 inline constexpr VkMemoryPropertyFlags LOCAL = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
@@ -35,9 +36,9 @@ inline constexpr VkMemoryPropertyFlags UNCACHED =
     VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
 inline constexpr uint64_t MEBI = uint64_t{1} << 20, GIBI = uint64_t{1} << 30;
 
-inline const std::vector<Record>& records()
+inline std::vector<Record> made_records()
 {
-    static const std::vector<Record> all{
+    std::vector<Record> all{
         {.name = "nvidia",
          .device = "record of a discrete NVIDIA",
          .type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU,
@@ -124,6 +125,17 @@ inline const std::vector<Record>& records()
          .heaps = {{192 * MEBI, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT}, {256 * MEBI, 0}},
          .types = {{LOCAL, 0}, {MAPPED, 1}}},
     };
+    Record bare = all.back();  // the least one, with fewer images than a kernel binds
+    bare.name = "bare";
+    bare.device = "record of a device with too few images";
+    bare.max_storage_images = 4;
+    all.push_back(bare);
+    return all;
+}
+
+inline const std::vector<Record>& records()
+{
+    static const std::vector<Record> all = made_records();
     return all;
 }
 

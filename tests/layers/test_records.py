@@ -45,6 +45,13 @@ class Records(CliTest):
         self.assertIn("render.paging is never, and an image of device record of the least device cannot hold all",
                       result.stderr)
 
+    def test_a_device_that_cannot_run_the_kernels_is_refused_by_what_it_lacks(self):
+        session = self.session("small.json", [20, 20, 20], size=[24, 16])
+        result = run("render", session, "-o", self.folder / "there.pfm",
+                     environment={"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_limits", "SHVR_LIMITS": "bare"})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("it allows 4 storage images in a kernel; expected at least 10", result.stderr)
+
     def test_paint_has_the_same_voxels(self):
         session = self.session("paint.json", [50, 40, 70], size=[24, 16])
         strokes = [{"op": "paint", "brush": brush, "region": "ball", "group": group, "threshold": 60, "radius": 14,

@@ -9,7 +9,7 @@ namespace shvr::reference {
 
 namespace {
 
-constexpr double EDGE_REACH = 1.5, LIFT = 0.08;
+constexpr double EDGE_REACH = 1.5, LIFT = 0.07;
 /// Of half voxels, of cells of two voxels and of four: shaders/occlusion/occlusion_bake.comp.
 constexpr double MARGINS[] = {0.12, 0.1, 0.6}, WALLS[] = {1.0, 1.0, 1.6}, BENDS[] = {0.0, 0.2, 0.06};
 
@@ -139,7 +139,7 @@ Surface surface_of(const std::function<double(const glm::ivec3&)>& near, const O
         return sum;
     };
     const glm::dvec3 step = side.normal * rays.asked.voxels_per_unit;
-    const Profile profile = profile_of([&](double along) { return between(centre + along * step); }, 3);
+    const Profile profile = profile_of([&](double along) { return between(centre + along * step); }, 4);
     Surface surface{.place = centre + side.strength * (edge_of(profile) + LIFT) * step,
                     .normal = side.normal,
                     .heights = side.normal / rays.asked.voxels_per_unit,

@@ -222,12 +222,6 @@ size_t different_bits(const ImageF& a, const ImageF& b)
     return count;
 }
 
-void check_below(const std::string& what, double error, double bound)
-{
-    INFO(what, ": ", error, ", at most ", bound);
-    CHECK(error <= bound);
-}
-
 OnDevice::OnDevice() : renderer_(renderer_of_the_process())
 {
     static_cast<void>(renderer_.device().take_validation_messages());

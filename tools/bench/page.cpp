@@ -98,7 +98,7 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
                       .y_label = metric == Metric::rmse ? "RMSE in linear light" : "visible difference (mean FLIP)",
                       .series = {}};
     for (const char* family : families()) {
-        report::PlotSeries series{family, {}};
+        report::PlotSeries series{family, {}, false};
         for (const Measured& run : scene.runs)
             if (run.family == family)
                 series.points.push_back({run.time.median_ms, error_by(run, metric),
@@ -116,7 +116,7 @@ report::Plot plot_of_qualities(const Results& results)
                       .y_label = "RMSE in linear light",
                       .series = {}};
     for (const SceneResult& scene : results.scenes) {
-        report::PlotSeries series{scene.name, {}};
+        report::PlotSeries series{scene.name, {}, true};
         for (const Measured& run : scene.runs) {
             const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
             if (run.family == "quality" && samples != run.work.end())
@@ -169,6 +169,7 @@ std::vector<std::string> write_files(const Results& results, const std::vector<P
     write("bench.csv", csv_of(results));
     write("equal_error.csv", equal_error_csv(results));
     write("equal_time.csv", equal_time_csv(results));
+    write("front.csv", front_csv(results));
     write_plot("pareto", plot_of_qualities(results));
     for (const SceneResult& scene : results.scenes) write_plot("pareto-" + scene.name, plot_of(scene, Metric::rmse));
     write("report.html", page_of(results, pictures));

@@ -12,7 +12,8 @@ report::Plot plot_of(const SceneResult& scene, Metric metric);
 /// The qualities of all scenes by their samples: one series for each scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures);
-/// bench.json, bench.csv, equal_error.csv, equal_time.csv, pareto*.svg and .png, report.html. Returns their paths.
+/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, pareto*.svg and .png, report.html. Returns their
+/// paths.
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
                                      const std::filesystem::path& output);
 std::string text_of(const std::vector<Change>& changes);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -207,6 +208,21 @@ std::string csv_of(const Results& results)
                 text += found == run.work.end() ? "," : sentence(",", found->second);
             }
             text += "\n";
+        }
+    return text;
+}
+
+std::string front_csv(const Results& results)
+{
+    std::string text = "scene,run,family,settings,samples,rmse\n";
+    for (const SceneResult& scene : results.scenes)
+        for (const Measured& run : scene.runs) {
+            std::string settings;
+            for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
+            const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
+            text += sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",
+                             samples == run.work.end() ? 0 : samples->second, ",", std::setprecision(5), run.error.rmse,
+                             "\n");
         }
     return text;
 }

@@ -65,6 +65,8 @@ nlohmann::ordered_json json_of(const Results& results);
 Results read_results(const std::filesystem::path& file);
 /// One line a run.
 std::string csv_of(const Results& results);
+/// What is the same in every run of one machine: the error and the samples of each run.
+std::string front_csv(const Results& results);
 /// The fastest run of each scene and family that has at most this RMSE.
 std::string equal_error_csv(const Results& results);
 /// The most exact run of each scene and family that takes no longer than each quality.

@@ -10,7 +10,7 @@
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/volume/unit.h"
-#include "shaders/counters.h"
+#include "tools/golden/blessing.h"
 
 namespace shvr::cli {
 
@@ -307,21 +307,8 @@ Json bricks_of(const Renderer& renderer)
 
 Json counters_of(const std::vector<gpu::PassReport>& passes)
 {
-    const std::pair<uint32_t, const char*> names[] = {{gpu::COUNTER_RAYS, "rays"},
-                                                      {gpu::COUNTER_SAMPLES, "samples"},
-                                                      {gpu::COUNTER_SHADED, "shaded_samples"},
-                                                      {gpu::COUNTER_LEAPS, "leaps"},
-                                                      {gpu::COUNTER_BRICKS_VISITED, "bricks_visited"},
-                                                      {gpu::COUNTER_BRICKS_SKIPPED, "bricks_skipped"},
-                                                      {gpu::COUNTER_TERMINATED, "rays_terminated_early"},
-                                                      {gpu::COUNTER_CUT_SHORT, "rays_cut_short"}};
     Json counters = Json::object();
-    for (const auto& [index, name] : names) {
-        uint64_t sum = 0;
-        for (const gpu::PassReport& pass : passes)
-            if (!pass.counters.empty()) sum += pass.counters[index];
-        counters[name] = sum;
-    }
+    for (const auto& [name, value] : golden::work_of(passes)) counters[name] = value;
     return counters;
 }
 

@@ -5,12 +5,12 @@
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
-#include "engine/live/relevance_host.h"
 #include "engine/volume/unit.h"
 #include "haptics/replay/replay.h"
 #include "haptics/servo.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/haptics_report.h"
+#include "ui/workbench/touch/felt_relevance.h"
 
 namespace shvr::cli {
 
@@ -39,41 +39,31 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// As the window mirrors it.
-class HostRelevance {
-public:
-    explicit HostRelevance(std::shared_ptr<const VolumeSource> source) : source_(std::move(source)) {}
-    void operator()(const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) const
-    {
-        const RelevancePlace place = relevance_place(*source_, point, radius);
-        const RelevanceBits bits = relevance_on_host(*source_, place.level, place.box, threshold);
-        patch.origin = glm::ivec3(bits.box.lower);
-        patch.size = glm::ivec3(bits.box.size());
-        patch.words_per_row = int32_t(bits.words_per_row);
-        patch.spacing = place.spacing;
-        patch.volume_size = glm::ivec3(place.level_size);
-        patch.level = place.level;
-        std::ranges::copy(bits.words, patch.words.begin());
-    }
-
-private:
-    std::shared_ptr<const VolumeSource> source_;
-};
-
-void run_replay(const ReplayCommandOptions& options)
+/// Of the volume, as the window mirrors it. A trace that names no unit gets the volume's.
+MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, LongWork& work)
 {
-    LongWork work(options.common.quiet);
-    static_cast<void>(work.begin("reading " + options.trace));
-    Trace trace = read_trace(options.trace);
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
     const VolumeInfo info = opened.source->info();
     warn(info.warnings, options.common);
     if (!trace.unit.empty() && trace.unit != info.unit)
         fail(options.trace, ": key unit is ", in_quotes(trace.unit), ", and lengths of ", options.volume, " are in ",
              in_quotes(info.unit), "; expected a trace of this volume");
+    trace.unit = info.unit;
     std::vector<Notice> notices;
     const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
     warn(notices, options.common);
+    const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
+    return [source, &work](const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) {
+        work.stop_if_asked();
+        ui::host_relevance(*source, nullptr, {}, point, radius, threshold, patch);
+    };
+}
+
+void run_replay(const ReplayCommandOptions& options)
+{
+    LongWork work(options.common.quiet);
+    static_cast<void>(work.begin("reading " + options.trace));
+    Trace trace = read_trace(options.trace);
     if (options.threshold)
         for (TraceSettings& settings : trace.settings) settings.threshold = *options.threshold;
 
@@ -83,23 +73,24 @@ void run_replay(const ReplayCommandOptions& options)
                       .damping = options.damping,
                       .touch = std::nullopt};
     if (!options.model.empty()) how.touch = TouchModel{.seed = options.seed};
+    how.relevance_anew = options.threshold.has_value();
+    if (options.volume.empty() && !replays_relevance(trace, how))
+        fail(options.trace, ": --volume is not given, and ",
+             trace.holds_relevance ? "another threshold or device" : "a trace without relevance",
+             " needs it; expected the scan that the trace is of");
+    const MakeRelevance make = options.volume.empty() ? MakeRelevance() : relevance_of(options, trace, work);
     static_cast<void>(work.begin("replaying " + options.trace));
-    const HostRelevance relevance(with_offsets(opened.source, offsets));
-    const MakeRelevance make = [&](const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) {
-        work.stop_if_asked();
-        relevance(point, radius, threshold, patch);
-    };
     const ReplayResult result = replay_trace(trace, how, make);
     clear_progress();
     const TraceSettings& last = trace.settings.back();
-    Json report = report_of(result, info.unit);
+    Json report = report_of(result, trace.unit);
     report["mode"] = spelled(how.mode.value_or(last.force.mode));
     report["law"] = spelled(how.law.value_or(last.force.law));
     report["device_model"] = options.model.empty() ? Json(nullptr) : Json(options.model);
     if (options.common.json) return print(report);
     say(options.common,
         sentence(result.ticks, " ticks, ", result.late, " late; largest force ", result.largest_force_n,
-                 " N; the hand gained ", 1e3 * result.energy_j, " mJ; proxy ", result.proxy_rms, " ", info.unit,
+                 " N; the hand gained ", 1e3 * result.energy_j, " mJ; proxy ", result.proxy_rms, " ", trace.unit,
                  " from the probe, root mean square over ", result.contact_ticks, " ticks of contact"));
     if (result.told > 0)
         say(options.common, sentence(result.told_equal, " of ", result.told, " forces equal those of the trace"));
@@ -110,10 +101,13 @@ void add_replay(CLI::App& haptics)
     auto options = std::make_shared<ReplayCommandOptions>();
     CLI::App* command = haptics.add_subcommand("replay", "Runs a stylus trace through the servo's force law");
     command->add_option("TRACE", options->trace, "Stylus trace (JSON lines: haptics/replay/README.md)")->required();
-    command->add_option("--volume", options->volume, "Volume, project folder or session (.json)")->required();
+    command->add_option("--volume", options->volume,
+                        "Volume, project folder or session (.json); not needed where the trace holds what was felt, "
+                        "as those recorded in the window do");
     command->add_option("--mode", options->mode, "Instead of the trace's")->check(CLI::IsMember(choices<HapticMode>()));
     command->add_option("--law", options->law, "Instead of the trace's")->check(CLI::IsMember(choices<ProxyLaw>()));
-    command->add_option("--threshold", options->threshold, "Intensity, instead of the trace's");
+    command->add_option("--threshold", options->threshold,
+                        "Intensity, instead of the trace's; what is felt is made anew");
     command->add_option("--stiffness", options->stiffness, "N/m, instead of the trace's")->check(CLI::Range(0.0, 1e6));
     command->add_option("--damping", options->damping, "N s/m, instead of the trace's")->check(CLI::Range(0.0, 1000.0));
     command

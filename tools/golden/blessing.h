@@ -3,6 +3,7 @@
 // else writes goldens.
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tools/golden/studio.h"
@@ -17,6 +18,8 @@ struct Maker {
 /// Of this machine.
 Maker maker_of(Renderer& renderer);
 
+/// What kernels count (shaders/counters.h) by name, as side-cars and --json spell it, summed over passes.
+std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassReport> passes);
 /// Exact work counters of a picture by name, summed over its passes, and how many passes and dispatches there were.
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture);
 

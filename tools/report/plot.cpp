@@ -162,11 +162,15 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis of whole decades.
+/// A logarithmic axis of whole decades, which begin and end a little inside it: no mark lies on the frame.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
     double begin = 0.0, end = 1.0;    ///< pixels
-    double at(double value) const { return begin + (std::log10(value) - lower) / (upper - lower) * (end - begin); }
+    double at(double value) const
+    {
+        const double inset = std::copysign(12.0, end - begin), share = (std::log10(value) - lower) / (upper - lower);
+        return std::lerp(begin + inset, end - inset, share);
+    }
 };
 
 Axis axis_of(const Plot& plot, double PlotPoint::*value, double begin, double end)
@@ -221,6 +225,22 @@ void draw_front(Canvas& canvas, const Plot& plot, const Axis& x, const Axis& y)
         canvas.line(x.at(front[i - 1]->x), y.at(front[i - 1]->y), x.at(front[i]->x), y.at(front[i]->y), 1.4, INK);
 }
 
+bool has_front(const Plot& plot)
+{
+    return std::ranges::any_of(
+        plot.series, [](const PlotSeries& series) { return std::ranges::any_of(series.points, &PlotPoint::on_front); });
+}
+
+void draw_steps(Canvas& canvas, const PlotSeries& series, const Axis& x, const Axis& y, Color color)
+{
+    const PlotPoint* last = nullptr;
+    for (const PlotPoint& point : series.points) {
+        if (!(point.x > 0.0) || !(point.y > 0.0)) continue;
+        if (last) canvas.line(x.at(last->x), y.at(last->y), x.at(point.x), y.at(point.y), 1.4, color);
+        last = &point;
+    }
+}
+
 void draw(Canvas& canvas, const Plot& plot)
 {
     const double legend = 150.0;
@@ -233,15 +253,18 @@ void draw(Canvas& canvas, const Plot& plot)
         const PlotSeries& series = plot.series[i];
         const Color color = COLORS[i % COLORS.size()];
         const int kind = int(i % MARKS);
+        if (series.is_joined) draw_steps(canvas, series, x, y, color);
         for (const PlotPoint& point : series.points) {
             if (!(point.x > 0.0) || !(point.y > 0.0)) continue;
-            canvas.mark(x.at(point.x), y.at(point.y), kind, 4.5, color, point.on_front ? 1.0 : 0.45);
+            canvas.mark(x.at(point.x), y.at(point.y), kind, 4.5, color,
+                        point.on_front || series.is_joined ? 1.0 : 0.45);
             if (!point.label.empty()) canvas.text(x.at(point.x) + 8, y.at(point.y) - 5, point.label, 0);
         }
         canvas.mark(plot.width - legend, row - 4.0, kind, 4.5, color, 1.0);
         canvas.text(plot.width - legend + 12.0, row, series.name, 0);
         row += 19.0;
     }
+    if (!has_front(plot)) return;
     canvas.line(plot.width - legend - 6, row - 4, plot.width - legend + 6, row - 4, 1.4, INK);
     canvas.text(plot.width - legend + 12.0, row, "front", 0);
 }

@@ -18,6 +18,7 @@ struct PlotPoint {
 struct PlotSeries {
     std::string name;
     std::vector<PlotPoint> points;
+    bool is_joined = false;  ///< a line of its colour from point to point, all of which are full
 };
 
 struct Plot {

@@ -60,8 +60,8 @@ class Bench(CliTest):
     def test_files(self):
         told = self.bench()
         names = sorted(path.split("/")[-1] for path in told["written"])
-        self.assertEqual(names, ["bench.csv", "bench.json", "equal_error.csv", "equal_time.csv", "pareto-fog.png",
-                                 "pareto-fog.svg", "pareto.png", "pareto.svg", "report.html"])
+        self.assertEqual(names, ["bench.csv", "bench.json", "equal_error.csv", "equal_time.csv", "front.csv",
+                                 "pareto-fog.png", "pareto-fog.svg", "pareto.png", "pareto.svg", "report.html"])
         with open(self.output / "bench.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([row["run"] for row in rows], list(self.runs()))
@@ -71,6 +71,10 @@ class Bench(CliTest):
             texts = {text.text for text in tree.iter("{http://www.w3.org/2000/svg}text")}
             self.assertIn("RMSE in linear light", texts)
             self.assertIn("samples of a picture" if name == "pareto.svg" else "median time of a picture, ms", texts)
+            # The legend names a front where one is drawn; no mark lies on the frame, which is at 74.
+            self.assertEqual("front" in texts, name != "pareto.svg")
+            marks = [float(mark.get("cx")) for mark in tree.iter("{http://www.w3.org/2000/svg}circle")]
+            self.assertGreater(min(marks), 80.0)
         self.assertTrue({"draft", "interactive", "good", "reference", "step"} <= texts)
         header = (self.output / "pareto-fog.png").read_bytes()[16:24]
         self.assertEqual(struct.unpack(">II", header), (720, 480))
@@ -90,6 +94,15 @@ class Bench(CliTest):
         for name, run in self.runs().items():
             self.assertEqual((run["error"], run["work"]), (first[name]["error"], first[name]["work"]), name)
         self.check("bench", "--compare", self.folder / "a.json", self.output / "bench.json", "--ignore-time")
+
+    def test_a_volume_of_a_single_brick_is_paged(self):
+        session = self.write_session(annotation={})
+        self.bench(scenes=str(session), rounds=1)
+        unpaged = self.runs()
+        text = json.loads(session.read_text())
+        text["render"] = {**text.get("render", {}), "paging": "always", "detail": 0}
+        self.bench(scenes=str(self.write_json("paged.json", text)), rounds=1)
+        self.assertEqual(self.runs()["step 0.5"]["error"], unpaged["step 0.5"]["error"])
 
     def test_a_session_of_ones_own(self):
         session = self.write_session(annotation={})

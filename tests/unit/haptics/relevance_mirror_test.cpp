@@ -11,6 +11,7 @@
 
 #include "haptics/servo.h"
 #include "tests/support/haptic_scenes.h"
+#include "ui/workbench/touch/felt_relevance.h"
 
 using namespace shvr;
 
@@ -178,16 +179,7 @@ struct World {
     }
     void publish(const MirroredRelevance& mirrored)
     {
-        RelevancePatch& patch = servo->relevance().writing();
-        patch.sequence = mirrored.sequence;
-        patch.time_ns = mirrored.true_at_ns;
-        patch.origin = glm::ivec3(mirrored.place.box.lower);
-        patch.size = glm::ivec3(mirrored.place.box.size());
-        patch.words_per_row = int32_t(mirrored.bits.words_per_row);
-        patch.spacing = mirrored.place.spacing;
-        patch.volume_size = glm::ivec3(mirrored.place.level_size);
-        patch.settings = mirrored.settings;
-        std::ranges::copy(mirrored.bits.words, patch.words.begin());
+        ui::put_mirrored(mirrored, servo->relevance().writing());
         servo->relevance().publish();
     }
     void watch()

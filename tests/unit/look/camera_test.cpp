@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
+#include "tests/support/bounds.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -175,10 +176,13 @@ TEST_CASE("rays are accurate to 1e-9 voxels from 1e-3 to 1e7 volume sizes away")
         for (const glm::dvec2 at : {glm::dvec2(0.5, 0.5), glm::dvec2(399.5, 0.5), glm::dvec2(200, 150),
                                     glm::dvec2(123.5, 299.5), glm::dvec2(310.5, 40.5)}) {
             const Ray ray = ray_at(planes, at.x, at.y);
-            CHECK(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, ray.near_point) < 1e-9L);
-            CHECK(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, ray.far_point) < 1e-9L);
+            test::check_below("near point, voxels",
+                              double(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, ray.near_point)), 1e-9);
+            test::check_below("far point, voxels",
+                              double(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, ray.far_point)), 1e-9);
             const glm::dvec3 middle = 0.5 * (ray.near_point + ray.far_point);
-            CHECK(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, middle) < 1e-9L);
+            test::check_below("middle, voxels", double(miss_of_exact_ray(camera, pixels, volume, at.x, at.y, middle)),
+                              1e-9);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "tests/support/volume_files.h"
 
 #include "engine/look/overlay.h"
+#include "tests/support/bounds.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -62,8 +63,11 @@ TEST_CASE("off-axis eyes: disparity e f (1/c - 1/z), none in height")
             const glm::dvec3 point = camera.eye + z * axes.forward + aside.x * axes.right + aside.y * axes.up;
             const glm::dvec2 in_left = project(left, pixels, point)->pixel;
             const glm::dvec2 in_right = project(right, pixels, point)->pixel;
-            CHECK(std::abs(in_right.x - in_left.x - e * f * (1.0 / c - 1.0 / z)) < 1e-9);
-            CHECK(std::abs(in_right.y - in_left.y) < 1e-9);
+            CAPTURE(z);
+            CAPTURE(aside.x);
+            test::check_below("disparity, pixels", std::abs(in_right.x - in_left.x - e * f * (1.0 / c - 1.0 / z)),
+                              1e-9);
+            test::check_below("in height, pixels", std::abs(in_right.y - in_left.y), 1e-9);
         }
 }
 
@@ -82,7 +86,9 @@ TEST_CASE("toed-in eyes: the parallax in height that they are known for")
         const double expected = f * at.y *
                                 (1.0 / (at.z * std::cos(angle) + (at.x + half) * std::sin(angle)) -
                                  1.0 / (at.z * std::cos(angle) + (half - at.x) * std::sin(angle)));
-        CHECK(std::abs(in_right - in_left - expected) < 1e-5);
+        CAPTURE(at.x);
+        CAPTURE(at.y);
+        test::check_below("in height, pixels", std::abs(in_right - in_left - expected), 1e-5);
     }
     CHECK(glm::distance(left.target, camera.target) == 0.0);
 }

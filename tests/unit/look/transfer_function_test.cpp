@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
+#include "tests/support/bounds.h"
 
 using namespace shvr;
 
@@ -49,8 +50,8 @@ TEST_CASE("n steps of 1/n reference lengths compose to the opacity of one")
             const double step_opacity = opacity_of_step(opacity, 1.0 / steps);
             double composed = 0.0;
             for (int step = 0; step < steps; ++step) composed += (1.0 - composed) * step_opacity;
-            CHECK(std::abs(composed - opacity) < 1e-12);
-            CHECK(std::abs(opacity_of_step(step_opacity, steps) - opacity) < 1e-12);
+            test::check_below("composed", std::abs(composed - opacity), 1e-12);
+            test::check_below("there and back", std::abs(opacity_of_step(step_opacity, steps) - opacity), 1e-12);
         }
     }
 }

@@ -16,10 +16,12 @@
 #include "tests/reference/cubic.h"
 #include "tests/reference/field.h"
 #include "tests/reference/samples.h"
+#include "tests/support/bounds.h"
 
 namespace {
 
 using namespace shvr::reference;
+using shvr::test::check_below;
 
 const glm::dvec3 ORANGE(1.0, 0.5, 0.25);
 
@@ -92,13 +94,6 @@ double worst_against_parts(const Scene& scene, int rays, int parts, uint32_t see
         worst = std::max(worst, largest_difference(integrate_exact(scene, ray), composed));
     }
     return worst;
-}
-
-// Printed with --success, so that the bounds can be compared with what is reached.
-void check_below(const std::string& what, double error, double bound)
-{
-    INFO(what, ": ", error);
-    CHECK(error < bound);
 }
 
 }  // namespace

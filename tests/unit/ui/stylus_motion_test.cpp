@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/volume/grid.h"
+#include "ui/workbench/touch/felt_relevance.h"
 #include "ui/workbench/touch/hand_view.h"
 
 using namespace shvr;
@@ -161,8 +162,9 @@ TEST_CASE("groups that are not felt are no part of what is felt")
     };
     for (const std::vector<uint8_t>& felt :
          {std::vector<uint8_t>{}, std::vector<uint8_t>{2}, std::vector<uint8_t>{0, 3}}) {
-        std::vector<uint32_t> kept = words;
-        keep_felt_groups(kept, box, words_per_row, mask, felt);
+        RelevanceBits bits{.box = box, .words_per_row = words_per_row, .words = words};
+        if (const auto groups = felt_groups(felt)) limit_to_groups(mask, *groups, bits);
+        const std::vector<uint32_t>& kept = bits.words;
         int wrong = 0;
         for (int64_t z = 0; z < size.z; ++z)
             for (int64_t y = 0; y < size.y; ++y)

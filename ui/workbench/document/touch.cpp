@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "haptics/simulated_device.h"
+#include "ui/workbench/touch/felt_relevance.h"
 
 namespace shvr::ui {
 
@@ -18,31 +19,6 @@ uint64_t now_ns()
     timespec time{};
     clock_gettime(CLOCK_MONOTONIC, &time);  // the servo's clock
     return uint64_t(time.tv_sec) * 1'000'000'000u + uint64_t(time.tv_nsec);
-}
-
-void publish(const MirroredRelevance& mirrored, Latest<RelevancePatch>& relevance)
-{
-    RelevancePatch& patch = relevance.writing();
-    patch.sequence = mirrored.sequence;
-    patch.time_ns = mirrored.true_at_ns;
-    patch.origin = glm::ivec3(mirrored.place.box.lower);
-    patch.size = glm::ivec3(mirrored.place.box.size());
-    patch.words_per_row = int32_t(mirrored.bits.words_per_row);
-    patch.spacing = mirrored.place.spacing;
-    patch.volume_size = glm::ivec3(mirrored.place.level_size);
-    patch.level = mirrored.place.level;
-    patch.settings = mirrored.settings;
-    std::ranges::copy(mirrored.bits.words, patch.words.begin());
-    relevance.publish();
-}
-
-/// Groups that are felt; none named: all, painted or not.
-std::optional<std::bitset<256>> felt(const std::vector<uint8_t>& groups)
-{
-    if (groups.empty()) return std::nullopt;
-    std::bitset<256> set;
-    for (const uint8_t group : groups) set.set(group);
-    return set;
 }
 
 bool is_same(const Workspace& a, const Workspace& b)
@@ -76,16 +52,20 @@ void Touch::start(std::shared_ptr<HapticDevice> device)
     sent_.reset();
     state_ = {};
     tap_ = {};
-    servo_ = std::make_unique<TappedServo>(std::move(device));
+    servo_ = std::make_unique<TappedServo>(std::move(device), real_pacing(), recorder_ ? recorder_->number() : 0);
     Servo& servo = servo_->servo;
-    mirror_ = std::make_unique<RelevanceMirror>(RelevanceMirror::Ends{
-        .probe = [&servo]() -> std::optional<glm::dvec3> {
-            servo.place().take();
-            const ProbePlace& place = servo.place().value();
-            return place.is_known ? std::optional(place.point) : std::nullopt;
-        },
-        .publish = [&servo](const MirroredRelevance& mirrored) { publish(mirrored, servo.relevance()); },
-        .now_ns = now_ns});
+    mirror_ = std::make_unique<RelevanceMirror>(
+        RelevanceMirror::Ends{.probe = [&servo]() -> std::optional<glm::dvec3> {
+                                  servo.place().take();
+                                  const ProbePlace& place = servo.place().value();
+                                  return place.is_known ? std::optional(place.point) : std::nullopt;
+                              },
+                              .publish =
+                                  [tapped = servo_.get()](const MirroredRelevance& mirrored) {
+                                      put_mirrored(mirrored, tapped->relevance());
+                                      tapped->publish_relevance();
+                                  },
+                              .now_ns = now_ns});
 }
 
 void Touch::stop()
@@ -210,7 +190,7 @@ void Touch::send_settings(const TouchSettings& settings)
 void Touch::choose(const TouchSettings& settings)
 {
     const GuideSettings& guide = settings.guide;
-    const std::optional<std::bitset<256>> groups = felt(guide.feel.groups);
+    const std::optional<std::bitset<256>> groups = felt_groups(guide.feel.groups);
     const std::shared_ptr<const VolumeSource> source = guide.assists ? settings.source : nullptr;
     const bool is_same = chosen_.threshold == guide.threshold && chosen_.groups == groups;
     const bool has_new_voxels = chosen_.voxels != settings.voxels || chosen_.source != source;
@@ -302,8 +282,11 @@ Trace Touch::end_recording()
 {
     const std::unique_ptr<StylusRecorder> recorder = std::exchange(recorder_, nullptr);
     awaits_relevance_ = false;
-    if (servo_) recorder->advance(*servo_->link);
-    return recorder->take(state_.caps);
+    if (servo_) {
+        recorder->advance(*servo_->link);
+        servo_->link->relevance_log().end();
+    }
+    return recorder->take();
 }
 
 }  // namespace shvr::ui

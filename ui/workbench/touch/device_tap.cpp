@@ -50,6 +50,10 @@ void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
     // As the servo takes it: a device that could not be written to is gone, unless it says something new.
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
+    if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
+        now_.relevance = relevance->value().sequence;  // the servo has taken it in this tick, in this thread
+        now_.tick.relevance_time_ns = now_.relevance > 0 ? relevance->value().time_ns : 0;
+    }
     if (result != ReadResult::fresh) return;
     if (has_sequence_ && state.sequence - last_sequence_ - 1 < 1000)
         plot_.lost_states += state.sequence - last_sequence_ - 1;
@@ -82,6 +86,8 @@ void TapLink::put() noexcept
     }
     RecordedTick& slot = ring_[next % RING];
     slot.tick = now_.tick;
+    slot.caps = now_.caps;
+    slot.relevance = now_.relevance;
     slot.recording = recording_;
     slot.has_settings = has_new_settings_;
     if (has_new_settings_) slot.settings = orders_.value().settings;
@@ -120,12 +126,18 @@ bool DeviceTap::write(const glm::dvec3& force_n, uint32_t sequence) noexcept
     return was_written;
 }
 
-TappedServo::TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing)
+TappedServo::TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing, uint32_t recording)
     : device(std::move(with)),
-      link(std::make_shared<TapLink>()),
+      link(std::make_shared<TapLink>(recording)),
       servo(std::make_unique<DeviceTap>(device, link), std::make_unique<TapPacing>(std::move(pacing), link), {})
 {
-    link->connect(servo.settings());
+    link->connect(servo.settings(), servo.relevance());
+}
+
+void TappedServo::publish_relevance()
+{
+    link->relevance_log().note(relevance());
+    servo.relevance().publish();
 }
 
 }  // namespace shvr::ui

@@ -5,8 +5,9 @@
 //   main thread --orders()--> TapPacing --> Servo::settings()        Servo <--> DeviceTap <--> device
 //   main thread <--take()---- ring of ticks <------ DeviceTap        main thread <--state()-- DeviceTap
 //
-// Settings go through the tap, so that a recording knows in which tick they took effect. Nothing here locks, allocates,
-// logs or throws after its construction; where a recording is not fetched in time, it ends.
+// Settings go through the tap, so that a recording knows in which tick they took effect; of relevance it notes in each
+// tick which one the servo took. On the servo's thread nothing here locks, allocates, logs or throws; where a recording
+// is not fetched in time, it ends.
 
 #include <array>
 #include <atomic>
@@ -15,6 +16,7 @@
 
 #include "haptics/replay/trace.h"
 #include "haptics/servo.h"
+#include "ui/workbench/touch/relevance_log.h"
 
 namespace shvr::ui {
 
@@ -45,17 +47,28 @@ struct RecordedTick {
     TraceTick tick;
     bool has_settings = false;
     TraceSettings settings;
+    DeviceCaps caps;
+    uint64_t relevance = 0;  ///< sequence of that in use; 0: none
     uint32_t recording = 0;
 };
 
 class TapLink {
 public:
-    TapLink() : ring_(RING) {}
+    /// `recording`: the number of one that begins with the first tick.
+    explicit TapLink(uint32_t recording = 0) : ring_(RING), recording_(recording)
+    {
+        if (recording != 0) relevance_log_.begin();
+    }
     // Main thread
     Latest<TapOrder>& orders() { return orders_; }
     Latest<TapState>& state() { return state_; }
-    /// Where settings go.
-    void connect(Latest<ForceSettings>& settings) { settings_.store(&settings, std::memory_order_release); }
+    /// Where settings go, and what the servo feels.
+    void connect(Latest<ForceSettings>& settings, const Latest<RelevancePatch>& relevance)
+    {
+        relevance_.store(&relevance, std::memory_order_release);
+        settings_.store(&settings, std::memory_order_release);
+    }
+    RelevanceLog& relevance_log() { return relevance_log_; }
     bool take(RecordedTick& tick);
     /// Ticks were not fetched in time, and are missing.
     bool has_overrun() const { return has_overrun_.load(std::memory_order_relaxed); }
@@ -63,6 +76,7 @@ public:
     // The servo's thread
     void begin_tick() noexcept;
     void note_now(uint64_t now_ns) noexcept;
+    void note_caps(const DeviceCaps& caps) noexcept { now_.caps = caps; }
     void note_read(ReadResult result, const DeviceState& state) noexcept;
     void note_write(const glm::dvec3& asked_n, const glm::dvec3& force_n, bool was_written,
                     const DeviceCaps& caps) noexcept;
@@ -76,6 +90,8 @@ private:
     Latest<TapOrder> orders_;
     Latest<TapState> state_;
     std::atomic<Latest<ForceSettings>*> settings_{nullptr};
+    std::atomic<const Latest<RelevancePatch>*> relevance_{nullptr};
+    RelevanceLog relevance_log_;
     std::vector<RecordedTick> ring_;
     alignas(64) std::atomic<uint64_t> written_{0};
     alignas(64) std::atomic<uint64_t> fetched_{0};
@@ -118,7 +134,12 @@ public:
     DeviceTap(std::shared_ptr<HapticDevice> device, std::shared_ptr<TapLink> link)
         : device_(std::move(device)), link_(std::move(link))
     {}
-    DeviceCaps caps() const noexcept override { return device_->caps(); }
+    DeviceCaps caps() const noexcept override
+    {
+        const DeviceCaps caps = device_->caps();
+        link_->note_caps(caps);
+        return caps;
+    }
     ReadResult read(DeviceState& state) noexcept override;
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
     const char* trouble() const noexcept override { return device_->trouble(); }
@@ -131,7 +152,11 @@ private:
 
 /// A servo on a device, with its tap. Main thread.
 struct TappedServo {
-    explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing());
+    explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
+                         uint32_t recording = 0);
+    /// What the servo shall feel: fill the first, then publish it. One thread, which need not be the main one.
+    RelevancePatch& relevance() { return servo.relevance().writing(); }
+    void publish_relevance();
     std::shared_ptr<HapticDevice> device;
     std::shared_ptr<TapLink> link;
     Servo servo;

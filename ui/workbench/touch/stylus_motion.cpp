@@ -1,6 +1,5 @@
 #include "ui/workbench/touch/stylus_motion.h"
 
-#include <array>
 #include <cmath>
 
 namespace shvr::ui {
@@ -84,25 +83,6 @@ std::optional<uint32_t> node_within(const TraceGraph& trace, const glm::dvec3& p
     const std::optional<uint32_t> node = trace.nearest_node(point);
     if (!node || glm::distance(trace.node(*node).position, point) > distance) return std::nullopt;
     return node;
-}
-
-void keep_felt_groups(std::span<uint32_t> words, const VoxelBox& box, int64_t words_per_row, const Mask& mask,
-                      std::span<const uint8_t> groups)
-{
-    if (groups.empty()) return;
-    std::array<bool, 256> is_felt{};
-    for (const uint8_t group : groups) is_felt[group] = true;
-    const Size3 size = box.size(), counts = mask.brick_counts();
-    for (int64_t z = 0; z < size.z; ++z)
-        for (int64_t y = 0; y < size.y; ++y)
-            for (int64_t x = 0; x < size.x; ++x) {
-                uint32_t& word = words[size_t(x / 32 + words_per_row * (y + size.y * z))];
-                const uint32_t bit = 1u << (x % 32);
-                if (!(word & bit)) continue;
-                const Size3 voxel = box.lower + Size3(x, y, z);
-                const auto& brick = mask.brick(index_of(voxel / BRICK_SIDE, counts));
-                if (!is_felt[brick ? (*brick)[index_in_brick(voxel)] : 0]) word &= ~bit;
-            }
 }
 
 }  // namespace shvr::ui

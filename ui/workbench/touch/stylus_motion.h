@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "engine/annotation/trace/tracing.h"
 #include "engine/annotation/work/work.h"
@@ -48,10 +47,5 @@ std::optional<double> radius_from_overlap(double share, double ball_radius);
 
 /// The nearest node within a distance of a point.
 std::optional<uint32_t> node_within(const TraceGraph& trace, const glm::dvec3& point, double distance);
-
-/// Clears the bits of voxels whose group is not among `groups`, ascending; no groups: keeps all. `words` as in
-/// engine/live/relevance.h.
-void keep_felt_groups(std::span<uint32_t> words, const VoxelBox& box, int64_t words_per_row, const Mask& mask,
-                      std::span<const uint8_t> groups);
 
 }  // namespace shvr::ui

@@ -32,8 +32,4 @@ struct StylusPoint {
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 
-/// What is relevant around a point: a cube of 64 voxels, of 128 for large probes, of coarser levels for larger ones.
-void host_relevance(const VolumeSource& source, const Mask& mask, const std::vector<uint8_t>& groups,
-                    const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch);
-
 }  // namespace shvr::ui

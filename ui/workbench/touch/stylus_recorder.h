@@ -20,14 +20,17 @@ public:
     double seconds() const { return double(trace_.ticks.size()) / trace_.rate_hz; }
     /// Why it cannot go on; empty: it can.
     const std::string& end() const { return end_; }
-    /// The trace, with the limits of the device that was recorded. Fails where there is no tick.
-    Trace take(const DeviceCaps& caps);
+    /// The trace. Fails where there is no tick.
+    Trace take();
 
 private:
+    void add_relevance(RelevanceLog& log);
+    void add_caps();
     std::filesystem::path path_;
     uint32_t number_ = 0;
     Trace trace_;
     std::string end_;
+    uint64_t relevance_ = 0;  ///< sequence of the last one that the trace has
     RecordedTick tick_;
 };
 

@@ -1,0 +1,29 @@
+// Where along a ray a person points at: where its opacity rises most.
+
+// What PICK looks for: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
+struct Rises {
+    float most, most_at;               // of the runs so far; lengths along the ray
+    float run, steepest, steepest_at;  // of this one
+    float peak, trough;                // largest opacity of a sample of this run, and smallest since then
+};
+
+// A run ends where the opacity of samples has fallen well below its peak and rises again: behind a structure comes
+// another. A little noise ends none.
+void note_rise(inout Rises rises, float added, float opacity, float at)
+{
+    if (rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough) {
+        rises.run = rises.steepest = 0.0;
+        rises.peak = opacity;
+    }
+    rises.trough = opacity >= rises.peak ? opacity : min(rises.trough, opacity);
+    rises.peak = max(rises.peak, opacity);
+    rises.run += added;
+    if (added > rises.steepest) {
+        rises.steepest = added;
+        rises.steepest_at = at;
+    }
+    if (rises.run > rises.most) {
+        rises.most = rises.run;
+        rises.most_at = rises.steepest_at;
+    }
+}
