@@ -108,6 +108,42 @@ std::string pairs_table(const Json& object)
     return "<table>\n" + rows + "</table>\n";
 }
 
+/// A bar for each resource, from its first step to its last, and the budgets and sums in words.
+std::string lifetimes_of(const Json& memory)
+{
+    constexpr double NAMES = 300.0;
+    const Json& resources = memory["resources"];
+    const double per_step = (CHART_WIDTH - NAMES) / std::max(1.0, memory["steps"].get<double>());
+    std::string rows;
+    double y = 4.0;
+    for (const Json& one : resources) {
+        const bool lasting = one["lasting"].get<bool>();
+        const double first = lasting ? 0.0 : one["first_step"].get<double>();
+        const double end = lasting ? memory["steps"].get<double>() : one["last_step"].get<double>() + 1.0;
+        const std::string name = one["name"].get<std::string>();
+        rows += sentence(
+            "<text x=\"4\" y=\"", y + 14.0, "\">", report::escaped(name), ", ", one["bytes"].dump(), " bytes</text>\n",
+            bar_of(NAMES + first * per_step, (end - first) * per_step, y, lasting ? "#bbb" : "#0072b2",
+                   sentence(name, lasting ? ": outlives the frame, used from " : ": from ",
+                            one["first_pass"].get<std::string>(), " to ", one["last_pass"].get<std::string>())));
+        y += LANE;
+    }
+    return sentence(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", CHART_WIDTH, "\" height=\"", y,
+        "\" font-size=\"12\" font-family=\"sans-serif\">\n", rows,
+        "</svg>\n<p>Blue: what this frame alone needs, from its first pass to its last. Grey: what outlives "
+        "it.</p>\n");
+}
+
+/// The numbers of a memory section.
+Json totals_of(const Json& summary)
+{
+    Json totals = summary["memory"];
+    totals.erase("resources");
+    for (const char* key : {"device", "peak_device", "host", "peak_host"}) totals[key] = summary["bytes"][key];
+    return totals;
+}
+
 }  // namespace
 
 std::string page_of(const Profile& profile)
@@ -120,7 +156,9 @@ std::string page_of(const Profile& profile)
                  report::escaped(profile.driver), "</p>\n", chart_of(profile),
                  "<p>Grey: a frame on the host. Colours: passes on the device. Line: device memory.</p>\n",
                  passes_table(summary), "<h2>Work of one frame</h2>\n", pairs_table(summary["counters"]),
-                 "<h2>Device memory by resource, bytes</h2>\n", pairs_table(summary["bytes"]["by_resource"])));
+                 "<h2>Device memory by resource, bytes</h2>\n", pairs_table(summary["bytes"]["by_resource"]),
+                 "<h2>Memory of one frame, step by step</h2>\n", lifetimes_of(summary["memory"]),
+                 "<h2>Memory against its budgets, bytes</h2>\n", pairs_table(totals_of(summary))));
 }
 
 }  // namespace shvr::cli

@@ -26,7 +26,8 @@ struct Profile {
     std::vector<ProfiledFrame> frames;         ///< after the warm-up
     std::vector<gpu::PassReport> counted;      ///< one more frame, with work counters
     Json bytes;
-    FrameGraph graph;  ///< of the last frame
+    uint64_t device_budget = 0, host_budget = 0;  ///< bytes
+    FrameGraph graph;                             ///< of the last frame
     std::vector<std::string> warnings;
 };
 
@@ -36,6 +37,10 @@ struct Spread {
 };
 /// Nothing if there are no values.
 std::optional<Spread> spread_of(std::vector<double> values);
+
+/// The resources of a frame with their lifetimes, and what transients would need if they shared memory. README.md lists
+/// the keys.
+Json memory_of(const FrameGraph& graph);
 
 /// README.md lists the keys.
 Json summary_of(const Profile& profile);

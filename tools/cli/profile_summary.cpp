@@ -71,6 +71,41 @@ std::string mebibytes_text(const Json& bytes)
     return sentence(std::fixed, std::setprecision(1), bytes.get<double>() / double(1 << 20));
 }
 
+Json memory_summary(const Profile& profile)
+{
+    Json memory = memory_of(profile.graph);
+    memory["device_budget"] = profile.device_budget;
+    memory["host_budget"] = profile.host_budget;
+    return memory;
+}
+
+std::string of_budget(const Json& used, const Json& peak, const Json& budget)
+{
+    return sentence(mebibytes_text(used), " MiB, at most ", mebibytes_text(peak), " of a budget of ",
+                    mebibytes_text(budget));
+}
+
+std::string memory_text(const Json& bytes, const Json& memory)
+{
+    std::vector<std::vector<std::string>> rows{{"resource of the frame", "KiB", "format", "first pass", "last pass"}};
+    for (const Json& one : memory["resources"]) {
+        const std::string format = one["format"].is_null() ? "buffer" : one["format"].get<std::string>();
+        const bool lasting = one["lasting"].get<bool>();
+        rows.push_back({one["name"], sentence(std::fixed, std::setprecision(1), one["bytes"].get<double>() / 1024.0),
+                        format, lasting ? "(outlives the frame)" : one["first_pass"].get<std::string>(),
+                        one["last_pass"]});
+    }
+    const auto kibibytes = [&](const char* key) {
+        return sentence(std::fixed, std::setprecision(1), memory[key].get<double>() / 1024.0);
+    };
+    return sentence("device memory: ", of_budget(bytes["device"], bytes["peak_device"], memory["device_budget"]),
+                    "\nhost memory: ", of_budget(bytes["host"], bytes["peak_host"], memory["host_budget"]), "\n\n",
+                    table_text(rows), "\ntransient resources: ", kibibytes("transient_bytes"),
+                    " KiB; if they shared memory ", kibibytes("transient_packed"), " KiB (", std::fixed,
+                    std::setprecision(0), 100.0 * memory["aliasing_saves"].get<double>(), " % less), and never below ",
+                    kibibytes("transient_most_at_once"), " KiB, which one step needs\n");
+}
+
 }  // namespace
 
 std::optional<Spread> spread_of(std::vector<double> values)
@@ -109,6 +144,7 @@ Json summary_of(const Profile& profile)
             {"sum_median_ms", or_null(sum, &Spread::median)},
             {"counters", counters_of(profile.counted)},
             {"bytes", profile.bytes},
+            {"memory", memory_summary(profile)},
             {"warnings", profile.warnings}};
 }
 
@@ -154,10 +190,9 @@ std::string text_of(const Json& summary)
     for (const Json& pass : summary["first_frame"]) first.push_back({pass["name"], number_text(pass["gpu_ms"])});
     std::vector<std::vector<std::string>> work{{"work", "per frame"}};
     for (const auto& [name, value] : summary["counters"].items()) work.push_back({name, value.dump()});
-    work.push_back({"device memory", mebibytes_text(summary["bytes"]["device"]) + " MiB"});
     return sentence(summary["device"].get<std::string>(), ", ", summary["driver"].get<std::string>(), ", ",
                     summary["size"][0], " x ", summary["size"][1], " pixels\n\n", table_text(rows), "\n",
-                    table_text(first), "\n", table_text(work));
+                    table_text(first), "\n", table_text(work), "\n", memory_text(summary["bytes"], summary["memory"]));
 }
 
 }  // namespace shvr::cli

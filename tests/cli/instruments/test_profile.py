@@ -119,6 +119,50 @@ class Profile(CliTest):
         self.assertTrue(resources["atlas"]["imported"])
         self.assertIsNone(resources["cell ranges"]["lifetime"])  # only the leap grid reads it
 
+    def test_memory_of_a_frame_has_lifetimes_budgets_and_sums(self):
+        """The sums, worked out again from the graph, whose lifetimes another part of the program finds."""
+        path, page = self.folder / "graph.json", self.folder / "profile.html"
+        session = self.write_session(light={"occlusion": {"strength": 1}}, view={"arrangement": "overview"})
+        profile = self.check_json("profile", session, "--frames", 1, "--warmup", 0, "--budget-device", 300,
+                                  "--budget-host", 200, "--graph", path, "--html", page)
+        memory, graph = profile["memory"], json.loads(path.read_text())
+        self.assertEqual((memory["device_budget"], memory["host_budget"]), (300 << 20, 200 << 20))
+        for kind in ("device", "host"):
+            self.assertLessEqual(profile["bytes"][kind], profile["bytes"][f"peak_{kind}"])
+            self.assertLessEqual(profile["bytes"][f"peak_{kind}"], memory[f"{kind}_budget"])
+        steps = [one["name"] for one in graph["passes"] if one["alive"]]
+        self.assertEqual(memory["steps"], len(steps))
+        living = [one for one in graph["resources"] if one["lifetime"]]
+        keys = ("name", "kind", "format", "bytes")
+        self.assertEqual([[one[key] for key in keys] for one in memory["resources"]],
+                         [[one[key] for key in keys] for one in living])
+        self.assertEqual([one["lasting"] for one in memory["resources"]], [one["imported"] for one in living])
+        for mine, theirs in zip(memory["resources"], living):
+            self.assertIn(mine["first_step"], (0, theirs["lifetime"]["first_step"]))  # 0: the host filled it before
+            self.assertEqual(mine["last_step"], theirs["lifetime"]["last_step"])
+            self.assertEqual(mine["first_pass"], steps[mine["first_step"]])
+            self.assertEqual(mine["last_pass"], steps[mine["last_step"]])
+
+        transients = [one for one in memory["resources"] if not one["lasting"]]
+        at_once = [sum(one["bytes"] for one in transients if one["first_step"] <= step <= one["last_step"])
+                   for step in range(len(steps))]
+        self.assertEqual(memory["transient_bytes"], sum(one["bytes"] for one in transients))
+        self.assertEqual(memory["transient_most_at_once"], max(at_once))
+        self.assertGreater(max(at_once), 0)
+        self.assertLess(max(at_once), memory["transient_bytes"])  # some could share
+        self.assertLessEqual(memory["transient_most_at_once"], memory["transient_packed"])
+        self.assertLessEqual(memory["transient_packed"], memory["transient_bytes"])
+        self.assertAlmostEqual(memory["aliasing_saves"], 1 - memory["transient_packed"] / memory["transient_bytes"])
+        for one in memory["resources"]:
+            way = "outlives the frame, used from" if one["lasting"] else "from"
+            title = f"<title>{one['name']}: {way} {one['first_pass']} to {one['last_pass']}</title>"
+            self.assertIn(title, page.read_text())
+
+        text = self.check("profile", session, "--frames", "1", "--budget-device", 300).stdout
+        self.assertRegex(text, r"device memory: [0-9.]+ MiB, at most [0-9.]+ of a budget of 300\.0\n")
+        self.assertRegex(text, r"transient resources: [0-9.]+ KiB; if they shared memory [0-9.]+ KiB \([0-9]+ % less\)")
+        self.assertRegex(text, r"(?m)^color .* rgba32_float  +raycast  +\w")
+
     @unittest.skipUnless(shutil.which("dot"), "Graphviz is not installed")
     def test_the_graph_as_a_drawing(self):
         drawing, text = self.folder / "graph.svg", self.folder / "graph.dot"
