@@ -192,6 +192,78 @@ class Profile(CliTest):
         self.check_refused("profile", session, "--graph", "graph.pdf", status=2, says=[".svg"])
 
 
+class SessionOfWork(CliTest):
+    """A small scene whose bricks are paged, turned and painted."""
+
+    LINES = [{"op": "orbit", "right_degrees": 30, "up_degrees": -10},
+             {"op": "paint", "brush": "fill", "region": "ball", "group": 3, "threshold": 0, "radius": 3,
+              "path": [[20, 20, 20]]},
+             {"op": "undo"},
+             {"op": "set", "values": {"light": {"ambient": 0.45}}}]
+    PAINTED = [0, 136, -136, 0]  # the voxels whose centres, at halves, lie within 3 of a corner
+
+    def write_work(self):
+        project = self.folder / "project"
+        (project / "shvr").mkdir(parents=True)
+        self.write_session("project/shvr/session.json", volume={"procedural": "tubes", "size": [96, 96, 96]},
+                           render={"size": [64, 48], "paging": "always"})
+        script = self.folder / "work.jsonl"
+        script.write_text("".join(json.dumps(line) + "\n" for line in self.LINES))
+        return project, script
+
+    def test_counts_are_exact_and_every_form_says_the_same(self):
+        project, script = self.write_work()
+        paths = {key: self.folder / f"session.{key}" for key in ("csv", "html")}
+        paths["trace"] = self.folder / "trace.json"
+        profile = self.check_json("profile", project, "--script", script, "--budget-device", 64,
+                                  *(word for key, path in paths.items() for word in (f"--{key}", path)))
+        actions = profile["actions"]
+        self.assertEqual([one["action"] for one in actions], [line["op"] for line in self.LINES])
+        self.assertEqual([one["line"] for one in actions], [1, 2, 3, 4])
+        self.assertEqual([one["voxels_painted"] for one in actions], self.PAINTED)
+        self.assertEqual([one["paint_ms"] is not None for one in actions], [voxels != 0 for voxels in self.PAINTED])
+        for one in actions:
+            self.assertGreaterEqual(one["sketch_ms"], one["paint_ms"] or 0)
+            self.assertGreaterEqual(one["sharp_ms"], one["sketch_ms"])
+            self.assertGreaterEqual(one["end_ms"] - one["begin_ms"], one["sharp_ms"])
+            self.assertGreater(one["submits"], 0, one)
+        for key in ("submits", "allocations", "uploads", "evictions", "voxels_painted"):
+            self.assertEqual(profile["totals"][key], sum(one[key] for one in actions), key)
+        sharp = sorted(one["sharp_ms"] for one in actions)
+        self.assertEqual((profile["sharp_ms"]["min"], profile["sharp_ms"]["max"]), (sharp[0], sharp[-1]))
+        self.assertEqual(profile["device_budget"], 64 << 20)
+        self.assertLessEqual(profile["bytes"]["peak_device"], 64 << 20)
+
+        with open(paths["csv"], newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["submits"]) for row in rows], [one["submits"] for one in actions])
+        self.assertEqual([row["paint_ms"] == "" for row in rows], [one["paint_ms"] is None for one in actions])
+        events = json.loads(paths["trace"].read_text())["traceEvents"]
+        spans = [event for event in events if event["ph"] == "X"]
+        self.assertEqual([event["args"] for event in spans], actions)
+        for before, after in zip(spans, spans[1:]):
+            self.assertLessEqual(before["ts"] + before["dur"], after["ts"] + 1e-3)
+        page = paths["html"].read_text()
+        self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        for one in actions:
+            self.assertIn(f"<title>{one['line']}: {one['action']}, sharp after ", page)
+            self.assertIn(f"<td>{one['device_bytes']}</td>", page)
+
+    def test_people_read_a_table_of_actions(self):
+        project, script = self.write_work()
+        text = self.check("profile", project, "--script", script).stdout
+        for words in (r"(?m)^1 +orbit +- ", r"(?m)^2 +paint +[0-9.]+ ", r"(?m)^to sharp ", r"(?m)^allocations +[0-9]+$"):
+            self.assertRegex(text, words)
+
+    def test_wrong_scripts_are_refused(self):
+        project, script = self.write_work()
+        self.check_refused("profile", project, "--script", script, "--graph", self.folder / "a.dot", status=2)
+        script.write_text("\n")
+        self.check_refused("profile", project, "--script", script, says=["holds no action"])
+        script.write_text('{"op":"look_from","camera":"nowhere"}\n')
+        self.check_refused("profile", project, "--script", script, says=["work.jsonl:1", "nowhere"])
+
+
 class Diff(CliTest):
     def write_profile(self, name, passes, frame=10.0, samples=100):
         rows = [{"name": one, "median_ms": median, "min_ms": None if median is None else median - noise,

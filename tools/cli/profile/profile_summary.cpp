@@ -3,7 +3,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_report.h"
 
 namespace shvr::cli {
 
@@ -73,7 +73,7 @@ std::string mebibytes_text(const Json& bytes)
 
 Json memory_summary(const Profile& profile)
 {
-    Json memory = memory_of(profile.graph);
+    Json memory = frame_memory_of(profile.graph);
     memory["device_budget"] = profile.device_budget;
     memory["host_budget"] = profile.host_budget;
     return memory;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_report.h"
 
 namespace shvr::cli {
 
@@ -72,7 +72,7 @@ uint64_t packed_bytes(std::vector<Need> needs)
 
 }  // namespace
 
-Json memory_of(const FrameGraph& graph)
+Json frame_memory_of(const FrameGraph& graph)
 {
     const CompiledGraph compiled = graph.compile();
     const auto pass_at = [&](size_t step) { return graph.passes()[compiled.steps[step].pass].name; };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_report.h"
 #include "tools/report/html.h"
 
 namespace shvr::cli {

@@ -40,7 +40,7 @@ std::optional<Spread> spread_of(std::vector<double> values);
 
 /// The resources of a frame with their lifetimes, and what transients would need if they shared memory. README.md lists
 /// the keys.
-Json memory_of(const FrameGraph& graph);
+Json frame_memory_of(const FrameGraph& graph);
 
 /// README.md lists the keys.
 Json summary_of(const Profile& profile);

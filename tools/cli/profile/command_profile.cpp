@@ -5,7 +5,7 @@
 
 #include "engine/base/file.h"
 #include "engine/live/previewer.h"
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_session.h"
 
 namespace shvr::cli {
 
@@ -16,7 +16,7 @@ constexpr int DEEPEST_PROFILE = 16;  // ours have 4 levels; each costs far more 
 
 struct ProfileCommandOptions {
     Common common;
-    std::string input, size, camera, trace, csv, graph, html;
+    std::string input, size, camera, trace, csv, graph, html, script;
     int frames = 20;
     int warmup = 3;  ///< the first frames compile kernels and wake up the device
     bool serialize = false;
@@ -78,6 +78,25 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     return profile;
 }
 
+void run_session(const ProfileCommandOptions& options)
+{
+    const SessionProfile profile = profile_session(options.input, options.script, options.common);
+    Json summary = summary_of(profile);
+    summary["written"] = Json::array();
+    const auto write = [&](const std::string& path, const auto& form) {
+        if (path.empty()) return;
+        write_text(path, form());
+        summary["written"].push_back(path);
+    };
+    write(options.trace, [&] { return trace_of(profile); });
+    write(options.csv, [&] { return csv_of(profile); });
+    write(options.html, [&] { return page_of(profile); });
+    if (options.common.json)
+        print(summary);
+    else
+        print_text(session_text(summary));
+}
+
 void run_profile(ProfileCommandOptions options)
 {
     if (options.input.empty())
@@ -90,6 +109,7 @@ void run_profile(ProfileCommandOptions options)
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
     }
+    if (!options.script.empty()) return run_session(options);
     LongWork work(options.common.quiet);
     Opened opened = open(options.input, options.common, work);
     const Profile profile = measure_frames(options, opened, work);
@@ -166,7 +186,13 @@ void add_profile(CLI::App& program)
     command->add_option("--graph", options->graph, "Frame graph to write (.dot, .svg, .json)");
     command->add_option("--html", options->html,
                         "Page to write (.html): passes and memory over time, in one file that needs nothing else");
+    CLI::Option* const script = command->add_option("--script", options->script,
+                                                    "Actions to time one by one instead of frames, as shvr view --log "
+                                                    "writes them; the journal keeps what they paint");
+    for (const char* of_frames : {"--frames", "--warmup", "--camera", "--graph"})
+        script->excludes(command->get_option(of_frames));
     command->add_flag("--serialize", options->serialize, "A full barrier between passes: times that do not overlap");
+    script->excludes(command->get_option("--serialize"));
     add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);

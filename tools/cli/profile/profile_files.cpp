@@ -12,7 +12,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/graph/graph_text.h"
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_report.h"
 
 extern char** environ;
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <iomanip>
 
-#include "tools/cli/profile_report.h"
+#include "tools/cli/profile/profile_report.h"
 
 namespace shvr::cli {
 
