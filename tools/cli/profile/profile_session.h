@@ -10,7 +10,7 @@ struct ProfiledAction {
     std::string action;                   ///< its key "op"
     double begin_ms = 0.0, end_ms = 0.0;  ///< on the host's clock, from the first action
     // From the beginning of the action; null where that did not happen before the next action.
-    std::optional<double> paint_ms;       ///< until the voxels that it changed are painted; null where it painted none
+    std::optional<double> paint_ms;       ///< until the voxels that it changed are painted; null: as many are as before
     std::optional<double> sketch_ms;      ///< until every pane shows at least a sketch of it
     std::optional<double> sharp_ms;       ///< until every pane shows it sharp
     uint64_t submits = 0;                 ///< of the picture
