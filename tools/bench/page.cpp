@@ -51,7 +51,7 @@ std::string table_of_csv(const std::string& csv, const std::string& scene)
     bool is_head = true;
     for (size_t end = 0; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
         std::string line = text.substr(0, end);
-        if (!is_head && !line.starts_with("\"" + scene + "\"")) continue;
+        if (!is_head && !scene.empty() && !line.starts_with("\"" + scene + "\"")) continue;
         std::string row;
         for (size_t comma = 0; comma != std::string::npos; line.erase(0, comma == std::string::npos ? 0 : comma + 1)) {
             comma = line.find(',');
@@ -71,6 +71,47 @@ std::string figure_of(const Image8& image, const std::string& caption)
 {
     return sentence("<figure><img alt=\"", escaped(caption), "\" src=\"", report::source_of(image), "\"><figcaption>",
                     escaped(caption), "</figcaption></figure>\n");
+}
+
+std::string cell_of(const Measured* run)
+{
+    return run ? sentence("<td>", escaped(run->name), "</td><td>", number(run->time.median_ms), "</td><td>",
+                          number(run->error.rmse), "</td>")
+               : "<td>none</td><td>-</td><td>-</td>";
+}
+
+/// What another program's error costs SHVR.
+std::string peer_table_of(const Results& results, const std::string& scene)
+{
+    std::string rows;
+    for (const AtPeersError& row : at_peers_errors(results)) {
+        if (row.scene != scene) continue;
+        const auto ratio = [&](const Measured* run) {
+            const double peer_ms = row.peer->time.median_ms;
+            return run && peer_ms > 0.0 ? number(run->time.median_ms / peer_ms) : std::string("-");
+        };
+        rows += "<tr>" + cell_of(row.peer) + cell_of(row.fastest) + "<td><b>" + ratio(row.fastest) + "</b></td>" +
+                cell_of(row.same_step) + "<td>" + ratio(row.same_step) + "</td></tr>\n";
+    }
+    if (rows.empty()) return {};
+    return "<p>Time at equal error: SHVR's fastest run whose error is no larger than VTK's, and its run of the same "
+           "step.</p>\n<table><tr><th>VTK</th><th>ms</th><th>RMSE</th><th>SHVR</th><th>ms</th><th>RMSE</th><th>time "
+           "over VTK's</th><th>same step</th><th>ms</th><th>RMSE</th><th>time over VTK's</th></tr>\n" +
+           rows + "</table>\n";
+}
+
+std::string sentences_of(const std::vector<std::string>& notes)
+{
+    std::string markup;
+    for (const std::string& note : notes) markup += "<p>" + escaped(note) + "</p>\n";
+    return markup;
+}
+
+std::string section_of(const Sweep& sweep)
+{
+    return sentence("<h2>", escaped(sweep.name), "</h2>\n<p>", escaped(sweep.what), "</p>\n",
+                    sweep.svg.empty() ? report::svg_of(sweep.plot) : sweep.svg,
+                    "\n<details><summary>As a table</summary>", table_of_csv(csv_of(sweep), {}), "</details>\n");
 }
 
 std::string insets_of(const Pictures& pictures)
@@ -127,7 +168,7 @@ report::Plot plot_of_qualities(const Results& results)
     return plot;
 }
 
-std::string page_of(const Results& results, const std::vector<Pictures>& pictures)
+std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps)
 {
     std::string body =
         sentence("<h1>Speed against error</h1>\n<p>", escaped(results.driver), ", ", escaped(results.processor), ", ",
@@ -135,7 +176,8 @@ std::string page_of(const Results& results, const std::vector<Pictures>& picture
                  " x ", results.height, " pixels; medians of ", results.rounds,
                  " rounds in turns. Errors are against the double-precision reference renderer, which "
                  "shares no code with what it measures.</p>\n");
-    body += report::svg_of(plot_of_qualities(results));
+    body += sentences_of(results.left_out);
+    if (!results.scenes.empty()) body += report::svg_of(plot_of_qualities(results));
     const std::string equal_errors = equal_error_csv(results), equal_times = equal_time_csv(results);
     for (size_t i = 0; i < results.scenes.size(); ++i) {
         const SceneResult& scene = results.scenes[i];
@@ -143,17 +185,18 @@ std::string page_of(const Results& results, const std::vector<Pictures>& picture
                          "</p>\n", report::svg_of(plot_of(scene, Metric::rmse)),
                          report::svg_of(plot_of(scene, Metric::flip)));
         if (i < pictures.size()) body += "<div>" + insets_of(pictures[i]) + "</div>\n";
-        body += table_of(scene);
+        body += sentences_of(scene.notes) + peer_table_of(results, scene.name) + table_of(scene);
         body += "<details><summary>Equal error: the fastest of each knob</summary>" +
                 table_of_csv(equal_errors, scene.name) + "</details>\n";
         body += "<details><summary>Equal time: the most exact of each knob</summary>" +
                 table_of_csv(equal_times, scene.name) + "</details>\n";
     }
+    for (const Sweep& sweep : sweeps) body += section_of(sweep);
     return report::page("SHVR: speed against error", STYLE, body);
 }
 
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
-                                     const std::filesystem::path& output)
+                                     const std::vector<Sweep>& sweeps, const std::filesystem::path& output)
 {
     std::vector<std::string> written;
     const auto write = [&](const std::string& name, const std::string& text) {
@@ -169,10 +212,15 @@ std::vector<std::string> write_files(const Results& results, const std::vector<P
     write("bench.csv", csv_of(results));
     write("equal_error.csv", equal_error_csv(results));
     write("equal_time.csv", equal_time_csv(results));
+    write("equal_peer.csv", equal_peer_csv(results));
     write("front.csv", front_csv(results));
     write_plot("pareto", plot_of_qualities(results));
     for (const SceneResult& scene : results.scenes) write_plot("pareto-" + scene.name, plot_of(scene, Metric::rmse));
-    write("report.html", page_of(results, pictures));
+    for (const Sweep& sweep : sweeps) {
+        write(sentence("sweep-", sweep.name, ".csv"), csv_of(sweep));
+        write(sentence("sweep-", sweep.name, ".svg"), sweep.svg.empty() ? report::svg_of(sweep.plot) : sweep.svg);
+    }
+    write("report.html", page_of(results, pictures, sweeps));
     return written;
 }
 
