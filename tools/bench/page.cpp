@@ -139,7 +139,7 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
                       .y_label = metric == Metric::rmse ? "RMSE in linear light" : "visible difference (mean FLIP)",
                       .series = {}};
     for (const char* family : families()) {
-        report::PlotSeries series{family, {}, false};
+        report::PlotSeries series{family, {}, is_peer(family)};
         for (const Measured& run : scene.runs)
             if (run.family == family)
                 series.points.push_back({run.time.median_ms, error_by(run, metric),
@@ -151,17 +151,17 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
 
 report::Plot plot_of_qualities(const Results& results)
 {
-    // Samples, which are the same on every machine: the plot can be kept, and compared.
+    // What is read, which is the same on every machine: the plot can be kept, and compared.
     report::Plot plot{.title = "draft, interactive, good, reference: from left to right",
-                      .x_label = "samples of a picture",
+                      .x_label = "texels read for a picture",
                       .y_label = "RMSE in linear light",
                       .series = {}};
     for (const SceneResult& scene : results.scenes) {
         report::PlotSeries series{scene.name, {}, true};
         for (const Measured& run : scene.runs) {
-            const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
-            if (run.family == "quality" && samples != run.work.end())
-                series.points.push_back({double(samples->second), run.error.rmse, {}, false});
+            const auto reads = std::ranges::find(run.work, "density_reads", &std::pair<std::string, uint64_t>::first);
+            if (run.family == "quality" && reads != run.work.end())
+                series.points.push_back({double(reads->second), run.error.rmse, {}, false});
         }
         plot.series.push_back(std::move(series));
     }

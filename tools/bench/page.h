@@ -10,7 +10,7 @@ namespace shvr::bench {
 enum class Metric { rmse, flip };
 /// A scene's runs: milliseconds to the right, error upwards, a series for each family, the qualities labelled.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
-/// The qualities of all scenes by their samples: one series for each scene.
+/// The qualities of all scenes by what they read: one series for each scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
 /// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, sweep-*.csv

@@ -241,8 +241,9 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
             runs.back().settings.push_back(sentence(key, "=", digits_of(value)));
         }
     };
-    sweep("step", "render.step_voxels", {4, 2, 1, 0.5, 0.25, 0.125}, {2, 1, 0.5, 0.25});
-    sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125}, {1, 0.25}, {"render.preintegration=true"});
+    sweep("step", "render.step_voxels", {4, 2, 1, 0.5, 0.25, 0.125, 0.0625}, {2, 1, 0.5, 0.25, 0.125, 0.0625});
+    sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125, 0.0625}, {1, 0.25, 0.0625},
+          {"render.preintegration=true"});
     sweep("opacity limit", "render.opacity_limit", {0.9, 0.95, 0.99, 0.999755859375, 1}, {0.9});
     for (const char* sampling : {"exact", "hardware"})
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});

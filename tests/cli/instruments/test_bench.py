@@ -99,7 +99,7 @@ class Bench(CliTest):
             tree = xml.etree.ElementTree.parse(self.output / name).getroot()
             texts = {text.text for text in tree.iter("{http://www.w3.org/2000/svg}text")}
             self.assertIn("RMSE in linear light", texts)
-            self.assertIn("samples of a picture" if name == "pareto.svg" else "median time of a picture, ms", texts)
+            self.assertIn("texels read for a picture" if name == "pareto.svg" else "median time of a picture, ms", texts)
             # The legend names a front where one is drawn; no mark lies on the frame, which is at 74.
             self.assertEqual("front" in texts, name != "pareto.svg")
             marks = [float(mark.get("cx")) for mark in tree.iter("{http://www.w3.org/2000/svg}circle")]

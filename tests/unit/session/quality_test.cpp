@@ -61,7 +61,7 @@ TEST_CASE("--set render.quality takes the place of what a file holds, and later 
     CHECK(name_of(draft.render) == "draft");
     CHECK(draft.render.saturation == 0.5);
     CHECK(parse({"render.quality=good", "render.step_voxels=0.3"}).render.step_voxels == 0.3);
-    CHECK(parse({"render.step_voxels=0.3", "render.quality=good"}).render.step_voxels == 0.25);
+    CHECK(parse({"render.step_voxels=0.3", "render.quality=good"}).render.step_voxels == 0.125);
     const std::string refused = error_of([] { parse({"render.quality=best"}); });
     CHECK_MESSAGE(contains(refused, "\"reference\""), refused);
 }
