@@ -12,7 +12,7 @@ constexpr Quality QUALITIES[] = {
              "27 at most. Step 1, no narrow peaks.",
      .step_voxels = 1.0,
      .opacity_limit = 0.99,  // at 0.95 deep fog is 6 levels off, and takes three quarters of the time
-     .detail = 2.0},
+     .detail = 0.5},
     {.name = "interactive",
      .note = "To work in, and what a new session has: about 0.2 of 255 levels from the reference, 9 at most. Step 0.5.",
      .step_voxels = 0.5,

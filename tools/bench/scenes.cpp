@@ -274,8 +274,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
     if (scene.budget_device > 0)
         for (const uint64_t mib : {16, 48})
             runs.push_back({sentence("budget ", mib, " MiB"), "budget", {}, 1.0, mib << 20});
-    if (text.find("\"paging\"") != std::string::npos)
-        sweep("detail", "render.detail", {0.5, 1, 1.5, 2, 3, 4, 8}, {1, 4});
+    if (text.find("\"paging\"") != std::string::npos) sweep("detail", "render.detail", {0.25, 0.5, 1, 2, 4}, {0.5, 2});
     return runs;
 }
 

@@ -80,10 +80,14 @@ class Bench(CliTest):
                 self.assertLess(runs["step 0.25"]["error"]["rmse"], limit)
                 self.assertEqual("occlusion rays 64" in runs, scene == "occluded")
                 if scene == "paged":
-                    # Coarser levels where a voxel is smaller than so many pixels' width: less work, more error.
-                    detail = [runs["step 0.5"], runs["detail 1"], runs["detail 4"]]
-                    self.assertLess(detail[0]["error"]["rmse"], detail[2]["error"]["rmse"])
-                    self.assertGreater(detail[0]["work"]["samples"], detail[2]["work"]["samples"])
+                    # All voxels, then at least two and half a voxel a pixel: coarser levels, less work, more error.
+                    all_voxels, two, half = runs["step 0.5"], runs["detail 2"], runs["detail 0.5"]
+                    self.assertLessEqual(all_voxels["error"]["rmse"], two["error"]["rmse"])
+                    self.assertLess(two["error"]["rmse"], half["error"]["rmse"])
+                    self.assertGreater(two["work"]["samples"], half["work"]["samples"])
+                    # A worse quality is not drawn of finer bricks.
+                    bricks = [runs[name]["work"]["bricks_visited"] for name in ("draft", "interactive", "good")]
+                    self.assertEqual(bricks, sorted(bricks))
                     self.assertEqual(runs["budget 16 MiB"]["error"], runs["budget 48 MiB"]["error"])
 
     def test_files(self):
