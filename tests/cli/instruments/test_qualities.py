@@ -9,7 +9,7 @@ from harness import CliTest
 FRONT = Path(__file__).resolve().parents[3] / "tools/bench/front.csv"
 QUALITIES = ["draft", "interactive", "good", "reference"]
 SAME = 0.01  # a ray may end a sample later on another processor
-# Work is what is read: a sample that is pre-integrated reads 31 texels where a plain one reads 12, so samples are none. A
+# Work is what is read: a sample that is pre-integrated reads 30 texels where a plain one reads 13, so samples are none. A
 # tap of a texture unit's filter is another unit, so "sampling hardware" is left out.
 WORK = "reads"
 # One table for all scenes is not on the front of each. More than SAME better in both:
