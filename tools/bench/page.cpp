@@ -125,6 +125,12 @@ std::string insets_of(const Pictures& pictures)
     return markup;
 }
 
+/// The qualities, and another program's run at what interactive has.
+bool is_labelled(const Measured& run)
+{
+    return run.family == "quality" || (is_peer(run.family) && run.name.ends_with("step 0.5"));
+}
+
 double error_by(const Measured& run, Metric metric)
 {
     return metric == Metric::rmse ? run.error.rmse : run.error.flip_mean;
@@ -139,11 +145,11 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
                       .y_label = metric == Metric::rmse ? "RMSE in linear light" : "visible difference (mean FLIP)",
                       .series = {}};
     for (const char* family : families()) {
-        report::PlotSeries series{family, {}, is_peer(family)};
+        report::PlotSeries series{family, {}, false, is_peer(family)};
         for (const Measured& run : scene.runs)
             if (run.family == family)
                 series.points.push_back({run.time.median_ms, error_by(run, metric),
-                                         run.family == "quality" ? run.name : std::string(), run.on_front});
+                                         is_labelled(run) ? run.name : std::string(), run.on_front});
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
     return plot;
@@ -157,7 +163,7 @@ report::Plot plot_of_qualities(const Results& results)
                       .y_label = "RMSE in linear light",
                       .series = {}};
     for (const SceneResult& scene : results.scenes) {
-        report::PlotSeries series{scene.name, {}, true};
+        report::PlotSeries series{scene.name, {}, true, false};
         for (const Measured& run : scene.runs) {
             const auto reads = std::ranges::find(run.work, "density_reads", &std::pair<std::string, uint64_t>::first);
             if (run.family == "quality" && reads != run.work.end())

@@ -154,15 +154,16 @@ report::Plot plot_of(const std::vector<SweepRow>& rows, bool is_by_share)
 {
     report::Plot plot;
     for (const SweepRow& row : rows) {
+        const bool is_labelled = row.series == rows.back().series;  // one series stands for all
         auto series = std::ranges::find(plot.series, row.series, &report::PlotSeries::name);
         if (series == plot.series.end()) {
-            plot.series.push_back({row.series, {}, true});
+            plot.series.push_back({row.series, {}, true, false});
             series = plot.series.end() - 1;
         }
         if (is_by_share)
             series->points.push_back({row.share, row.ns_per_voxel, {}, false});
         else
-            series->points.push_back({row.ns_per_voxel, row.error, row.setting, false});
+            series->points.push_back({row.ns_per_voxel, row.error, is_labelled ? row.setting : std::string(), false});
     }
     return plot;
 }

@@ -214,6 +214,24 @@ class Bench(CliTest):
         self.assertIn("VTK step 1", self.runs(1))
         self.assertEqual(self.runs()["step 0.5"]["work"]["rays"] > 0, True)
 
+    def test_all_scenes_and_sweeps_are_measured_and_scans_that_are_not_there_are_said(self):
+        self.output = self.folder / "all"
+        result = self.check("bench", "--quick", "--side", 16, "--size", "8,8", "--rounds", 1, "--peer", "none",
+                            "--examples", self.folder, "-o", self.output, "--json")
+        told, kept = json.loads(result.stdout), json.loads((self.output / "bench.json").read_text())
+        self.assertEqual(told["left_out"], kept["left_out"])
+        self.assertEqual(len(told["left_out"]), 2)
+        page = (self.output / "report.html").read_text()
+        for name, sentence in zip(("stent", "cranium"), told["left_out"]):
+            self.assertIn(f"tools/fetch_example {name}", sentence)
+            self.assertIn(sentence, result.stderr)
+            self.assertIn(sentence, page)
+        names = [scene["name"] for scene in kept["scenes"]]
+        self.assertEqual(names, ["tubes", "noisy-surface", "tissue", "fog", "peaks", "uint16", "anisotropic", "paged",
+                                 "painted", "occluded", "surfaces", "tubes-matt", "noisy-surface-matt", "tissue-matt"])
+        for sweep in ("blur", "labelling", "proxy"):
+            self.assertIn(f"<h2>{sweep}</h2>", page)
+
     def test_sweeps_beside_pictures(self):
         self.output = self.folder / "sweeps"
         told = self.check_json("bench", "--quick", "--sweeps", "blur,labelling", "-o", self.output)
