@@ -26,6 +26,7 @@ print("something else")
 print(json.dumps({{"vtk": "0.0"}}), flush=True)
 for line in sys.stdin:
     asked = json.loads(line)
+    print(asked["step"], file=open(sys.argv[0] + ".log", "a"))
     if asked["output"]:
         open(asked["output"], "wb").write(f"PF\\n{{width}} {{height}}\\n-1.0\\n".encode() + array("f", [0] * 3 * width * height).tobytes())
     print(json.dumps({{"ms": 1000 * asked["step"]}}), flush=True)
@@ -147,7 +148,11 @@ class Bench(CliTest):
         return json.loads((self.output / "bench.json").read_text())["scenes"][0]["notes"]
 
     def test_another_program_is_measured_in_the_same_rounds_and_by_the_same_reference(self):
-        self.bench("--peer", self.stand_in(), scenes="tissue-matt", rounds=1)
+        self.bench("--peer", self.stand_in(), scenes="tissue-matt", rounds=3)
+        # Each twice to begin with, then to and fro with all others.
+        asked = (self.folder / "peer.py.log").read_text().split()
+        there = ["2.0", "1.0", "0.5", "0.25"]
+        self.assertEqual(asked, [step for step in there for _ in range(2)] + there + there[::-1] + there)
         runs = self.runs()
         self.assertEqual([runs[f"VTK step {step}"]["median_ms"] for step in ("2", "1", "0.5", "0.25")],
                          [2000, 1000, 500, 250])
